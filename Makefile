@@ -1,0 +1,77 @@
+# Every verb sets up what it needs: .venv with the tools of the group `dev`, and the compiled core.
+# Needs only Python 3.11 or newer (with venv), cargo and make.
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help study test check bench format build soak tools
+
+VENV := .venv
+BIN := $(VENV)/bin
+CARGO_TARGET_DIR ?= target
+export CARGO_TARGET_DIR
+
+# The first interpreter that is new enough; PYTHON=... overrides.
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+
+# What the compiled core is made of; cargo decides what of it is stale.
+SOURCES := Cargo.toml $(wildcard Cargo.lock) pyproject.toml \
+	$(shell find rust_core python/Cargo.toml python/src -name target -prune -o \
+	\( -name '*.rs' -o -name Cargo.toml \) -print 2>/dev/null)
+
+# pyo3 reads the interpreter from here, so that clippy and maturin build for the same one.
+CARGO := PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo
+
+help: ## list the verbs
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 10
+
+study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
+	$(BIN)/python -m crawler2d.experiments $(ARGS)
+
+test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
+	$(CARGO) test --release
+	$(BIN)/python -m pytest
+	@$(MAKE) --no-print-directory check
+
+check: $(VENV)/.built ## format, lint, types, stubs and documentation, nothing changed
+	cargo fmt --all --check
+	$(CARGO) clippy --release --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --no-deps
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest crawler2d._core
+
+bench: | tools ## benchmarks
+	cargo bench
+
+format: $(VENV)/.dependencies ## format all code
+	cargo fmt --all
+	$(BIN)/ruff check --fix-only --quiet .
+	$(BIN)/ruff format .
+
+build: $(VENV)/.built ## the compiled core, in place
+
+soak: $(VENV)/.built ## the long tests, minutes to hours
+	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored
+	CRAWLER2D_SOAK=1 $(BIN)/python -m pytest -m ''
+
+tools:
+	@if [ -z "$(PYTHON)" ]; then \
+		echo "crawler2d needs Python 3.11 or newer: no such python3 was found (set PYTHON=...)" >&2; exit 1; fi
+	@if ! $(PYTHON) -c 'import venv, ensurepip' 2>/dev/null; then \
+		echo "crawler2d needs Python's venv and ensurepip (Debian: apt-get install python3-venv)" >&2; exit 1; fi
+	@if ! command -v cargo >/dev/null; then \
+		echo "crawler2d needs cargo, Rust's build tool: https://rustup.rs" >&2; exit 1; fi
+
+$(VENV)/.dependencies: pyproject.toml | tools
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+# An old core of another kind (abi3 or not) would be preferred silently: it goes first.
+$(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
+	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras all
+	@touch $@

@@ -1,0 +1,69 @@
+"""Simulate tracked robots in side view, whatever the model of their track.
+
+One body in the plane, its track as a belt, as wheels or as a mere force, on ground with edges.
+Units are SI, angles radians, x forward, y up.
+
+>>> import crawler2d as c2d
+>>> robot = c2d.robots.engineer().with_track(c2d.BeltTrack())
+>>> run = c2d.simulate(robot, c2d.terrains.step(0.05))
+>>> str(run.outcome)
+'cleared'
+"""
+
+from crawler2d import robots, terrains
+from crawler2d._core import build_info
+from crawler2d.batch import simulate, simulate_many
+from crawler2d.errors import (
+    BatchInterrupted,
+    Crawler2dError,
+    InternalError,
+    LimitError,
+    ScenarioError,
+    SimulationDiverged,
+)
+from crawler2d.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.run import Outcome, Run
+from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
+from crawler2d.simulation import Simulation
+from crawler2d.statistics import newcombe, wilson
+from crawler2d.track import BeltTrack, ForceTrack, LineOfWheels, RoundWheel
+
+__all__ = [
+    "BatchInterrupted",
+    "BeltTrack",
+    "Crawler2dError",
+    "Drive",
+    "Drivetrain",
+    "ForceTrack",
+    "InternalError",
+    "LimitError",
+    "LineOfWheels",
+    "Outcome",
+    "Robot",
+    "RoundWheel",
+    "Run",
+    "Scenario",
+    "ScenarioError",
+    "SeizureCriteria",
+    "Simulation",
+    "SimulationDiverged",
+    "Solver",
+    "Start",
+    "TrackOutline",
+    "build_info",
+    "newcombe",
+    "robots",
+    "simulate",
+    "simulate_many",
+    "terrains",
+    "wilson",
+]
+
+__version__ = str(build_info()["version"])
+
+if build_info()["profile"] == "debug":
+    import warnings
+
+    warnings.warn(
+        "crawler2d was built without optimisation and is slow", RuntimeWarning, stacklevel=2
+    )

@@ -1,0 +1,124 @@
+"""Which numbers and arrays a parameter takes, and their one frozen form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+
+# Every whole number up to here is a float64.
+_EXACT = 2**53
+
+
+def frozen_scalar(value: Any, *, whole: bool) -> Any:
+    """Take a NumPy scalar or an array of no dimension as the Python number it holds.
+
+    Parameters
+    ----------
+    value : object
+        Anything; what is no number stays as it is, for the validator to refuse.
+    whole : bool
+        Whether the field is a whole number; where it is not, whole numbers become floats if exact.
+
+    Returns
+    -------
+    object
+        An equal Python object.
+    """
+    if isinstance(value, np.generic) or (type(value) is np.ndarray and value.ndim == 0):
+        value = value.item()
+    if isinstance(value, np.longdouble) and np.longdouble(float(value)) == value:
+        value = float(value)  # its .item() is itself
+    if not whole and type(value) is int and abs(value) <= _EXACT:
+        value = float(value)
+    return value
+
+
+def real_number(value: Any, path: str) -> float:
+    """Take any real number as a float.
+
+    Raises
+    ------
+    ScenarioError
+        If it is none; a bool or a text is none.
+    """
+    number = frozen_scalar(value, whole=False)
+    if type(number) is not float:
+        raise ScenarioError(path, value, "must be a number")
+    return number
+
+
+def frozen_rows(value: Any, path: str, *, rows: bool) -> Any:
+    """Copy an array-like of real numbers to tuples of floats, without losing a bit.
+
+    Parameters
+    ----------
+    value : array_like, shape (n, 2) or (2,)
+        Any layout, byte order, and width of float or integer; None stays None.
+    path : str
+        Path of the field, for messages.
+    rows : bool
+        True for points, shape (n, 2); False for one point, shape (2,).
+
+    Returns
+    -------
+    tuple or None
+        Of tuples (x, y), or one such tuple.
+
+    Raises
+    ------
+    ScenarioError
+        If the values are no real numbers, are masked, lose digits as float64 or are misshapen.
+    """
+    if value is None:
+        return None
+    if isinstance(value, np.ma.MaskedArray):
+        raise ScenarioError(path, "a masked array", "must not be masked")
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError, OverflowError):
+        if rows:
+            raise _bad_row(value, path) from None
+        raise ScenarioError(path, value, "must be a point (x, y)") from None
+    if array.size == 0 and array.ndim == 1 and rows:
+        return ()
+    if array.dtype.kind not in "iuf":
+        rule = f"must hold real numbers, not {array.dtype}"
+        raise ScenarioError(path, _described(value, array), rule)
+    shape_is_right = array.shape[1:] == (2,) and array.ndim == 2 if rows else array.shape == (2,)
+    if not shape_is_right:
+        rule = f"must have shape {'(n, 2)' if rows else '(2,)'}"
+        raise ScenarioError(path, f"shape {array.shape}", rule)
+    with np.errstate(over="ignore"):
+        exact = array.astype(np.float64)
+    if not _same_numbers(array, exact):
+        raise ScenarioError(path, _described(value, array), "must hold numbers that fit in float64")
+    numbers = exact.tolist()
+    return tuple(map(tuple, numbers)) if rows else tuple(numbers)
+
+
+def _same_numbers(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> bool:
+    if array.dtype.kind in "iu":
+        return bool(np.all((array <= _EXACT) & (array >= -_EXACT)))
+    return bool(np.array_equal(exact.astype(array.dtype), array, equal_nan=True))
+
+
+def _bad_row(value: Any, path: str) -> ScenarioError:
+    """Find the first row of a ragged list that is no point."""
+    for index, row in enumerate(value):
+        try:
+            shape = np.shape(row)
+        except (ValueError, TypeError, OverflowError):
+            shape = ()
+        if shape != (2,):
+            return ScenarioError(f"{path}[{index}]", row, "must be a point (x, y)")
+    return ScenarioError(path, value, "must be a list of points (x, y)")
+
+
+def _described(value: Any, array: np.ndarray[Any, Any]) -> object:
+    """Keep a message short: an array by its type and shape, anything else by itself."""
+    if isinstance(value, np.ndarray):
+        return f"{array.dtype} array of shape {array.shape}"
+    return value

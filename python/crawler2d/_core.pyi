@@ -1,0 +1,36 @@
+# The compiled core: JSON text in, NumPy columns out. Its docstrings are in python/src.
+
+from collections.abc import Callable
+from typing import Any, final
+
+__all__ = [
+    "Simulation",
+    "build_info",
+    "canonical",
+    "geometry",
+    "identity",
+    "simulate",
+    "simulate_many",
+]
+
+@final
+class Simulation:
+    def __new__(cls, text: str) -> Simulation: ...
+    def advance(self, duration: float) -> None: ...
+    def command(self, speed: float | None = None) -> None: ...
+    def state(self) -> dict[str, Any]: ...
+    @property
+    def time(self) -> float: ...
+
+def build_info() -> dict[str, str | int]: ...
+def canonical(text: str) -> str: ...
+def geometry(text: str) -> dict[str, Any]: ...
+def identity(text: str) -> str: ...
+def simulate(text: str, sample_interval: float, record: str) -> dict[str, Any]: ...
+def simulate_many(
+    texts: list[str],
+    threads: int,
+    sample_interval: float,
+    record: str,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[list[dict[str, Any] | None], bool]: ...

@@ -1,0 +1,195 @@
+"""From scenarios to runs: one, or many on several threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal
+
+from crawler2d import _core, errors
+from crawler2d._arrays import real_number
+from crawler2d._progress import Progress, reporter
+from crawler2d._threads import thread_count
+from crawler2d.errors import BatchInterrupted, Crawler2dError, InternalError, ScenarioError
+from crawler2d.robot import Robot
+from crawler2d.run import Run
+from crawler2d.scenario import Scenario
+from crawler2d.terrain import Terrain
+
+__all__ = ["simulate", "simulate_many"]
+
+Recording = Literal["full", "summary"]
+
+
+def simulate(
+    scenario: Scenario | Robot,
+    terrain: Terrain | None = None,
+    *,
+    record: Recording = "full",
+    sample_interval: float = 0.01,
+    **fields: Any,
+) -> Run:
+    """Simulate one scenario to its end.
+
+    Parameters
+    ----------
+    scenario : Scenario or Robot
+        What to simulate; a robot needs a terrain.
+    terrain : Flat, Step, Ramp, Points or Lanes, optional
+        The ground; replaces that of a scenario.
+    record : {"full", "summary"}
+        Whether to keep the history, or only outcome, metrics and events.
+    sample_interval : float
+        [s] Time between two samples of the history, rounded to whole time steps.
+    **fields : object
+        Further fields of the scenario, such as ``duration=5.0``.
+
+    Returns
+    -------
+    Run
+        Outcome, metrics and history.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario breaks a rule; nothing has been simulated.
+    LimitError
+        If the history would not fit in memory.
+    SimulationDiverged
+        If the state became non-finite.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> run = c2d.simulate(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> run.outcome
+    <Outcome.CLEARED: 'cleared'>
+    """
+    complete = _complete(scenario, terrain).replace(fields)
+    return Run(complete, _core.simulate(complete.to_json(), *_recording(sample_interval, record)))
+
+
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    threads: int | None = None,
+    record: Recording = "full",
+    sample_interval: float = 0.01,
+    progress: bool | Progress | None = False,
+    on_error: Literal["raise", "record"] = "raise",
+) -> list[Run]:
+    """Simulate many scenarios; the results do not depend on the number of threads.
+
+    Parameters
+    ----------
+    scenarios : iterable of Scenario
+        What to simulate.
+    threads : int, optional
+        1 to 1024; None takes every core of this process. The environment variable
+        CRAWLER2D_THREADS limits both.
+    record : {"full", "summary"}
+        Whether to keep the histories, or only outcomes, metrics and events.
+    sample_interval : float
+        [s] Time between two samples of a history, rounded to whole time steps.
+    progress : bool or callable
+        True shows a bar; a callable gets the numbers of finished runs and of all runs.
+    on_error : {"raise", "record"}
+        What a scenario without a result does. "raise" ends the batch with its error: before the
+        first run if a scenario breaks a rule, after the last if a state became non-finite. "record"
+        keeps the error in `Run.error` and all other runs.
+
+    Returns
+    -------
+    list of Run
+        In the order of the scenarios.
+
+    Raises
+    ------
+    ScenarioError
+        If a scenario or an argument breaks a rule; the path begins with ``scenarios[i]``.
+    LimitError
+        If `threads` or the environment variable is out of range, or a history too large.
+    SimulationDiverged
+        If a state became non-finite.
+    BatchInterrupted
+        On Ctrl-C; its `runs` keeps what was finished.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.03))
+    >>> runs = c2d.simulate_many([base, base.replace({"terrain.height": 0.2})], record="summary")
+    >>> [str(run.outcome) for run in runs]
+    ['cleared', 'stopped']
+    """
+    if on_error not in ("raise", "record"):
+        raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    recording = _recording(sample_interval, record)
+    count = thread_count(threads)
+    batch = list(scenarios)
+    checked = [_checked(scenario, index) for index, scenario in enumerate(batch)]
+    if on_error == "raise":
+        _raise_first(checked)
+    texts = [text for text in checked if isinstance(text, str)]
+    with reporter(progress, len(texts)) as callback:
+        results, interrupted = _core.simulate_many(texts, count, *recording, callback)
+    rest = iter(results)
+    runs = [
+        _run(scenario, next(rest) if isinstance(text, str) else text)
+        for scenario, text in zip(batch, checked, strict=True)
+    ]
+    if interrupted:
+        raise BatchInterrupted(runs)
+    finished = [run for run in runs if run is not None]
+    if on_error == "raise":
+        _raise_first([run.error for run in finished])
+    return finished
+
+
+def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
+    if isinstance(scenario, Scenario):
+        return scenario if terrain is None else scenario.replace({"terrain": terrain})
+    if not isinstance(scenario, Robot):
+        raise ScenarioError("scenario", scenario, "must be a Scenario or a Robot")
+    if terrain is None:
+        raise ScenarioError("terrain", terrain, "must be given with a robot")
+    return Scenario(scenario, terrain)
+
+
+def _recording(sample_interval: float, record: str) -> tuple[float, str]:
+    if record not in ("full", "summary"):
+        raise ScenarioError("record", record, "must be one of full, summary")
+    return real_number(sample_interval, "sample_interval"), record
+
+
+def _checked(scenario: Scenario, index: int) -> str | ScenarioError:
+    """Return the JSON of a valid scenario, or why it is not valid."""
+    place = f"scenarios[{index}]"
+    if not isinstance(scenario, Scenario):
+        return ScenarioError(place, scenario, "must be a Scenario")
+    try:
+        return _core.canonical(scenario.to_json())
+    except ScenarioError as error:
+        return ScenarioError(f"{place}.{error.path}", error.value, error.rule)
+
+
+def _raise_first(results: Iterable[object]) -> None:
+    for result in results:
+        if isinstance(result, Crawler2dError):
+            raise result
+
+
+def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run | None:
+    if result is None:
+        return None
+    if isinstance(result, ScenarioError):
+        return Run(scenario, {}, result)
+    if "error" in result:
+        return Run(scenario, {}, _error(**result["error"]))
+    return Run(scenario, result)
+
+
+def _error(*, kind: str, message: str, **details: Any) -> Crawler2dError:
+    """Rebuild an error that crossed as data."""
+    if kind == "SimulationDiverged":
+        return errors.SimulationDiverged(message, **details)
+    return InternalError(f"{kind}: {message}")

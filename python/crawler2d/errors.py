@@ -1,0 +1,118 @@
+"""What can go wrong, as exceptions.
+
+Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`: an interrupt must
+not be swallowed by ``except Exception``. All of them survive pickling with their attributes.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from crawler2d.run import Run
+
+__all__ = [
+    "BatchInterrupted",
+    "Crawler2dError",
+    "InternalError",
+    "LimitError",
+    "ScenarioError",
+    "SimulationDiverged",
+]
+
+
+class Crawler2dError(Exception):
+    """Base of every error that crawler2d raises."""
+
+
+class ScenarioError(Crawler2dError, ValueError):
+    """A field or an argument breaks a rule; nothing has been simulated.
+
+    Parameters
+    ----------
+    path : str
+        Dotted path of the field, such as ``robot.track.count``.
+    value : object
+        The value found there. Anything but a number, a text or None is kept as its shortened text.
+    rule : str
+        The rule it breaks, starting with a verb: "must be ...".
+
+    Examples
+    --------
+    >>> print(ScenarioError("robot.mass", -1.0, "must be > 0 kg"))
+    robot.mass must be > 0 kg, got -1.0
+    """
+
+    path: str
+    value: object
+    rule: str
+
+    def __init__(self, path: str, value: object, rule: str) -> None:
+        if not isinstance(value, (str, int, float, type(None))):
+            value = reprlib.repr(value)  # an arbitrary object may be huge, or refuse to be pickled
+        super().__init__(path, value, rule)
+        self.path = path
+        self.value = value
+        self.rule = rule
+
+    def __str__(self) -> str:
+        """Name the field, the rule and the value."""
+        return f"{self.path} {self.rule}, got {self.value}"
+
+
+class SimulationDiverged(Crawler2dError, RuntimeError):
+    """The state became non-finite; the run has no result.
+
+    Parameters
+    ----------
+    message : str
+        What happened.
+    step : int, optional
+        Number of the step in which it happened, from 1.
+    body : str, optional
+        The body whose state it was.
+    """
+
+    step: int | None
+    body: str | None
+
+    def __init__(self, message: str, step: int | None = None, body: str | None = None) -> None:
+        super().__init__(message, step, body)
+        self.step = step
+        self.body = body
+
+    def __str__(self) -> str:
+        """Say what happened."""
+        return str(self.args[0])
+
+
+class LimitError(Crawler2dError, ValueError):
+    """A request is larger than this machine or this program can serve."""
+
+
+class InternalError(Crawler2dError, RuntimeError):
+    """A fault of crawler2d itself, not of the scenario."""
+
+
+class BatchInterrupted(KeyboardInterrupt):
+    """Ctrl-C ended a batch early.
+
+    Parameters
+    ----------
+    runs : sequence of (Run or None)
+        One entry a scenario, in order; None where the run was not finished.
+    """
+
+    runs: list[Run | None]
+
+    def __init__(self, runs: Sequence[Run | None]) -> None:
+        super().__init__(list(runs))
+        self.runs = list(runs)
+
+    def __str__(self) -> str:
+        """Say how far the batch came."""
+        finished = sum(run is not None for run in self.runs)
+        return f"interrupted after {finished} of {len(self.runs)} runs; .runs keeps them"

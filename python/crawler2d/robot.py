@@ -1,0 +1,234 @@
+"""The robot as it is built: masses, outline, belly and drivetrain, with the model of its track."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import ClassVar, Literal
+
+from crawler2d._arrays import real_number
+from crawler2d._json import Parameters
+from crawler2d.errors import ScenarioError
+from crawler2d.track import BeltTrack, Track
+
+__all__ = ["Drivetrain", "Robot", "TrackOutline"]
+
+# Grouser height, pitch and thickness as shares of the radius: the Servosila Engineer's.
+_GROUSER_HEIGHT = 0.012 / 0.064
+_GROUSER_PITCH = 0.048 / 0.064
+_GROUSER_THICKNESS = 0.006 / 0.048
+
+# A drivetrain that holds its robot on this slope with this margin climbs what its geometry allows.
+_HOLDING_SLOPE = math.radians(45.0)
+_HOLDING_MARGIN = 1.6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackOutline(Parameters):
+    """Side view of the track: two arcs about the end axles and their outer tangents.
+
+    Parameters
+    ----------
+    axle_distance : float
+        [m] Distance of the end axles.
+    front_radius, rear_radius : float
+        [m] Radius of each end, to the grouser tips.
+    grouser_height : float
+        [m] Height of the grousers above the belt; 0 for a smooth belt.
+    grouser_pitch : float
+        [m] Distance of the grousers along the belt.
+    grouser_thickness : float
+        [m] Extent of a grouser along the belt, below the pitch.
+    """
+
+    place: ClassVar[str] = "robot.outline"
+
+    axle_distance: float
+    front_radius: float
+    rear_radius: float
+    grouser_height: float
+    grouser_pitch: float
+    grouser_thickness: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drivetrain(Parameters):
+    """What drives the tracks, and within which limits.
+
+    Parameters
+    ----------
+    max_speed : float
+        [m/s] Largest track speed.
+    max_acceleration, max_deceleration : float
+        [m/s^2] Largest rates at which the commanded speed grows and falls in magnitude.
+    max_torque : float
+        [N m] Largest torque of one sprocket, acting at the belt radius; the robot has two.
+    torque_sharing : {"track", "wheel"}
+        "track": one motor a track, all its wheels keep one speed and the sum of their traction is
+        limited. "wheel": each of the N wheels of a line has its own servo and an Nth of the torque.
+    """
+
+    place: ClassVar[str] = "robot.drivetrain"
+
+    max_speed: float
+    max_acceleration: float
+    max_deceleration: float
+    max_torque: float
+    torque_sharing: Literal["track", "wheel"] = "track"
+
+
+@dataclass(frozen=True, slots=True)
+class Robot(Parameters):
+    """A tracked robot; `track` says how its track is modelled, all else what is built.
+
+    Whatever the model, the total mass, the centre of mass and the moment of inertia are these.
+
+    Parameters
+    ----------
+    name : str
+        Name for tables and plots.
+    mass : float
+        [kg] Of the whole robot, both tracks included.
+    center_of_mass : array_like, shape (2,)
+        [m] In the chassis frame: origin midway between the end axles, x forward, y up.
+    moment_of_inertia : float
+        [kg m^2] Of the whole robot about its centre of mass.
+    track_mass : float
+        [kg] Of both tracks together, all of it moving at track speed.
+    outline : TrackOutline
+        Side view of the track.
+    gauge : float
+        [m] Lateral distance of the tracks.
+    drivetrain : Drivetrain
+        Motors and limits.
+    belly : array_like, shape (n, 2), optional
+        [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
+    flippers : None
+        Pivoting arms; only None for now.
+    track : LineOfWheels, BeltTrack or ForceTrack
+        The model of the track.
+    """
+
+    place: ClassVar[str] = "robot"
+
+    name: str
+    _: KW_ONLY
+    mass: float
+    center_of_mass: tuple[float, float]
+    moment_of_inertia: float
+    track_mass: float
+    outline: TrackOutline
+    belly: tuple[tuple[float, float], ...] | None = None
+    flippers: None = None
+    gauge: float
+    drivetrain: Drivetrain
+    track: Track = BeltTrack()
+
+    def with_track(self, track: Track) -> Robot:
+        """Take the same robot with another model of its track.
+
+        Parameters
+        ----------
+        track : LineOfWheels, BeltTrack or ForceTrack
+            The model.
+
+        Returns
+        -------
+        Robot
+            A copy; nothing else changes.
+        """
+        return replace(self, track=track)
+
+    @staticmethod
+    def simple(
+        mass: float,
+        *,
+        axle_distance: float,
+        radius: float,
+        name: str = "simple",
+        max_speed: float = 1.0,
+        track: Track | None = None,
+    ) -> Robot:
+        """Make a robot of three figures; stated rules fill the others.
+
+        Parameters
+        ----------
+        mass : float
+            [kg] Of the whole robot.
+        axle_distance : float
+            [m] Distance of the end axles.
+        radius : float
+            [m] Radius of both ends of the track, to the grouser tips.
+        name : str
+            Name for tables and plots.
+        max_speed : float
+            [m/s] Largest track speed.
+        track : LineOfWheels, BeltTrack or ForceTrack, optional
+            The model of the track; None is `Robot`'s default.
+
+        Returns
+        -------
+        Robot
+            Change single figures with `dataclasses.replace`.
+
+        Raises
+        ------
+        ScenarioError
+            If `mass`, `axle_distance` or `radius` is no number above 0.
+
+        Notes
+        -----
+        - centre of mass: midway between the axles, at axle height;
+        - moment of inertia: a uniform rectangle that bounds the outline;
+        - track mass: a tenth of the mass;
+        - grousers: the proportions of the Servosila Engineer, height 3/16 of the radius, pitch near
+          3/4 of the radius so that a whole number fits on the belt, thickness 1/8 of the pitch;
+        - belly: none; gauge: half the axle distance;
+        - acceleration: 1 m/s^2, deceleration 4 m/s^2;
+        - torque: 1.6 times what holds the robot on a slope of 45 degrees under 9.81 m/s^2.
+
+        Examples
+        --------
+        >>> robot = Robot.simple(20.0, axle_distance=0.4, radius=0.06)
+        >>> round(robot.moment_of_inertia, 4)
+        0.4747
+        """
+        mass = _size(mass, "mass")
+        axle_distance = _size(axle_distance, "axle_distance")
+        radius = _size(radius, "radius")
+        belt_radius = radius * (1.0 - _GROUSER_HEIGHT)
+        perimeter = 2.0 * axle_distance + 2.0 * math.pi * belt_radius
+        pitch = perimeter / max(3, round(perimeter / (_GROUSER_PITCH * radius)))
+        length, height = axle_distance + 2.0 * radius, 2.0 * radius
+        holding_force = mass * 9.81 * math.sin(_HOLDING_SLOPE)
+        robot = Robot(
+            name,
+            mass=mass,
+            center_of_mass=(0.0, 0.0),
+            moment_of_inertia=mass / 12.0 * (length**2 + height**2),
+            track_mass=0.1 * mass,
+            outline=TrackOutline(
+                axle_distance=axle_distance,
+                front_radius=radius,
+                rear_radius=radius,
+                grouser_height=_GROUSER_HEIGHT * radius,
+                grouser_pitch=pitch,
+                grouser_thickness=_GROUSER_THICKNESS * pitch,
+            ),
+            gauge=0.5 * axle_distance,
+            drivetrain=Drivetrain(
+                max_speed=max_speed,
+                max_acceleration=1.0,
+                max_deceleration=4.0,
+                max_torque=_HOLDING_MARGIN * holding_force * belt_radius / 2.0,
+            ),
+        )
+        return robot if track is None else robot.with_track(track)
+
+
+def _size(value: float, name: str) -> float:
+    """Refuse what the rules of `Robot.simple` cannot be computed with; validation is stricter."""
+    number = real_number(value, name)
+    if not 1e-9 <= number <= 1e9:
+        raise ScenarioError(name, value, "must be > 0")
+    return number

@@ -1,0 +1,226 @@
+"""What came out of a run: outcome, figures, history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.errors import Crawler2dError
+from crawler2d.table import Table, read_only
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+
+    from crawler2d.scenario import Scenario
+
+__all__ = ["Outcome", "Run"]
+
+
+class Outcome(StrEnum):
+    """How a run ended; where several apply, the first of this list."""
+
+    DETRACKED = "detracked"
+    TIPPED_OVER = "tipped_over"
+    LEFT_TERRAIN = "left_terrain"
+    CLEARED = "cleared"
+    SEIZED = "seized"
+    HUNG_UP = "hung_up"
+    STALLED = "stalled"
+    SLIPPING = "slipping"
+    CYCLING = "cycling"
+    STOPPED = "stopped"
+    TIMED_OUT = "timed_out"
+
+
+class Run:
+    """One finished run; `simulate` makes them.
+
+    Its arrays are read-only and share their first dimension, the n samples of `time`. With
+    ``record="summary"`` there is no history, and asking for it is an AttributeError that says so.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        What was simulated.
+    outcome : Outcome or None
+        How it ended; None where `error` says why there is no result.
+    metrics : dict of str to float
+        Figures of the whole run, SI units: `time`, `time_to_clear` (inf if not cleared), `final_x`,
+        `final_y`, `final_angle`, `distance`, `track_distance`, `max_angle`, `min_angle`,
+        `max_penetration`, `drive_work`, `stopped_time`.
+    edges, events : Table
+        Corners of the ground; stops.
+    wall_time : float
+        [s] Computing time of one thread.
+    error : Crawler2dError or None
+        Why there is no result, in a batch with ``on_error="record"``.
+    """
+
+    def __init__(
+        self, scenario: Scenario, result: Mapping[str, Any], error: Crawler2dError | None = None
+    ) -> None:
+        self.scenario = scenario
+        self.error = error
+        self.outcome = Outcome(result["outcome"]) if error is None else None
+        self.metrics: dict[str, float] = dict(result.get("metrics", {}))
+        self.edges = Table(result.get("edges", {}))
+        self.events = Table(result.get("events", {}))
+        self.wall_time: float = result.get("wall_time", 0.0)
+        self._trace = {name: read_only(array) for name, array in result.get("trace", {}).items()}
+        self._contacts = Table(result.get("contacts", {}))
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """[s] End of each sample interval, shape (n,)."""
+        return self._recorded("time")
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """[m] Origin of the chassis frame, x and y, shape (n, 2)."""
+        return self._recorded("position")
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """[m/s] Velocity of that point, shape (n, 2)."""
+        return self._recorded("velocity")
+
+    @property
+    def chassis_angle(self) -> NDArray[np.float64]:
+        """[rad] Nose up > 0, shape (n,)."""
+        return self._recorded("chassis_angle")
+
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """[rad/s] Rate of the chassis angle, shape (n,)."""
+        return self._recorded("angular_velocity")
+
+    @property
+    def commanded_speed(self) -> NDArray[np.float64]:
+        """[m/s] Set-point of the drivetrain, within its acceleration limits, shape (n,)."""
+        return self._recorded("commanded_speed")
+
+    @property
+    def track_speed(self) -> NDArray[np.float64]:
+        """[m/s] Surface speed of the track, the mean of the drives, shape (n,)."""
+        return self._recorded("track_speed")
+
+    @property
+    def track_position(self) -> NDArray[np.float64]:
+        """[m] How far the surface has run, the mean of the drives, shape (n,)."""
+        return self._recorded("track_position")
+
+    @property
+    def slip_ratio(self) -> NDArray[np.float64]:
+        """[-] 1 - v / track_speed, 0 where the track stands, shape (n,)."""
+        return self._recorded("slip_ratio")
+
+    @property
+    def tractive_effort(self) -> NDArray[np.float64]:
+        """[N] Force of the ground along the driven surfaces, mean over the interval, shape (n,)."""
+        return self._recorded("tractive_effort")
+
+    @property
+    def drive_force(self) -> NDArray[np.float64]:
+        """[N] Force of all motors at the surface, mean over the interval, shape (n,)."""
+        return self._recorded("drive_force")
+
+    @property
+    def drive_speeds(self) -> NDArray[np.float64]:
+        """[m/s] Surface speed of each of the k drives, shape (n, k)."""
+        return self._recorded("drive_speeds")
+
+    @property
+    def drive_forces(self) -> NDArray[np.float64]:
+        """[N] Force of each of the k motors, mean over the interval, shape (n, k)."""
+        return self._recorded("drive_forces")
+
+    @property
+    def contacts(self) -> Table:
+        """Contacts of robot and ground, one row a contact and sample; forces are interval means."""
+        self._recorded("time")
+        return self._contacts
+
+    def _recorded(self, name: str) -> NDArray[Any]:
+        if self._trace:
+            return self._trace[name]
+        if self.error is not None:
+            raise AttributeError(f"this run has no history: {self.error}", name=name, obj=self)
+        message = "this run has no history: it was recorded with record='summary'"
+        raise AttributeError(message, name=name, obj=self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Copy the history to a labelled data set.
+
+        Returns
+        -------
+        xarray.Dataset
+            One variable an array, dimensions `time`, `axis` ("x", "y") and `drive`, units in the
+            attributes; outcome, metrics and scenario are attributes of the set.
+
+        Raises
+        ------
+        ImportError
+            If xarray is missing; the message names the extra to install.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+        """
+        from crawler2d.labelled import to_dataset  # noqa: PLC0415 - optional
+
+        return to_dataset(self)
+
+    def plot(
+        self, time: ArrayLike | None = None, *, axes: Axes | tuple[Axes, ...] | None = None
+    ) -> tuple[Axes, ...]:
+        """Draw the side view, and chassis angle, track speed and drive force over time.
+
+        Parameters
+        ----------
+        time : array_like, shape (k,), optional
+            [s] When to draw the robot; None takes about one robot length between drawings.
+        axes : Axes or tuple of 4 Axes, optional
+            Where to draw: one Axes takes the side view alone. None makes a figure.
+
+        Returns
+        -------
+        tuple of Axes
+            Side view, chassis angle, track speed, drive force; or the side view alone.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+        """
+        from crawler2d.plotting import plot_run  # noqa: PLC0415 - optional
+
+        return plot_run(self, time, axes)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the data; arrays are read-only again in the copy."""
+        result = {
+            "outcome": self.outcome,
+            "metrics": self.metrics,
+            "edges": dict(self.edges),
+            "events": dict(self.events),
+            "wall_time": self.wall_time,
+            "trace": self._trace,
+            "contacts": dict(self._contacts),
+        }
+        return Run, (self.scenario, result, self.error)
+
+    def __repr__(self) -> str:
+        """Say what ran and how it ended."""
+        robot, terrain = self.scenario.robot, self.scenario.terrain
+        subject = f"{robot.name}, {_kind(robot.track)}, {_kind(terrain)}"
+        if self.error is not None:
+            return f"Run({subject}: {type(self.error).__name__})"
+        return f"Run({subject}: {self.outcome} after {self.metrics['time']:.3g} s)"
+
+
+def _kind(part: object) -> str:
+    return str(getattr(part, "kind", type(part).__name__))

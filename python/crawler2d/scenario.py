@@ -1,0 +1,264 @@
+"""What is simulated: one robot, one terrain, one command, complete and frozen."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar, Literal
+
+from crawler2d import _core
+from crawler2d._json import Parameters, from_plain, to_plain
+from crawler2d._paths import replace_path
+from crawler2d.errors import ScenarioError
+from crawler2d.robot import Robot
+from crawler2d.terrain import Terrain
+
+__all__ = ["Drive", "Scenario", "SeizureCriteria", "Solver", "Start"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive(Parameters):
+    """The command given to the drivetrain.
+
+    Parameters
+    ----------
+    speed : float
+        [m/s] Track speed; above 0 drives towards +x.
+    """
+
+    place: ClassVar[str] = "drive"
+
+    speed: float = 0.4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start(Parameters):
+    """How the robot stands at time 0: at rest, touching the ground.
+
+    Parameters
+    ----------
+    approach : float
+        [m] From the robot's foremost point to the first edge.
+    track_phase : float
+        [m] Common advance of all wheels, or of the belt.
+    angle : float
+        [rad] Chassis angle, nose up > 0.
+    """
+
+    place: ClassVar[str] = "start"
+
+    approach: float = 0.10
+    track_phase: float = 0.0
+    angle: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solver(Parameters):
+    """How the equations of motion are solved; the defaults come from a convergence study.
+
+    Parameters
+    ----------
+    contact : {"reference"}
+        Who finds the contacts: the engine, on one oriented polyline a lane.
+    time_step : float
+        [s] Time between two looks for contacts.
+    substeps : int
+        Substeps of a step.
+    iterations : int
+        Largest number of sweeps over the constraints of a substep.
+    contact_frequency : float
+        [Hz] Natural frequency of the contact softness.
+    contact_damping_ratio : float
+        [-] Damping ratio of the contact softness.
+    max_push_speed : float
+        [m/s] Fastest push out of a penetration.
+    prediction_distance : float
+        [m] Contacts are looked for up to this gap.
+    """
+
+    place: ClassVar[str] = "solver"
+
+    contact: Literal["reference"] = "reference"
+    time_step: float = 1e-3
+    substeps: int = 4
+    iterations: int = 8
+    contact_frequency: float = 120.0
+    contact_damping_ratio: float = 5.0
+    max_push_speed: float = 0.5
+    prediction_distance: float = 0.005
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeizureCriteria(Parameters):
+    """When a run ends, and when a stop counts as one.
+
+    Parameters
+    ----------
+    stop_window : float
+        [s] Shortest time without progress that is a stop.
+    stop_pitches : float
+        [-] Grouser pitches at the commanded speed that must pass without progress.
+    stop_progress : float
+        [-] Share of the commanded distance below which there is no progress.
+    stationary_distance : float
+        [m] Largest change of pose of a stationary state.
+    stationary_windows : int
+        Windows for which a state must be stationary to end the run early.
+    clear_time : float
+        [s] Time for which the goal must be held.
+    clear_angle : float
+        [rad] Largest angle between chassis and ground at the goal.
+    tip_over_angle : float
+        [rad] Chassis angle at which the robot has tipped over.
+    """
+
+    place: ClassVar[str] = "criteria"
+
+    stop_window: float = 1.0
+    stop_pitches: float = 3.0
+    stop_progress: float = 0.05
+    stationary_distance: float = 1e-6
+    stationary_windows: int = 3
+    clear_time: float = 0.5
+    clear_angle: float = math.radians(5.0)
+    tip_over_angle: float = math.pi / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario(Parameters):
+    """One run, complete: the same scenario and build give the same bits.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot and the model of its track.
+    terrain : Flat, Step, Ramp, Points or Lanes
+        The ground; `crawler2d.terrains` makes them.
+    drive : Drive
+        The command.
+    start : Start
+        How the robot stands at time 0.
+    goal : float, optional
+        [m] The x that the robot must leave behind; None takes the terrain's.
+    gravity : float
+        [m/s^2] Downwards.
+    duration : float
+        [s] Longest simulated time.
+    solver : Solver
+        How the equations are solved.
+    criteria : SeizureCriteria
+        When a run ends, and when a stop counts as one.
+    schema : int
+        Version of the JSON format.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> scenario.replace({"terrain.height": 0.10}).terrain.height
+    0.1
+    """
+
+    robot: Robot
+    terrain: Terrain
+    _: KW_ONLY
+    drive: Drive = Drive()
+    start: Start = Start()
+    goal: float | None = None
+    gravity: float = 9.81
+    duration: float = 15.0
+    solver: Solver = Solver()
+    criteria: SeizureCriteria = SeizureCriteria()
+    schema: int = 1
+
+    def replace(self, fields: Mapping[str, Any]) -> Scenario:
+        """Make a variant.
+
+        Parameters
+        ----------
+        fields : mapping of str to object
+            New values by dotted path, such as ``{"robot.track.count": 5}``, set in order.
+
+        Returns
+        -------
+        Scenario
+            A copy with these fields replaced.
+
+        Raises
+        ------
+        ScenarioError
+            If a path names no field; the message lists the fields and the nearest name.
+        """
+        variant = self
+        for path, value in fields.items():
+            variant = replace_path(variant, path, value)
+        return variant
+
+    def to_json(self, *, indent: int | None = None) -> str:
+        """Write the scenario as JSON, every field present, no bit lost.
+
+        Parameters
+        ----------
+        indent : int, optional
+            Spaces a level; None writes one line.
+
+        Returns
+        -------
+        str
+            The text. It is not validated: see `validate`.
+
+        Raises
+        ------
+        ScenarioError
+            If a field holds what JSON cannot.
+        """
+        separators = (",", ":") if indent is None else (",", ": ")
+        return json.dumps(to_plain(self), allow_nan=False, indent=indent, separators=separators)
+
+    @classmethod
+    def from_json(cls, text: str) -> Scenario:
+        """Read and validate a scenario.
+
+        Parameters
+        ----------
+        text : str
+            What `to_json` wrote, or any JSON object with the same keys, all of them present.
+
+        Returns
+        -------
+        Scenario
+            Equal to the one that was written.
+
+        Raises
+        ------
+        ScenarioError
+            If the text is no JSON, or a field is missing, unknown, of a wrong type or out of range.
+        """
+        try:
+            text.encode()
+        except UnicodeEncodeError:
+            raise ScenarioError("scenario", ascii(text[:80]), "must be valid Unicode") from None
+        return from_plain(cls, json.loads(_core.canonical(text)))
+
+    def validate(self) -> None:
+        """Check every rule.
+
+        Raises
+        ------
+        ScenarioError
+            The first broken rule: path of the field, value and rule.
+        """
+        _core.canonical(self.to_json())
+
+    @property
+    def identity(self) -> str:
+        """SHA-256 of the canonical JSON, in hexadecimal: equal for equal scenarios only.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario is not valid.
+        """
+        return _core.identity(self.to_json())

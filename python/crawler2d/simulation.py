@@ -1,0 +1,145 @@
+"""A simulation that the caller advances and commands step by step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from crawler2d import _core
+from crawler2d._arrays import real_number
+from crawler2d.errors import ScenarioError
+from crawler2d.run import Outcome
+from crawler2d.scenario import Scenario
+from crawler2d.table import Table, read_only
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Simulation", "State"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class State:
+    """The state at one instant; the names are those of the arrays of a `Run`.
+
+    Attributes
+    ----------
+    time : float
+        [s] Simulated time.
+    position, velocity : ndarray, shape (2,)
+        [m], [m/s] Of the origin of the chassis frame.
+    chassis_angle, angular_velocity : float
+        [rad], [rad/s] Nose up > 0.
+    commanded_speed : float
+        [m/s] Set-point of the drivetrain, within its acceleration limits.
+    track_speed : float
+        [m/s] Surface speed, the mean of the drives.
+    track_position : float
+        [m] How far the surface has run, the mean of the drives.
+    contacts : Table
+        Contacts of this instant, forces of the last time step.
+    outcome : Outcome or None
+        The outcome, once it is certain.
+    """
+
+    time: float
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    chassis_angle: float
+    angular_velocity: float
+    commanded_speed: float
+    track_speed: float
+    track_position: float
+    contacts: Table
+    outcome: Outcome | None
+
+
+class Simulation:
+    """A scenario under way.
+
+    Nothing ends it: it can be advanced beyond the scenario's duration and outcome. Any thread may
+    use it, one at a time.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What to simulate; the robot stands at its start.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario breaks a rule.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat()))
+    >>> sim.advance(0.5)
+    >>> sim.command(speed=0.1)
+    >>> sim.advance(1.5)
+    >>> round(sim.state().track_speed, 3)
+    0.1
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        if not isinstance(scenario, Scenario):
+            raise ScenarioError("scenario", scenario, "must be a Scenario")
+        self.scenario = scenario
+        self._core = _core.Simulation(scenario.to_json())
+
+    @property
+    def time(self) -> float:
+        """[s] Simulated time."""
+        return self._core.time
+
+    def advance(self, duration: float) -> None:
+        """Simulate on.
+
+        Parameters
+        ----------
+        duration : float
+            [s] For how long, rounded to whole time steps.
+
+        Raises
+        ------
+        ScenarioError
+            If `duration` is no number or out of range.
+        SimulationDiverged
+            If the state became non-finite; the simulation cannot go on.
+        """
+        self._core.advance(real_number(duration, "duration"))
+
+    def command(self, *, speed: float | None = None) -> None:
+        """Give the drivetrain a new command; it follows within its limits.
+
+        Parameters
+        ----------
+        speed : float, optional
+            [m/s] Track speed; above 0 drives towards +x. None leaves it as it is.
+
+        Raises
+        ------
+        ScenarioError
+            If `speed` is no number or beyond the drivetrain's.
+        """
+        self._core.command(None if speed is None else real_number(speed, "drive.speed"))
+
+    def state(self) -> State:
+        """Read the state of this instant.
+
+        Returns
+        -------
+        State
+            A copy; advancing the simulation does not change it.
+        """
+        state = self._core.state()
+        state["position"] = read_only(state["position"])
+        state["velocity"] = read_only(state["velocity"])
+        state["contacts"] = Table(state["contacts"])
+        state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])
+        return State(**state)
+
+    def __repr__(self) -> str:
+        """Say what is simulated and how far it is."""
+        return f"Simulation({self.scenario.robot.name} at {self.time:.3f} s)"

@@ -1,0 +1,250 @@
+//! From the core's plain data to dictionaries of NumPy arrays.
+
+use crawler2d_core::{
+    ContactTable, Edge, Ground, Model, Record, Run, Scenario, Shape, SimulationError, Trace,
+};
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::errors;
+
+/// What to keep of a run, from its two arguments.
+pub(crate) fn record(sample_interval: f64, record: &str) -> PyResult<Record> {
+    if !(sample_interval > 0.0 && sample_interval <= 1e5) {
+        let rule = "must be > 0 s and <= 100000 s";
+        return Err(errors::argument(
+            "sample_interval",
+            &sample_interval.to_string(),
+            rule,
+        ));
+    }
+    match record {
+        "full" => Ok(Record {
+            sample_interval,
+            history: true,
+        }),
+        "summary" => Ok(Record {
+            sample_interval,
+            history: false,
+        }),
+        other => Err(errors::argument(
+            "record",
+            other,
+            "must be one of full, summary",
+        )),
+    }
+}
+
+/// Refuses a history that cannot fit in memory before anything is allocated.
+pub(crate) fn check_size(scenario: &Scenario, record: Record) -> PyResult<()> {
+    /// A sample holds about 20 numbers and a few contacts of 14 columns each.
+    const BYTES_PER_SAMPLE: f64 = 800.0;
+    const MOST: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
+
+    let every = (record.sample_interval / scenario.solver.time_step)
+        .round()
+        .max(1.0)
+        * scenario.solver.time_step;
+    let bytes = if record.history {
+        scenario.duration / every * BYTES_PER_SAMPLE
+    } else {
+        0.0
+    };
+    if bytes > MOST {
+        let message = format!(
+            "a run of {} s sampled every {every} s needs about {:.0} GiB, more than 8 GiB; \
+             use a longer sample_interval or record=\"summary\"",
+            scenario.duration,
+            bytes / (1024.0 * 1024.0 * 1024.0),
+        );
+        return Err(errors::limit(&message));
+    }
+    Ok(())
+}
+
+/// A finished run.
+pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
+    let result = PyDict::new(py);
+    let metrics = PyDict::new(py);
+    for (name, value) in run.metrics.entries() {
+        metrics.set_item(name, value)?;
+    }
+    result.set_item("outcome", run.outcome.name())?;
+    result.set_item("metrics", metrics)?;
+    result.set_item("trace", trace(py, run.trace, run.drives)?)?;
+    result.set_item("contacts", contacts(py, run.contacts)?)?;
+    result.set_item("edges", edges(py, &run.edges)?)?;
+    let stops = &run.events;
+    let events = PyDict::new(py);
+    let column = |value: i64| vec![value; stops.len()].into_pyarray(py);
+    events.set_item("kind", vec!["stop"; stops.len()])?;
+    events.set_item(
+        "start",
+        stops
+            .iter()
+            .map(|e| e.start)
+            .collect::<Vec<_>>()
+            .into_pyarray(py),
+    )?;
+    events.set_item(
+        "end",
+        stops
+            .iter()
+            .map(|e| e.end)
+            .collect::<Vec<_>>()
+            .into_pyarray(py),
+    )?;
+    events.set_item("lane", column(0))?;
+    events.set_item("edge", column(-1))?;
+    events.set_item("bodies", vec![PyTuple::empty(py); stops.len()])?;
+    events.set_item("depth", vec![0.0; stops.len()].into_pyarray(py))?;
+    events.set_item("force", vec![0.0; stops.len()].into_pyarray(py))?;
+    result.set_item("events", events)?;
+    result.set_item("wall_time", run.wall_time)?;
+    Ok(result)
+}
+
+/// A run of a batch that gave no result.
+pub(crate) fn failure<'py>(
+    py: Python<'py>,
+    error: &SimulationError,
+) -> PyResult<Bound<'py, PyDict>> {
+    let details = PyDict::new(py);
+    details.set_item("kind", "SimulationDiverged")?;
+    details.set_item("message", error.to_string())?;
+    details.set_item("step", error.step)?;
+    details.set_item("body", &error.body)?;
+    let result = PyDict::new(py);
+    result.set_item("error", details)?;
+    Ok(result)
+}
+
+fn trace(py: Python<'_>, trace: Trace, drives: usize) -> PyResult<Bound<'_, PyDict>> {
+    let columns = PyDict::new(py);
+    let n = trace.time.len();
+    if n == 0 {
+        return Ok(columns);
+    }
+    columns.set_item("time", trace.time.into_pyarray(py))?;
+    columns.set_item("position", trace.position.into_pyarray(py).reshape([n, 2])?)?;
+    columns.set_item("velocity", trace.velocity.into_pyarray(py).reshape([n, 2])?)?;
+    columns.set_item("chassis_angle", trace.chassis_angle.into_pyarray(py))?;
+    columns.set_item("angular_velocity", trace.angular_velocity.into_pyarray(py))?;
+    columns.set_item("commanded_speed", trace.commanded_speed.into_pyarray(py))?;
+    columns.set_item("track_speed", trace.track_speed.into_pyarray(py))?;
+    columns.set_item("track_position", trace.track_position.into_pyarray(py))?;
+    columns.set_item("slip_ratio", trace.slip_ratio.into_pyarray(py))?;
+    columns.set_item("tractive_effort", trace.tractive_effort.into_pyarray(py))?;
+    columns.set_item("drive_force", trace.drive_force.into_pyarray(py))?;
+    columns.set_item(
+        "drive_speeds",
+        trace.drive_speeds.into_pyarray(py).reshape([n, drives])?,
+    )?;
+    columns.set_item(
+        "drive_forces",
+        trace.drive_forces.into_pyarray(py).reshape([n, drives])?,
+    )?;
+    Ok(columns)
+}
+
+pub(crate) fn contacts(py: Python<'_>, table: ContactTable) -> PyResult<Bound<'_, PyDict>> {
+    let columns = PyDict::new(py);
+    columns.set_item("time", table.time.into_pyarray(py))?;
+    columns.set_item("lane", table.lane.into_pyarray(py))?;
+    columns.set_item("body", table.body.into_pyarray(py))?;
+    columns.set_item("body_kind", table.body_kind.into_pyarray(py))?;
+    columns.set_item("segment", table.segment.into_pyarray(py))?;
+    columns.set_item("edge", table.edge.into_pyarray(py))?;
+    columns.set_item("x", table.x.into_pyarray(py))?;
+    columns.set_item("y", table.y.into_pyarray(py))?;
+    columns.set_item("normal_x", table.normal_x.into_pyarray(py))?;
+    columns.set_item("normal_y", table.normal_y.into_pyarray(py))?;
+    columns.set_item("normal_force", table.normal_force.into_pyarray(py))?;
+    columns.set_item("friction_force", table.friction_force.into_pyarray(py))?;
+    columns.set_item("surface_speed", table.surface_speed.into_pyarray(py))?;
+    columns.set_item("penetration", table.penetration.into_pyarray(py))?;
+    Ok(columns)
+}
+
+fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let column =
+        |value: fn(&Edge) -> f64| edges.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
+    let ids = (0_i64..).take(edges.len()).collect::<Vec<_>>();
+    columns.set_item("id", ids.into_pyarray(py))?;
+    columns.set_item("lane", vec![0_i64; edges.len()].into_pyarray(py))?;
+    columns.set_item("x", column(|e| e.x))?;
+    columns.set_item("y", column(|e| e.y))?;
+    columns.set_item("angle", column(|e| e.angle))?;
+    columns.set_item("radius", column(|e| e.radius))?;
+    Ok(columns)
+}
+
+/// Everything a picture needs.
+pub(crate) fn geometry<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    model: &Model,
+    ground: &Ground,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mut circles: Vec<[f64; 3]> = Vec::new();
+    let mut belly: Vec<[f64; 2]> = Vec::new();
+    let mut hull = false;
+    for part in &model.parts {
+        match &part.shape {
+            Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
+            Shape::Hull {
+                rear,
+                rear_radius,
+                front,
+                front_radius,
+            } => {
+                hull = true;
+                circles.push([rear.x, rear.y, *rear_radius]);
+                circles.push([front.x, front.y, *front_radius]);
+            }
+            Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
+        }
+    }
+    let profile: Vec<[f64; 2]> = ground.profile.points.iter().map(|p| [p.x, p.y]).collect();
+    let result = PyDict::new(py);
+    result.set_item("profile", rows(py, &profile))?;
+    result.set_item("edges", edges(py, &ground.profile.edges)?)?;
+    result.set_item("circles", rows(py, &circles))?;
+    result.set_item("hull", hull)?;
+    result.set_item("belly", rows(py, &belly))?;
+    result.set_item("goal", scenario.goal(ground))?;
+    Ok(result)
+}
+
+fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> Bound<'py, PyArray2<f64>> {
+    Array2::from_shape_fn((rows.len(), N), |(i, j)| rows[i][j]).into_pyarray(py)
+}
+
+/// A pair of coordinates.
+pub(crate) fn pair(py: Python<'_>, x: f64, y: f64) -> Bound<'_, PyArray1<f64>> {
+    vec![x, y].into_pyarray(py)
+}
+
+/// Version and build of the compiled core.
+pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let info = PyDict::new(py);
+    info.set_item("version", env!("CARGO_PKG_VERSION"))?;
+    info.set_item(
+        "profile",
+        if cfg!(debug_assertions) {
+            "debug"
+        } else {
+            "release"
+        },
+    )?;
+    info.set_item("engine", crawler2d_core::ENGINE)?;
+    info.set_item(
+        "target",
+        format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+    )?;
+    info.set_item("schema", crawler2d_core::SCHEMA)?;
+    Ok(info)
+}

@@ -1,0 +1,157 @@
+//! The Python module `crawler2d._core`: JSON text in, NumPy columns out.
+
+mod convert;
+mod errors;
+mod stepwise;
+
+use pyo3::prelude::*;
+
+/// Makes what the core promises hold at the boundary; see `python/crawler2d/_core.pyi`.
+#[pymodule]
+mod _core {
+    use std::sync::Mutex;
+
+    use crawler2d_core::{Error, Model, Progress, Run, Scenario};
+    use pyo3::prelude::*;
+    use pyo3::types::{PyDict, PyList};
+
+    use crate::convert;
+    use crate::errors;
+
+    #[pymodule_export]
+    use crate::stepwise::Simulation;
+
+    /// Checks a scenario and returns its canonical JSON.
+    #[pyfunction]
+    fn canonical(text: &str) -> PyResult<String> {
+        errors::guarded(|| Ok(Scenario::from_json(text)?.to_json()))
+    }
+
+    /// SHA-256 of the canonical JSON.
+    #[pyfunction]
+    fn identity(text: &str) -> PyResult<String> {
+        errors::guarded(|| Ok(Scenario::from_json(text)?.identity()))
+    }
+
+    /// Ground and robot of a scenario as arrays for drawing.
+    #[pyfunction]
+    fn geometry<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
+        let (scenario, ground) = errors::guarded(|| {
+            let scenario = Scenario::from_json(text)?;
+            let ground = crawler2d_core::Ground::new(&scenario.terrain)?;
+            Ok((scenario, ground))
+        })?;
+        convert::geometry(py, &scenario, &Model::new(&scenario.robot), &ground)
+    }
+
+    /// One run.
+    #[pyfunction]
+    fn simulate<'py>(
+        py: Python<'py>,
+        text: &str,
+        sample_interval: f64,
+        record: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (results, interrupted) = run_all(py, &[text], 1, sample_interval, record, None)?;
+        if let Some(signal) = interrupted {
+            return Err(signal);
+        }
+        match results.into_iter().next().flatten() {
+            Some(Ok(run)) => convert::run(py, run),
+            Some(Err(error)) => Err(errors::to_python(error)),
+            None => Err(errors::internal("the run ended without a result")),
+        }
+    }
+
+    /// Many runs on several threads, results in order.
+    #[pyfunction]
+    fn simulate_many<'py>(
+        py: Python<'py>,
+        texts: Vec<String>,
+        threads: usize,
+        sample_interval: f64,
+        record: &str,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyList>, bool)> {
+        let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+        let (results, interrupted) =
+            run_all(py, &texts, threads, sample_interval, record, progress)?;
+        let list = PyList::empty(py);
+        for result in results {
+            match result {
+                Some(Ok(run)) => list.append(convert::run(py, run)?)?,
+                Some(Err(Error::Simulation(error))) => {
+                    list.append(convert::failure(py, &error)?)?
+                }
+                Some(Err(error)) => return Err(errors::to_python(error)),
+                None => list.append(py.None())?,
+            }
+        }
+        match interrupted {
+            // Ctrl-C keeps what is finished; anything else a callback raised goes on unchanged.
+            Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
+                Err(signal)
+            }
+            signal => Ok((list, signal.is_some())),
+        }
+    }
+
+    /// Version and build of the compiled core.
+    #[pyfunction]
+    fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        convert::build_info(py)
+    }
+
+    type Results = Vec<Option<Result<Run, Error>>>;
+
+    /// Reads all scenarios, then runs them detached from the interpreter.
+    ///
+    /// The second item is what interrupted the batch: a signal, or an exception of the callback.
+    fn run_all(
+        py: Python<'_>,
+        texts: &[&str],
+        threads: usize,
+        sample_interval: f64,
+        record: &str,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<(Results, Option<PyErr>)> {
+        let record = convert::record(sample_interval, record)?;
+        let scenarios = errors::guarded(|| {
+            texts
+                .iter()
+                .map(|text| Ok(Scenario::from_json(text)?))
+                .collect::<Result<Vec<_>, Error>>()
+        })?;
+        for scenario in &scenarios {
+            convert::check_size(scenario, record)?;
+        }
+        let progress = progress.map(Bound::unbind);
+        let total = scenarios.len();
+        let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);
+        let mut reported = usize::MAX;
+        let results = errors::guarded(|| {
+            Ok(py.detach(|| {
+                crawler2d_core::simulate_many(&scenarios, threads, record, |done| {
+                    let stop = Python::attach(|py| {
+                        py.check_signals()?;
+                        match &progress {
+                            Some(callback) if done != reported => {
+                                reported = done;
+                                callback.call1(py, (done, total)).map(|_| ())
+                            }
+                            _ => Ok(()),
+                        }
+                    });
+                    let Err(error) = stop else {
+                        return Progress::Continue;
+                    };
+                    if let Ok(mut first) = interrupted.lock() {
+                        first.get_or_insert(error);
+                    }
+                    Progress::Stop
+                })
+            }))
+        })?;
+        Ok((results, interrupted.into_inner().unwrap_or_default()))
+    }
+}

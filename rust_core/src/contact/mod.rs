@@ -1,0 +1,76 @@
+//! Contacts between the robot's parts and the ground.
+
+mod reading;
+mod reference;
+
+use rapier2d_f64::math::Vector;
+use serde::Serialize;
+
+pub(crate) use reading::Readings;
+pub(crate) use reference::ReferenceContact;
+
+/// What a part of the robot stands for; the code is the `body_kind` of the contact table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyKind {
+    /// A wheel.
+    Wheel = 0,
+    /// A moving belt.
+    Belt = 1,
+    /// A skid runner.
+    Skid = 2,
+    /// The underside of the chassis.
+    Belly = 3,
+}
+
+/// One place where a part is on the ground or about to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    /// Index of the part.
+    pub part: usize,
+    /// Facet of the profile, from the left.
+    pub facet: usize,
+    /// Edge that is touched, or -1 on a face.
+    pub edge: i32,
+    /// [m] Where, halfway between both surfaces.
+    pub point: Vector,
+    /// Unit normal from the ground to the robot.
+    pub normal: Vector,
+    /// [m] Gap; negative in penetration.
+    pub distance: f64,
+}
+
+/// Leaves out contacts that add nothing: those that repeat another of the same part, and those
+/// between two others of the same plane face, for two points carry a rigid face.
+pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
+    /// Normals closer than this are one direction; f64 keeps about 1e-16.
+    const SAME_DIRECTION: f64 = 1e-12;
+    /// [m] Gaps closer than this to the chord of their neighbours lie on one face.
+    const SAME_FACE: f64 = 1e-12;
+
+    // A stable order: by part, then from the left, so that neighbours lie side by side.
+    contacts.sort_by(|a, b| a.part.cmp(&b.part).then(a.point.x.total_cmp(&b.point.x)));
+    let same = |a: &Contact, b: &Contact| {
+        a.part == b.part && 1.0 - a.normal.dot(b.normal) < SAME_DIRECTION
+    };
+    contacts.dedup_by(|b, a| same(a, b) && (a.point - b.point).length() < 1e-9);
+    let mut kept = 0;
+    for i in 0..contacts.len() {
+        if kept >= 2 {
+            let (first, middle, last) = (contacts[kept - 2], contacts[kept - 1], contacts[i]);
+            if same(&first, &middle) && same(&middle, &last) {
+                let (a, b) = (
+                    (middle.point - first.point).length(),
+                    (last.point - middle.point).length(),
+                );
+                let chord = (first.distance * b + last.distance * a) / (a + b);
+                if (middle.distance - chord).abs() < SAME_FACE {
+                    kept -= 1;
+                }
+            }
+        }
+        contacts[kept] = contacts[i];
+        kept += 1;
+    }
+    contacts.truncate(kept);
+}

@@ -1,0 +1,47 @@
+//! From the commanded speed to the set-point that the drivetrain can follow.
+
+use crate::scenario::Drivetrain;
+
+/// [m/s] The next set-point: it grows and falls in magnitude at the drivetrain's rates.
+pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
+    let slowing = now * command < 0.0 || command.abs() < now.abs();
+    let target = if now * command < 0.0 { 0.0 } else { command };
+    let rate = if slowing {
+        limits.max_deceleration
+    } else {
+        limits.max_acceleration
+    };
+    now + (target - now).clamp(-rate * dt, rate * dt)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::TorqueSharing;
+
+    const LIMITS: Drivetrain = Drivetrain {
+        max_speed: 1.0,
+        max_acceleration: 0.2,
+        max_deceleration: 4.0,
+        max_torque: 6.0,
+        torque_sharing: TorqueSharing::Track,
+    };
+
+    #[test]
+    fn speeds_up_slowly_and_brakes_fast() {
+        assert!((set_point(0.1, 0.4, &LIMITS, 0.1) - 0.12).abs() < 1e-15);
+        assert!((set_point(0.4, 0.0, &LIMITS, 0.05) - 0.2).abs() < 1e-15);
+        assert!((set_point(-0.1, -0.4, &LIMITS, 0.1) + 0.12).abs() < 1e-15);
+    }
+
+    #[test]
+    fn reversing_brakes_to_a_stand_first() {
+        assert!((set_point(0.1, -0.4, &LIMITS, 0.1) - 0.0).abs() < 1e-15);
+        assert!((set_point(0.0, -0.4, &LIMITS, 0.1) + 0.02).abs() < 1e-15);
+    }
+
+    #[test]
+    fn reaches_the_command_and_stays() {
+        assert!((set_point(0.399, 0.4, &LIMITS, 0.1) - 0.4).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,63 @@
+//! What can go wrong: a scenario that breaks a rule, a run that cannot go on.
+
+use thiserror::Error;
+
+/// A field of a scenario breaks a rule; nothing has been run.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{path} {rule}, got {value}")]
+pub struct ScenarioError {
+    /// Dotted path of the field, for example `robot.track.count`.
+    pub path: String,
+    /// The value found there, shortened for display.
+    pub value: String,
+    /// The rule it breaks, starting with "must".
+    pub rule: String,
+}
+
+impl ScenarioError {
+    pub(crate) fn new(
+        path: impl Into<String>,
+        value: impl ToString,
+        rule: impl Into<String>,
+    ) -> Self {
+        Self {
+            path: path.into(),
+            value: shorten(&value.to_string()),
+            rule: rule.into(),
+        }
+    }
+}
+
+/// The state of a run became non-finite; everything after `step` would be noise.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the state of {body} became non-finite in step {step}")]
+pub struct SimulationError {
+    /// Number of the step, from 1.
+    pub step: u64,
+    /// Which body.
+    pub body: String,
+}
+
+/// Why a run gave no result.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Error {
+    /// See [`ScenarioError`].
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// See [`SimulationError`].
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The caller asked to stop.
+    #[error("the run was interrupted")]
+    Interrupted,
+}
+
+/// Long values (point lists) would bury the message.
+fn shorten(text: &str) -> String {
+    const LONGEST: usize = 80;
+    if text.chars().count() <= LONGEST {
+        return text.to_owned();
+    }
+    let head: String = text.chars().take(LONGEST).collect();
+    format!("{head}...")
+}

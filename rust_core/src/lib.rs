@@ -1,0 +1,51 @@
+//! A simulator of tracked robots in the sagittal plane.
+//!
+//! The same robot takes every track model, meets edged ground, and the run says whether it got
+//! over and at what cost. A [`Scenario`] goes in, a [`Run`] comes out:
+//!
+//! ```no_run
+//! use crawler2d_core::{Record, Scenario, simulate};
+//!
+//! let text = std::fs::read_to_string("scenario.json").unwrap();
+//! let scenario = Scenario::from_json(&text).unwrap();
+//! let run = simulate(&scenario, Record::default()).unwrap();
+//! println!("{} after {} s", run.outcome, run.metrics.time);
+//! ```
+//!
+//! Frame: x forward, y up, angles counter-clockwise, SI units. A speed above 0 drives towards +x.
+
+mod batch;
+mod contact;
+mod drive;
+mod dynamics;
+mod error;
+mod outcome;
+mod outline;
+mod robot;
+mod run;
+mod scenario;
+mod simulation;
+mod terrain;
+mod trace;
+mod track;
+
+pub use batch::{Progress, simulate_many};
+pub use contact::BodyKind;
+pub use error::{Error, ScenarioError, SimulationError};
+pub use outcome::{Event, Outcome};
+pub use robot::{Model, Part, Shape};
+pub use run::{Metrics, Run, simulate};
+pub use scenario::{
+    BeltTrack, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack, LineOfWheels,
+    MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria, Solver, Start, Terrain, TorqueSharing,
+    Track, TrackOutline, Wheel,
+};
+pub use simulation::{Reading, Simulation};
+pub use terrain::{Edge, Ground, Profile};
+pub use trace::{ContactTable, Record, Trace};
+
+/// The engine that finds the contacts, with its exact version.
+pub const ENGINE: &str = "rapier2d-f64 0.36.1";
+
+/// A point or a direction in the plane.
+pub use rapier2d_f64::math::Vector;

@@ -1,0 +1,146 @@
+//! One scenario to its end.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use crate::error::Error;
+use crate::outcome::{Event, Outcome};
+use crate::scenario::Scenario;
+use crate::simulation::Simulation;
+use crate::terrain::Edge;
+use crate::trace::{ContactTable, Record, Recorder, Trace};
+
+/// What came out of a run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Figures of the whole run.
+    pub metrics: Metrics,
+    /// History, if recorded.
+    pub trace: Trace,
+    /// Contacts, if recorded.
+    pub contacts: ContactTable,
+    /// Corners of the ground.
+    pub edges: Vec<Edge>,
+    /// Stops.
+    pub events: Vec<Event>,
+    /// Number of drives.
+    pub drives: usize,
+    /// [s] Computing time; kept apart from the metrics, which repeat bit by bit.
+    pub wall_time: f64,
+}
+
+/// Figures of a whole run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metrics {
+    /// [s] Simulated time.
+    pub time: f64,
+    /// [s] Time at which the goal was reached and from then on held; infinite if not.
+    pub time_to_clear: f64,
+    /// [m] Final position of the chassis frame.
+    pub final_x: f64,
+    /// [m] Final position of the chassis frame.
+    pub final_y: f64,
+    /// [rad] Final chassis angle.
+    pub final_angle: f64,
+    /// [m] Final x less that of the start.
+    pub distance: f64,
+    /// [m] How far the track surface has run.
+    pub track_distance: f64,
+    /// [rad] Largest chassis angle.
+    pub max_angle: f64,
+    /// [rad] Smallest chassis angle.
+    pub min_angle: f64,
+    /// [m] Deepest penetration of the ground by any part.
+    pub max_penetration: f64,
+    /// [J] Work of the motors.
+    pub drive_work: f64,
+    /// [s] Time spent in stops.
+    pub stopped_time: f64,
+}
+
+impl Metrics {
+    /// Names and values, in the order of the tables.
+    pub fn entries(&self) -> [(&'static str, f64); 12] {
+        [
+            ("time", self.time),
+            ("time_to_clear", self.time_to_clear),
+            ("final_x", self.final_x),
+            ("final_y", self.final_y),
+            ("final_angle", self.final_angle),
+            ("distance", self.distance),
+            ("track_distance", self.track_distance),
+            ("max_angle", self.max_angle),
+            ("min_angle", self.min_angle),
+            ("max_penetration", self.max_penetration),
+            ("drive_work", self.drive_work),
+            ("stopped_time", self.stopped_time),
+        ]
+    }
+}
+
+/// Simulates a scenario to its end.
+///
+/// # Errors
+/// [`Error::Scenario`] before anything runs, [`Error::Simulation`] if the state became non-finite.
+pub fn simulate(scenario: &Scenario, record: Record) -> Result<Run, Error> {
+    simulate_until(scenario, record, &AtomicBool::new(false))
+}
+
+/// The same, ending early with [`Error::Interrupted`] once `cancel` is set.
+pub(crate) fn simulate_until(
+    scenario: &Scenario,
+    record: Record,
+    cancel: &AtomicBool,
+) -> Result<Run, Error> {
+    /// A step takes a few microseconds: a request to stop is seen within milliseconds.
+    const STEPS_BETWEEN_CHECKS: u64 = 1024;
+
+    let begin = Instant::now();
+    let mut simulation = Simulation::new(scenario)?;
+    let start = simulation.reading();
+    let mut recorder = record.history.then(|| Recorder::new(&simulation, record));
+    let steps = scenario.step_count();
+    while simulation.steps() < steps && simulation.outcome().is_none() {
+        simulation.step()?;
+        if let Some(recorder) = &mut recorder {
+            recorder.step(&simulation);
+        }
+        if simulation.steps().is_multiple_of(STEPS_BETWEEN_CHECKS) && cancel.load(Ordering::Relaxed)
+        {
+            return Err(Error::Interrupted);
+        }
+    }
+    if let Some(recorder) = &mut recorder {
+        recorder.finish(&simulation);
+    }
+    let (trace, contacts) = recorder.map(|r| (r.trace, r.contacts)).unwrap_or_default();
+    let end = simulation.reading();
+    let events = simulation.events();
+    let monitor = simulation.monitor();
+    let metrics = Metrics {
+        time: end.time,
+        time_to_clear: monitor.time_to_clear,
+        final_x: end.position.x,
+        final_y: end.position.y,
+        final_angle: end.chassis_angle,
+        distance: end.position.x - start.position.x,
+        track_distance: end.track_position - start.track_position,
+        max_angle: monitor.max_angle.max(start.chassis_angle),
+        min_angle: monitor.min_angle.min(start.chassis_angle),
+        max_penetration: monitor.max_penetration,
+        drive_work: monitor.drive_work,
+        stopped_time: events.iter().map(|e| e.end - e.start).sum(),
+    };
+    Ok(Run {
+        outcome: simulation.outcome_now(),
+        metrics,
+        trace,
+        contacts,
+        edges: simulation.ground().profile.edges.clone(),
+        events,
+        drives: simulation.drives(),
+        wall_time: begin.elapsed().as_secs_f64(),
+    })
+}

@@ -1,0 +1,296 @@
+//! Reads one JSON object field by field and names the path, the value and the rule of what is wrong.
+
+use serde_json::{Map, Value};
+
+use crate::error::ScenarioError;
+
+/// An interval that a number must lie in, with its unit for the message.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    low: f64,
+    low_included: bool,
+    high: f64,
+    unit: &'static str,
+}
+
+impl Range {
+    /// Everything above `low`, up to and including `high`.
+    pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
+        Self {
+            low,
+            low_included: false,
+            high,
+            unit,
+        }
+    }
+
+    /// From `low` to `high`, both included.
+    pub(crate) const fn between(low: f64, high: f64, unit: &'static str) -> Self {
+        Self {
+            low,
+            low_included: true,
+            high,
+            unit,
+        }
+    }
+
+    fn holds(self, x: f64) -> bool {
+        let above = if self.low_included {
+            x >= self.low
+        } else {
+            x > self.low
+        };
+        above && x <= self.high
+    }
+
+    fn rule(self) -> String {
+        let sign = if self.low_included { ">=" } else { ">" };
+        let unit = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", self.unit)
+        };
+        format!(
+            "must be {sign} {}{unit} and <= {}{unit}",
+            self.low, self.high
+        )
+    }
+}
+
+/// One JSON object being read; every field is asked for once, the rest are unknown.
+pub(crate) struct Fields<'a> {
+    path: String,
+    map: &'a Map<String, Value>,
+    known: Vec<&'static str>,
+}
+
+impl<'a> Fields<'a> {
+    pub(crate) fn new(path: &str, value: &'a Value) -> Result<Self, ScenarioError> {
+        match value {
+            Value::Object(map) => Ok(Self {
+                path: path.to_owned(),
+                map,
+                known: Vec::new(),
+            }),
+            other => Err(ScenarioError::new(
+                display(path),
+                other,
+                "must be an object",
+            )),
+        }
+    }
+
+    /// Path of a field of this object.
+    pub(crate) fn path(&self, name: &str) -> String {
+        if self.path.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{}.{name}", self.path)
+        }
+    }
+
+    /// An error about a field of this object.
+    pub(crate) fn error(
+        &self,
+        name: &str,
+        value: impl ToString,
+        rule: impl Into<String>,
+    ) -> ScenarioError {
+        ScenarioError::new(self.path(name), value, rule)
+    }
+
+    pub(crate) fn value(&mut self, name: &'static str) -> Result<&'a Value, ScenarioError> {
+        self.known.push(name);
+        let map = self.map;
+        map.get(name)
+            .ok_or_else(|| ScenarioError::new(self.path(name), "nothing", "must be given"))
+    }
+
+    pub(crate) fn number(
+        &mut self,
+        name: &'static str,
+        range: Range,
+    ) -> Result<f64, ScenarioError> {
+        let value = self.value(name)?;
+        in_range(&self.path(name), value, range)
+    }
+
+    pub(crate) fn optional_number(
+        &mut self,
+        name: &'static str,
+        range: Range,
+    ) -> Result<Option<f64>, ScenarioError> {
+        match self.value(name)? {
+            Value::Null => Ok(None),
+            value => in_range(&self.path(name), value, range).map(Some),
+        }
+    }
+
+    pub(crate) fn integer(
+        &mut self,
+        name: &'static str,
+        low: u32,
+        high: u32,
+    ) -> Result<u32, ScenarioError> {
+        let value = self.value(name)?;
+        let inside = value
+            .as_u64()
+            .filter(|n| (u64::from(low)..=u64::from(high)).contains(n));
+        match inside {
+            Some(n) => Ok(n as u32),
+            None => Err(self.error(
+                name,
+                value,
+                format!("must be an integer from {low} to {high}"),
+            )),
+        }
+    }
+
+    pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
+        let value = self.value(name)?;
+        value
+            .as_str()
+            .ok_or_else(|| self.error(name, value, "must be a text"))
+    }
+
+    /// One of a closed set of names.
+    pub(crate) fn choice<T: Copy>(
+        &mut self,
+        name: &'static str,
+        choices: &[(&str, T)],
+    ) -> Result<T, ScenarioError> {
+        let value = self.value(name)?;
+        let found = choices
+            .iter()
+            .find(|(choice, _)| value.as_str() == Some(choice));
+        match found {
+            Some((_, choice)) => Ok(*choice),
+            None => {
+                let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+                Err(self.error(name, value, one_of(value.as_str(), &names)))
+            }
+        }
+    }
+
+    pub(crate) fn point(
+        &mut self,
+        name: &'static str,
+        range: Range,
+    ) -> Result<[f64; 2], ScenarioError> {
+        let value = self.value(name)?;
+        point(&self.path(name), value, range)
+    }
+
+    /// A list of points; `index` in the message is the row, from 0.
+    pub(crate) fn points(
+        &mut self,
+        name: &'static str,
+        range: Range,
+        most: usize,
+    ) -> Result<Vec<[f64; 2]>, ScenarioError> {
+        let value = self.value(name)?;
+        let Value::Array(rows) = value else {
+            return Err(self.error(name, value, "must be a list of [x, y] points"));
+        };
+        if rows.len() > most {
+            return Err(self.error(
+                name,
+                format!("{} points", rows.len()),
+                format!("must have at most {most} points"),
+            ));
+        }
+        let path = self.path(name);
+        rows.iter()
+            .enumerate()
+            .map(|(i, row)| point(&format!("{path}[{i}]"), row, range))
+            .collect()
+    }
+
+    pub(crate) fn child(&mut self, name: &'static str) -> Result<Fields<'a>, ScenarioError> {
+        let value = self.value(name)?;
+        Fields::new(&self.path(name), value)
+    }
+
+    /// Refuses every field that was not asked for.
+    pub(crate) fn finish(self) -> Result<(), ScenarioError> {
+        match self
+            .map
+            .iter()
+            .find(|(name, _)| !self.known.contains(&name.as_str()))
+        {
+            None => Ok(()),
+            Some((name, value)) => Err(ScenarioError::new(
+                self.path(name),
+                value,
+                format!(
+                    "must not be given: {}",
+                    one_of(Some(name), &self.known).replacen("must be", "the fields are", 1)
+                ),
+            )),
+        }
+    }
+}
+
+fn point(path: &str, value: &Value, range: Range) -> Result<[f64; 2], ScenarioError> {
+    match value.as_array().map(Vec::as_slice) {
+        Some([x, y]) => Ok([
+            in_range(&format!("{path}[0]"), x, range)?,
+            in_range(&format!("{path}[1]"), y, range)?,
+        ]),
+        _ => Err(ScenarioError::new(path, value, "must be a point [x, y]")),
+    }
+}
+
+fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioError> {
+    // Non-finite numbers do not exist in JSON and cross as text, so that the field can be named.
+    let x = match value {
+        Value::String(text) if matches!(text.as_str(), "NaN" | "Infinity" | "-Infinity") => {
+            f64::NAN
+        }
+        other => other
+            .as_f64()
+            .ok_or_else(|| ScenarioError::new(path, other, "must be a number"))?,
+    };
+    // Subnormal inputs are typing errors or overflow elsewhere; they would lose digits silently.
+    if range.holds(x) && (x == 0.0 || x.is_normal()) {
+        Ok(x)
+    } else {
+        Err(ScenarioError::new(path, value, range.rule()))
+    }
+}
+
+/// "must be one of ...", with the nearest name where there is one.
+pub(crate) fn one_of(given: Option<&str>, names: &[&str]) -> String {
+    let list = names.join(", ");
+    let nearest = given.and_then(|g| {
+        names
+            .iter()
+            .map(|n| (edit_distance(g, n), *n))
+            .filter(|(d, n)| *d <= n.len().max(3) / 3)
+            .min()
+    });
+    match nearest {
+        Some((_, name)) => format!("must be one of {list} (did you mean {name}?)"),
+        None => format!("must be one of {list}"),
+    }
+}
+
+/// Levenshtein distance, ignoring case; names are short.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.to_lowercase().chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.to_lowercase().chars().take(100).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+fn display(path: &str) -> &str {
+    if path.is_empty() { "scenario" } else { path }
+}

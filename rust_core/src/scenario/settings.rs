@@ -1,0 +1,131 @@
+//! Command, start, solver and criteria: the scenario's small parts.
+
+use serde::Serialize;
+
+use super::fields::{Fields, Range};
+use crate::error::ScenarioError;
+
+/// The command given to the drivetrain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drive {
+    /// [m/s] Track speed; positive drives towards +x.
+    pub speed: f64,
+}
+
+/// How the robot stands at time 0: at rest, touching the ground.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Start {
+    /// [m] From the robot's foremost point to the first edge.
+    pub approach: f64,
+    /// [m] Common advance of all wheels or of the belt.
+    pub track_phase: f64,
+    /// [rad] Chassis angle, nose up.
+    pub angle: f64,
+}
+
+/// Who finds the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactMethod {
+    /// The engine's narrow phase on one oriented polyline a lane.
+    Reference,
+}
+
+/// How the equations of motion are solved; docs/decisions says how the defaults were found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Solver {
+    /// Who finds the contacts.
+    pub contact: ContactMethod,
+    /// [s] Time between two collision checks.
+    pub time_step: f64,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Most sweeps over the constraints of a substep; fewer where they agree earlier.
+    pub iterations: u32,
+    /// [Hz] Natural frequency of the contact softness.
+    pub contact_frequency: f64,
+    /// Damping ratio of the contact softness.
+    pub contact_damping_ratio: f64,
+    /// [m/s] Fastest push out of a penetration.
+    pub max_push_speed: f64,
+    /// [m] Contacts are looked for up to this gap.
+    pub prediction_distance: f64,
+}
+
+/// When a run ends, and when a stop counts as one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeizureCriteria {
+    /// [s] Shortest time without progress that is a stop.
+    pub stop_window: f64,
+    /// Grouser pitches at the commanded speed that must pass without progress.
+    pub stop_pitches: f64,
+    /// Share of the commanded distance below which there is no progress.
+    pub stop_progress: f64,
+    /// [m] Largest change of pose of a stationary state.
+    pub stationary_distance: f64,
+    /// Windows for which a stationary state must last to end the run early.
+    pub stationary_windows: u32,
+    /// [s] Time for which the goal must be held.
+    pub clear_time: f64,
+    /// [rad] Largest angle between chassis and ground at the goal.
+    pub clear_angle: f64,
+    /// [rad] Chassis angle at which the robot has tipped over.
+    pub tip_over_angle: f64,
+}
+
+impl Drive {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let drive = Self {
+            speed: f.number("speed", Range::between(-100.0, 100.0, "m/s"))?,
+        };
+        f.finish()?;
+        Ok(drive)
+    }
+}
+
+impl Start {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let start = Self {
+            approach: f.number("approach", Range::between(0.0, 1e4, "m"))?,
+            track_phase: f.number("track_phase", Range::between(-1e4, 1e4, "m"))?,
+            angle: f.number("angle", Range::between(-1.5, 1.5, "rad"))?,
+        };
+        f.finish()?;
+        Ok(start)
+    }
+}
+
+impl Solver {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let solver = Self {
+            contact: f.choice("contact", &[("reference", ContactMethod::Reference)])?,
+            time_step: f.number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
+            substeps: f.integer("substeps", 1, 64)?,
+            iterations: f.integer("iterations", 1, 1000)?,
+            contact_frequency: f.number("contact_frequency", Range::between(1.0, 1e5, "Hz"))?,
+            contact_damping_ratio: f
+                .number("contact_damping_ratio", Range::above(0.0, 100.0, ""))?,
+            max_push_speed: f.number("max_push_speed", Range::above(0.0, 100.0, "m/s"))?,
+            prediction_distance: f.number("prediction_distance", Range::between(1e-5, 0.1, "m"))?,
+        };
+        f.finish()?;
+        Ok(solver)
+    }
+}
+
+impl SeizureCriteria {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let criteria = Self {
+            stop_window: f.number("stop_window", Range::between(0.01, 1e4, "s"))?,
+            stop_pitches: f.number("stop_pitches", Range::between(0.0, 1e3, ""))?,
+            stop_progress: f.number("stop_progress", Range::above(0.0, 1.0, ""))?,
+            stationary_distance: f.number("stationary_distance", Range::above(0.0, 1.0, "m"))?,
+            stationary_windows: f.integer("stationary_windows", 1, 1000)?,
+            clear_time: f.number("clear_time", Range::between(0.0, 1e4, "s"))?,
+            clear_angle: f.number("clear_angle", Range::above(0.0, 3.15, "rad"))?,
+            tip_over_angle: f.number("tip_over_angle", Range::above(0.0, 3.15, "rad"))?,
+        };
+        f.finish()?;
+        Ok(criteria)
+    }
+}

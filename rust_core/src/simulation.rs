@@ -1,0 +1,262 @@
+//! One robot on one ground, step by step.
+
+use rapier2d_f64::math::Vector;
+
+use crate::contact::{BodyKind, Contact, Readings, ReferenceContact};
+use crate::drive;
+use crate::dynamics::{DriveState, Dynamics, LoadedContact, State};
+use crate::error::{Error, SimulationError};
+use crate::outcome::{Event, Monitor, Outcome};
+use crate::robot::{self, Model};
+use crate::scenario::Scenario;
+use crate::terrain::Ground;
+use crate::trace::ContactTable;
+
+/// A simulation under way: what was built from the scenario, and the state.
+pub struct Simulation {
+    scenario: Scenario,
+    ground: Ground,
+    contact: ReferenceContact,
+    dynamics: Dynamics,
+    monitor: Monitor,
+    state: State,
+    step: u64,
+    command: f64,
+    set_point: f64,
+    contacts: Vec<Contact>,
+    /// [m] Farthest point of the robot from its centre of mass.
+    reach: f64,
+}
+
+/// The state as a user reads it.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// [s] Simulated time.
+    pub time: f64,
+    /// [m] Origin of the chassis frame.
+    pub position: Vector,
+    /// [m/s] Velocity of that point.
+    pub velocity: Vector,
+    /// [rad] Nose up > 0.
+    pub chassis_angle: f64,
+    /// [rad/s] Its rate.
+    pub angular_velocity: f64,
+    /// [m/s] Set-point of the drivetrain.
+    pub commanded_speed: f64,
+    /// [m/s] Surface speed, the mean of the drives.
+    pub track_speed: f64,
+    /// [m] How far the surface has run, the mean of the drives.
+    pub track_position: f64,
+}
+
+impl Reading {
+    /// [m/s] Speed along the chassis.
+    pub(crate) fn forward_speed(&self) -> f64 {
+        let (sine, cosine) = libm::sincos(self.chassis_angle);
+        self.velocity.x * cosine + self.velocity.y * sine
+    }
+}
+
+impl Simulation {
+    /// Places the robot before the first edge, at rest.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] with the first broken rule.
+    pub fn new(scenario: &Scenario) -> Result<Self, Error> {
+        scenario.validate()?;
+        let ground = Ground::new(&scenario.terrain)?;
+        let position = robot::start_pose(scenario, &ground)?;
+        Ok(Self::on(scenario, ground, position))
+    }
+
+    /// On a ground of the caller's own, the chassis frame at `position`.
+    fn on(scenario: &Scenario, ground: Ground, position: Vector) -> Self {
+        let model = Model::new(&scenario.robot);
+        let contact = ReferenceContact::new(&model.parts, &ground.profile);
+        let state = State::at_rest(
+            &model,
+            position,
+            scenario.start.angle,
+            scenario.start.track_phase,
+        );
+        let reach = model.reach();
+        let monitor = Monitor::new(scenario, &ground);
+        let dynamics = Dynamics::new(
+            model,
+            ground.profile.friction,
+            scenario.gravity,
+            scenario.solver.clone(),
+        );
+        Self {
+            command: scenario.drive.speed,
+            scenario: scenario.clone(),
+            ground,
+            contact,
+            dynamics,
+            monitor,
+            state,
+            step: 0,
+            set_point: 0.0,
+            contacts: Vec::new(),
+            reach,
+        }
+    }
+
+    /// Advances by one time step.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`] if the state became non-finite; the simulation cannot go on.
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.step += 1;
+        self.command();
+        self.find_contacts();
+        self.advance()?;
+        self.observe();
+        Ok(())
+    }
+
+    fn command(&mut self) {
+        let limits = &self.scenario.robot.drivetrain;
+        self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
+    }
+
+    fn find_contacts(&mut self) {
+        // A fast body sees a contact one step before it closes.
+        let speed = self.state.velocity.length() + self.state.angular_velocity.abs() * self.reach;
+        let prediction = self
+            .scenario
+            .solver
+            .prediction_distance
+            .max(2.0 * speed * self.time_step());
+        self.contact.find(
+            self.state.pose(self.dynamics.model()),
+            prediction,
+            &mut self.contacts,
+        );
+    }
+
+    fn advance(&mut self) -> Result<(), SimulationError> {
+        self.dynamics
+            .advance(&mut self.state, &self.contacts, self.set_point, self.step)
+    }
+
+    fn observe(&mut self) {
+        let reading = self.reading();
+        self.monitor.observe(
+            &reading,
+            self.command,
+            self.dynamics.loaded(),
+            self.drive_work_rate(),
+        );
+    }
+
+    /// [W] What the motors put into the surfaces.
+    fn drive_work_rate(&self) -> f64 {
+        (0..self.drives())
+            .map(|k| self.state.drives[k].force * self.drive_speed(k))
+            .sum()
+    }
+
+    /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the speed is beyond the drivetrain's.
+    pub fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
+        let mut next = self.scenario.clone();
+        next.drive.speed = speed;
+        next.validate()?;
+        self.command = speed;
+        Ok(())
+    }
+
+    /// The state of this instant.
+    pub fn reading(&self) -> Reading {
+        let pose = self.state.pose(self.dynamics.model());
+        let drives = self.drives() as f64;
+        Reading {
+            time: self.time(),
+            position: pose.translation,
+            velocity: self.state.velocity_at(pose.translation),
+            chassis_angle: self.state.angle,
+            angular_velocity: self.state.angular_velocity,
+            commanded_speed: self.set_point,
+            track_speed: (0..self.drives()).map(|k| self.drive_speed(k)).sum::<f64>() / drives,
+            track_position: self.state.drives.iter().map(|d| d.position).sum::<f64>() / drives,
+        }
+    }
+
+    /// Contacts of the last step.
+    pub fn contact_table(&self) -> ContactTable {
+        let mut readings = Readings::default();
+        readings.add(self.loaded());
+        let mut table = ContactTable::default();
+        table.append(self, &mut readings);
+        table
+    }
+
+    /// [s] Simulated time.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.time_step()
+    }
+
+    /// [s] Time of one step.
+    pub fn time_step(&self) -> f64 {
+        self.scenario.solver.time_step
+    }
+
+    /// Steps taken so far.
+    pub fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// What is simulated.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// The ground.
+    pub fn ground(&self) -> &Ground {
+        &self.ground
+    }
+
+    /// The outcome, as soon as it is certain.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.monitor.certain()
+    }
+
+    /// The outcome if the run ended here.
+    pub fn outcome_now(&self) -> Outcome {
+        self.monitor.now()
+    }
+
+    /// Stops so far.
+    pub fn events(&self) -> Vec<Event> {
+        self.monitor.events(self.time())
+    }
+
+    /// Number of drives.
+    pub fn drives(&self) -> usize {
+        self.state.drives.len()
+    }
+
+    /// [m/s] Surface speed of one drive.
+    pub fn drive_speed(&self, drive: usize) -> f64 {
+        self.state.track_speed(self.dynamics.model(), drive)
+    }
+
+    pub(crate) fn drive_states(&self) -> &[DriveState] {
+        &self.state.drives
+    }
+
+    pub(crate) fn loaded(&self) -> &[LoadedContact] {
+        self.dynamics.loaded()
+    }
+
+    pub(crate) fn part_kind(&self, part: usize) -> BodyKind {
+        self.dynamics.model().parts[part].kind
+    }
+
+    pub(crate) fn monitor(&self) -> &Monitor {
+        &self.monitor
+    }
+}

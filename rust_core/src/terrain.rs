@@ -1,0 +1,384 @@
+//! From the described terrain to the profile that contacts are computed on.
+
+use rapier2d_f64::math::Vector;
+
+use crate::error::ScenarioError;
+use crate::scenario::Terrain;
+
+/// [m] Level ground before and behind a parametric obstacle.
+const RUN_OUT: f64 = 100.0;
+/// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
+const FACET_TURN: f64 = 0.0175;
+/// [m] Points closer than this to the line of their neighbours do not make an edge.
+const COLLINEAR: f64 = 1e-9;
+
+/// The ground of a scenario.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// One profile under both tracks and the belly (equal lanes are simulated as one).
+    pub profile: Profile,
+    /// [m] The x that must be left behind.
+    pub goal: f64,
+    /// [m] Where the first edge lies; 0 where there is none.
+    pub first_edge: f64,
+}
+
+/// One lane: a polyline from left to right with the rounded edges cut into facets.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// [m] Points from left to right; x never decreases.
+    pub points: Vec<Vector>,
+    /// Edge that each point belongs to, or -1.
+    pub edge_of_point: Vec<i32>,
+    /// Corners of the described ground.
+    pub edges: Vec<Edge>,
+    /// Coulomb friction with the robot.
+    pub friction: f64,
+    /// Given points that were left out because they repeat or continue their neighbours.
+    pub merged: usize,
+}
+
+/// A corner of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// [m] Position of the corner (of its sharp form, if rounded).
+    pub x: f64,
+    /// [m] Position of the corner.
+    pub y: f64,
+    /// [rad] Turn of the ground there, clockwise positive: convex edges > 0, inner corners < 0.
+    pub angle: f64,
+    /// [m] Radius, 0 is sharp.
+    pub radius: f64,
+}
+
+impl Ground {
+    /// Builds the ground of a terrain.
+    ///
+    /// # Errors
+    /// A profile that cannot be: overhang, too few points, an edge radius that does not fit.
+    pub fn new(terrain: &Terrain) -> Result<Self, ScenarioError> {
+        Self::at("terrain", terrain)
+    }
+
+    fn at(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
+        let (points, goal, radius, friction) = match terrain {
+            Terrain::Flat { length, friction } => (
+                vec![[-RUN_OUT, 0.0], [length + RUN_OUT, 0.0]],
+                *length,
+                0.0,
+                *friction,
+            ),
+            Terrain::Step {
+                height,
+                edge_radius,
+                friction,
+            } => {
+                let points = vec![
+                    [-RUN_OUT, 0.0],
+                    [0.0, 0.0],
+                    [0.0, *height],
+                    [RUN_OUT, *height],
+                ];
+                (points, 0.0, *edge_radius, *friction)
+            }
+            Terrain::Ramp {
+                angle,
+                length,
+                edge_radius,
+                friction,
+            } => {
+                let top = length * libm::tan(*angle);
+                let points = vec![
+                    [-RUN_OUT, 0.0],
+                    [0.0, 0.0],
+                    [*length, top],
+                    [length + RUN_OUT, top],
+                ];
+                (points, *length, *edge_radius, *friction)
+            }
+            Terrain::Points {
+                points,
+                goal,
+                edge_radius,
+                friction,
+            } => (points.clone(), *goal, *edge_radius, *friction),
+            Terrain::Lanes {
+                left,
+                right,
+                middle,
+            } => return Self::lanes(path, left, right, middle.as_deref()),
+        };
+        let profile = Profile::new(path, &points, radius, friction, true)?;
+        let first_edge = profile.edges.first().map_or(0.0, |edge| edge.x);
+        let ground = Self {
+            profile,
+            goal,
+            first_edge,
+        };
+        let (low, high) = ground.profile.extent();
+        if !(low..=high).contains(&ground.goal) {
+            let rule = format!("must lie on the terrain, from {low} to {high} m");
+            return Err(ScenarioError::new(format!("{path}.goal"), goal, rule));
+        }
+        Ok(ground)
+    }
+
+    /// Equal lanes are one ground under lumped tracks.
+    fn lanes(
+        path: &str,
+        left: &Terrain,
+        right: &Terrain,
+        middle: Option<&Terrain>,
+    ) -> Result<Self, ScenarioError> {
+        let ground = Self::at(&format!("{path}.left"), left)?;
+        for (name, lane) in [("right", Some(right)), ("middle", middle)] {
+            let Some(lane) = lane else { continue };
+            let path = format!("{path}.{name}");
+            Self::at(&path, lane)?;
+            if lane != left {
+                let value = serde_json::to_string(lane).unwrap_or_default();
+                return Err(ScenarioError::new(
+                    path,
+                    value,
+                    "must equal the left lane: both tracks are simulated as one",
+                ));
+            }
+        }
+        Ok(ground)
+    }
+}
+
+impl Profile {
+    /// Orders, merges, checks and rounds a list of points; `merge` off keeps collinear points.
+    ///
+    /// # Errors
+    /// Fewer than two distinct points, an overhang, a spike, an edge radius that does not fit.
+    pub fn new(
+        path: &str,
+        given: &[[f64; 2]],
+        radius: f64,
+        friction: f64,
+        merge: bool,
+    ) -> Result<Self, ScenarioError> {
+        let mut points: Vec<(usize, Vector)> = given
+            .iter()
+            .map(|p| Vector::new(p[0], p[1]))
+            .enumerate()
+            .collect();
+        if points
+            .first()
+            .zip(points.last())
+            .is_some_and(|(a, b)| a.1.x > b.1.x)
+        {
+            points.reverse();
+        }
+        points.dedup_by(|b, a| a.1 == b.1);
+        if points.len() < 2 {
+            let value = format!("{} distinct points", points.len());
+            return Err(ScenarioError::new(
+                format!("{path}.points"),
+                value,
+                "must have at least 2 distinct points",
+            ));
+        }
+        check_overhangs(path, &points)?;
+        let mut points: Vec<Vector> = points.into_iter().map(|(_, p)| p).collect();
+        if merge {
+            points = without_collinear(&points);
+        }
+        let merged = given.len() - points.len();
+        let mut profile = Self {
+            points: Vec::new(),
+            edge_of_point: Vec::new(),
+            edges: Vec::new(),
+            friction,
+            merged,
+        };
+        profile.round(path, &points, radius)?;
+        Ok(profile)
+    }
+
+    /// Walks the corners and replaces each convex one by an arc of the radius.
+    fn round(&mut self, path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
+        let mut spare = 0.0; // [m] what the previous arc took of the segment behind it
+        self.push(corners[0], -1);
+        for i in 1..corners.len() - 1 {
+            let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
+            let (d1, d2) = ((corner - before).normalize(), (behind - corner).normalize());
+            let angle = libm::atan2(d1.y * d2.x - d1.x * d2.y, d1.dot(d2));
+            if angle.abs() * (corner - before).length().min((behind - corner).length()) < COLLINEAR
+            {
+                spare = 0.0;
+                self.push(corner, -1);
+                continue;
+            }
+            let id = self.edges.len() as i32;
+            let rounded = radius > 0.0 && angle > 0.0;
+            let tangent = if rounded {
+                radius * libm::tan(0.5 * angle)
+            } else {
+                0.0
+            };
+            let room = ((corner - before).length() - spare).min((behind - corner).length());
+            if tangent > room * (1.0 + 1e-12) {
+                let rule = format!(
+                    "must fit the edge at ({}, {}): its arc needs {tangent} m of {room} m",
+                    corner.x, corner.y
+                );
+                return Err(ScenarioError::new(
+                    format!("{path}.edge_radius"),
+                    radius,
+                    rule,
+                ));
+            }
+            spare = tangent;
+            self.edges.push(Edge {
+                x: corner.x,
+                y: corner.y,
+                angle,
+                radius: if rounded { radius } else { 0.0 },
+            });
+            if rounded {
+                let (start, facets) = (corner - d1 * tangent, (angle / FACET_TURN).ceil().max(1.0));
+                let outward = Vector::new(-d1.y, d1.x);
+                for k in 0..=facets as usize {
+                    let (s, c) = libm::sincos(-angle * k as f64 / facets);
+                    let spoke =
+                        Vector::new(c * outward.x - s * outward.y, s * outward.x + c * outward.y);
+                    self.push(start - outward * radius + spoke * radius, id);
+                }
+            } else {
+                self.push(corner, id);
+            }
+        }
+        self.push(corners[corners.len() - 1], -1);
+        Ok(())
+    }
+
+    fn push(&mut self, point: Vector, edge: i32) {
+        // An arc may begin where the last one ended.
+        if self
+            .points
+            .last()
+            .is_some_and(|last| (*last - point).length() < 1e-12)
+        {
+            return;
+        }
+        self.points.push(point);
+        self.edge_of_point.push(edge);
+    }
+
+    /// [m] Smallest and largest x.
+    pub fn extent(&self) -> (f64, f64) {
+        (self.points[0].x, self.points[self.points.len() - 1].x)
+    }
+
+    /// Facets that a range of x touches.
+    fn facets(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+        let first = self.points.partition_point(|p| p.x < low).saturating_sub(1);
+        let last = self
+            .points
+            .partition_point(|p| p.x <= high)
+            .min(self.points.len() - 1);
+        first..last
+    }
+
+    /// [rad] Angle of the ground at x; of the right-hand facet at a corner.
+    pub fn angle_at(&self, x: f64) -> f64 {
+        let last = self.points.len() - 2;
+        let facet = self.points.partition_point(|p| p.x <= x).clamp(1, last + 1) - 1;
+        let d = self.points[facet + 1] - self.points[facet];
+        libm::atan2(d.y, d.x)
+    }
+
+    /// [m] Lowest height of the centre of a disc above `x` at which it only touches the ground.
+    pub fn height_under_disc(&self, x: f64, radius: f64) -> f64 {
+        let mut height = f64::NEG_INFINITY;
+        for i in self.facets(x - radius, x + radius) {
+            let (a, b) = (self.points[i], self.points[i + 1]);
+            for corner in [a, b] {
+                let reach = radius * radius - (corner.x - x) * (corner.x - x);
+                if reach >= 0.0 {
+                    height = height.max(corner.y + reach.sqrt());
+                }
+            }
+            let d = (b - a).normalize();
+            let foot = x + radius * d.y;
+            if (a.x..=b.x).contains(&foot) && d.x > 0.0 {
+                height = height.max(a.y + (foot - a.x) * d.y / d.x + radius * d.x);
+            }
+        }
+        height
+    }
+
+    /// [m] Largest rise of the ground above the segment from `a` to `b`, `a` left of `b`.
+    pub fn rise_over_segment(&self, a: Vector, b: Vector) -> f64 {
+        let mut rise = self.height_under_disc(a.x, 0.0) - a.y;
+        rise = rise.max(self.height_under_disc(b.x, 0.0) - b.y);
+        for i in self.facets(a.x, b.x) {
+            for p in [self.points[i], self.points[i + 1]] {
+                if p.x > a.x && p.x < b.x {
+                    rise = rise.max(p.y - (a.y + (p.x - a.x) * (b.y - a.y) / (b.x - a.x)));
+                }
+            }
+        }
+        rise
+    }
+}
+
+fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), ScenarioError> {
+    for (i, pair) in points.windows(2).enumerate() {
+        let ((_, a), (row, b)) = (pair[0], pair[1]);
+        if b.x < a.x {
+            let rule = format!(
+                "must not lie behind its neighbour at x = {}: overhangs are refused",
+                a.x
+            );
+            return Err(ScenarioError::new(
+                format!("{path}.points[{row}]"),
+                format!("[{}, {}]", b.x, b.y),
+                rule,
+            ));
+        }
+        if let Some((_, c)) = points.get(i + 2)
+            && a.x == b.x
+            && b.x == c.x
+            && (b.y - a.y) * (c.y - b.y) < 0.0
+        {
+            let rule = format!(
+                "must not be a spike: segments {i} and {} lie on each other",
+                i + 1
+            );
+            return Err(ScenarioError::new(
+                format!("{path}.points[{row}]"),
+                format!("[{}, {}]", b.x, b.y),
+                rule,
+            ));
+        }
+    }
+    if points[0].1.x == points[points.len() - 1].1.x {
+        let rule = "must extend along x: a wall alone is no ground";
+        return Err(ScenarioError::new(
+            format!("{path}.points"),
+            format!("x = {} only", points[0].1.x),
+            rule,
+        ));
+    }
+    Ok(())
+}
+
+/// Leaves out every point that lies on the line through the last kept one and the next.
+fn without_collinear(points: &[Vector]) -> Vec<Vector> {
+    let mut kept = vec![points[0]];
+    for pair in points[1..].windows(2) {
+        let (last, here, next) = (kept[kept.len() - 1], pair[0], pair[1]);
+        let (back, chord) = (here - last, next - last);
+        let off = (back.x * chord.y - back.y * chord.x).abs() / chord.length();
+        let between = back.dot(chord) >= 0.0 && back.dot(chord) <= chord.length_squared();
+        if off > COLLINEAR || !between {
+            kept.push(here);
+        }
+    }
+    kept.push(points[points.len() - 1]);
+    kept
+}

@@ -1,0 +1,192 @@
+//! The history of a run as columns.
+
+use crate::contact::Readings;
+use crate::simulation::Simulation;
+
+/// What to keep of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// [s] Time between two samples, rounded to whole steps.
+    pub sample_interval: f64,
+    /// Keep the trace and the contact table; without it only outcome, metrics and events.
+    pub history: bool,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            sample_interval: 0.01,
+            history: true,
+        }
+    }
+}
+
+impl Record {
+    /// Only outcome, metrics and events.
+    pub fn summary() -> Self {
+        Self {
+            history: false,
+            ..Self::default()
+        }
+    }
+}
+
+/// Samples of the state; every column has one entry a sample (two a sample for x, y pairs).
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// [s] End of the step.
+    pub time: Vec<f64>,
+    /// [m] Origin of the chassis frame, x and y.
+    pub position: Vec<f64>,
+    /// [m/s] Velocity of that point, x and y.
+    pub velocity: Vec<f64>,
+    /// [rad] Nose up > 0.
+    pub chassis_angle: Vec<f64>,
+    /// [rad/s] Its rate.
+    pub angular_velocity: Vec<f64>,
+    /// [m/s] Set-point of the drivetrain.
+    pub commanded_speed: Vec<f64>,
+    /// [m/s] Surface speed, the mean of the drives.
+    pub track_speed: Vec<f64>,
+    /// [m] How far the surface has run, the mean of the drives.
+    pub track_position: Vec<f64>,
+    /// 1 - v / track speed; 0 where the track stands.
+    pub slip_ratio: Vec<f64>,
+    /// [N] Force of the ground on the robot along its driven surfaces, mean over the interval.
+    pub tractive_effort: Vec<f64>,
+    /// [N] Force of all motors at the surface, mean over the interval.
+    pub drive_force: Vec<f64>,
+    /// [m/s] Surface speed of each drive.
+    pub drive_speeds: Vec<f64>,
+    /// [N] Force of each motor, mean over the interval.
+    pub drive_forces: Vec<f64>,
+}
+
+/// Contacts of all samples.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)] // the columns are described in docs/conventions.md
+pub struct ContactTable {
+    pub time: Vec<f64>,
+    pub lane: Vec<i64>,
+    pub body: Vec<i64>,
+    pub body_kind: Vec<i64>,
+    pub segment: Vec<i64>,
+    pub edge: Vec<i64>,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub normal_x: Vec<f64>,
+    pub normal_y: Vec<f64>,
+    pub normal_force: Vec<f64>,
+    pub friction_force: Vec<f64>,
+    pub surface_speed: Vec<f64>,
+    pub penetration: Vec<f64>,
+}
+
+impl ContactTable {
+    /// Writes the readings of an interval that ends now.
+    pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
+        for r in readings.drain() {
+            self.time.push(simulation.time());
+            self.lane.push(0);
+            self.body.push(r.contact.part as i64);
+            self.body_kind
+                .push(simulation.part_kind(r.contact.part) as i64);
+            self.segment.push(r.contact.facet as i64);
+            self.edge.push(i64::from(r.contact.edge));
+            self.x.push(r.contact.point.x);
+            self.y.push(r.contact.point.y);
+            self.normal_x.push(r.contact.normal.x);
+            self.normal_y.push(r.contact.normal.y);
+            self.normal_force.push(r.normal_force);
+            self.friction_force.push(r.friction_force);
+            self.surface_speed.push(r.surface_speed);
+            self.penetration.push((-r.contact.distance).max(0.0));
+        }
+    }
+}
+
+/// Collects samples while a run goes on.
+pub(crate) struct Recorder {
+    every: u64,
+    steps: u64,
+    readings: Readings,
+    forces: Vec<f64>,
+    traction: f64,
+    pub trace: Trace,
+    pub contacts: ContactTable,
+}
+
+/// [m/s] Below this the track stands and has no slip.
+const STANDS: f64 = 1e-3;
+
+impl Recorder {
+    pub(crate) fn new(simulation: &Simulation, record: Record) -> Self {
+        let every = (record.sample_interval / simulation.time_step())
+            .round()
+            .max(1.0) as u64;
+        let mut recorder = Self {
+            every,
+            steps: 0,
+            readings: Readings::default(),
+            forces: vec![0.0; simulation.drives()],
+            traction: 0.0,
+            trace: Trace::default(),
+            contacts: ContactTable::default(),
+        };
+        recorder.sample(simulation);
+        recorder
+    }
+
+    /// Takes in one step and writes a sample at the end of each interval.
+    pub(crate) fn step(&mut self, simulation: &Simulation) {
+        self.steps += 1;
+        self.readings.add(simulation.loaded());
+        for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
+            *sum += drive.force;
+            self.traction += drive.traction;
+        }
+        if self.steps.is_multiple_of(self.every) {
+            self.sample(simulation);
+        }
+    }
+
+    /// Writes what is left of an interval that the run cut short.
+    pub(crate) fn finish(&mut self, simulation: &Simulation) {
+        if !self.steps.is_multiple_of(self.every) {
+            self.sample(simulation);
+        }
+    }
+
+    fn sample(&mut self, simulation: &Simulation) {
+        let reading = simulation.reading();
+        let steps = match self.steps % self.every {
+            0 => self.every,
+            cut_short => cut_short,
+        } as f64;
+        let t = &mut self.trace;
+        t.time.push(reading.time);
+        t.position.extend([reading.position.x, reading.position.y]);
+        t.velocity.extend([reading.velocity.x, reading.velocity.y]);
+        t.chassis_angle.push(reading.chassis_angle);
+        t.angular_velocity.push(reading.angular_velocity);
+        t.commanded_speed.push(reading.commanded_speed);
+        t.track_speed.push(reading.track_speed);
+        t.track_position.push(reading.track_position);
+        let forward = reading.forward_speed();
+        let slip = if reading.track_speed.abs() < STANDS {
+            0.0
+        } else {
+            1.0 - forward / reading.track_speed
+        };
+        t.slip_ratio.push(slip);
+        t.tractive_effort.push(self.traction / steps);
+        t.drive_force.push(self.forces.iter().sum::<f64>() / steps);
+        for (k, force) in self.forces.iter_mut().enumerate() {
+            t.drive_speeds.push(simulation.drive_speed(k));
+            t.drive_forces.push(*force / steps);
+            *force = 0.0;
+        }
+        self.traction = 0.0;
+        self.contacts.append(simulation, &mut self.readings);
+    }
+}

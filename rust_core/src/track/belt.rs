@@ -1,0 +1,39 @@
+//! A smooth closed belt: contact surface motion on the outline (Pecka et al., IROS 2017).
+
+use super::TrackModel;
+use crate::contact::BodyKind;
+use crate::outline;
+use crate::robot::{Part, Shape};
+use crate::scenario::Robot;
+
+/// One hull round the end discs, its whole surface at one speed.
+pub(super) fn build(robot: &Robot) -> TrackModel {
+    let part = hull(robot, BodyKind::Belt, Some(0), f64::INFINITY);
+    TrackModel {
+        parts: vec![part],
+        drives: 1,
+        pushes_chassis: false,
+    }
+}
+
+/// The outline as one shape.
+pub(super) fn hull(
+    robot: &Robot,
+    kind: BodyKind,
+    drive: Option<usize>,
+    friction_limit: f64,
+) -> Part {
+    let [rear, front] = outline::end_discs(&robot.outline);
+    let shape = Shape::Hull {
+        rear: rear.center,
+        rear_radius: rear.radius,
+        front: front.center,
+        front_radius: front.radius,
+    };
+    Part {
+        kind,
+        shape,
+        drive,
+        friction_limit,
+    }
+}

@@ -1,0 +1,122 @@
+//! Scenarios that the tests start from, and small tools to run them.
+
+use crawler2d_core::{
+    BeltTrack, ForceSupport, ForceTrack, LineOfWheels, Record, Run, Scenario, Simulation, Terrain,
+    Track, Wheel, simulate,
+};
+
+/// [m/s^2] The gravity of every scenario here.
+pub const G: f64 = 9.81;
+
+/// The Engineer with a belt before a step, as the Python presets write it.
+pub fn engineer() -> Scenario {
+    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+    Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+/// The same without a belly, slow and strong: what the quasi-static oracles assume.
+pub fn slow_and_strong() -> Scenario {
+    let mut scenario = engineer();
+    scenario.robot.belly = None;
+    scenario.robot.drivetrain.max_torque = 100.0;
+    scenario.robot.drivetrain.max_acceleration = 1.0;
+    scenario.drive.speed = 0.05;
+    scenario.start.approach = 0.02;
+    scenario.duration = 60.0;
+    scenario
+}
+
+pub fn line(count: u32) -> Track {
+    Track::Line(LineOfWheels {
+        count,
+        wheel_radius: None,
+        wheel: Wheel::Round,
+    })
+}
+
+pub fn belt() -> Track {
+    Track::Belt(BeltTrack {})
+}
+
+pub fn force() -> Track {
+    Track::Force(ForceTrack {
+        support: ForceSupport::Skids,
+        skid_friction: 0.0,
+    })
+}
+
+pub fn step(height: f64, friction: f64) -> Terrain {
+    Terrain::Step {
+        height,
+        edge_radius: 0.0,
+        friction,
+    }
+}
+
+/// One straight slope through the origin, rising forwards if the angle is positive.
+pub fn slope(angle: f64, friction: f64) -> Terrain {
+    let (s, c) = libm::sincos(angle);
+    let points = vec![[-20.0 * c, -20.0 * s], [20.0 * c, 20.0 * s]];
+    Terrain::Points {
+        points,
+        goal: 19.0 * c,
+        edge_radius: 0.0,
+        friction,
+    }
+}
+
+pub fn run(scenario: &Scenario) -> Run {
+    simulate(scenario, Record::default()).expect("the scenario runs")
+}
+
+pub fn summary(scenario: &Scenario) -> Run {
+    simulate(scenario, Record::summary()).expect("the scenario runs")
+}
+
+/// Advances a fresh simulation and hands it over.
+pub fn after(scenario: &Scenario, duration: f64) -> Simulation {
+    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    advance(&mut simulation, duration);
+    simulation
+}
+
+pub fn advance(simulation: &mut Simulation, duration: f64) {
+    let steps = (duration / simulation.time_step()).round() as u64;
+    for _ in 0..steps {
+        simulation.step().expect("the state stays finite");
+    }
+}
+
+/// The largest x in [low, high] for which `holds` is true, to a relative 1e-4; it must hold at low only.
+pub fn bisect(mut low: f64, mut high: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
+    assert!(
+        holds(low) && !holds(high),
+        "the boundary lies outside [{low}, {high}]"
+    );
+    while high - low > 1e-4 * high {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// A small generator of test cases: the printed seed makes every case again (splitmix64).
+pub struct Draw(pub u64);
+
+impl Draw {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
