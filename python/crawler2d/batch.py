@@ -119,7 +119,7 @@ def simulate_many(
     >>> base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.03))
     >>> runs = c2d.simulate_many([base, base.replace({"terrain.height": 0.2})], record="summary")
     >>> [str(run.outcome) for run in runs]
-    ['cleared', 'stopped']
+    ['cleared', 'tipped_over']
     """
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
@@ -165,7 +165,7 @@ def _checked(scenario: Scenario, index: int) -> str | ScenarioError:
     """Return the JSON of a valid scenario, or why it is not valid."""
     place = f"scenarios[{index}]"
     if not isinstance(scenario, Scenario):
-        return ScenarioError(place, scenario, "must be a Scenario")
+        raise ScenarioError(place, scenario, "must be a Scenario")  # nothing a Run could hold
     try:
         return _core.canonical(scenario.to_json())
     except ScenarioError as error:

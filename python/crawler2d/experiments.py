@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -21,6 +22,7 @@ import crawler2d as c2d
 from crawler2d.run import Outcome, Run
 from crawler2d.scenario import Scenario
 from crawler2d.statistics import Interval, wilson
+from crawler2d.terrain import Step
 from crawler2d.track import Track
 
 __all__ = ["Cell", "main", "models", "repeat", "study", "summarise"]
@@ -75,13 +77,15 @@ def repeat(scenario: Scenario, index: int, seed: int) -> Scenario:
     The approach is uniform over 0.1 m, the track phase over one grouser pitch, speed and friction
     within 2 %. What is drawn is written into the scenario, so that every run replays alone.
     """
+    # Lanes have no friction of their own; the study has none.
+    nominal = cast("Step", scenario.terrain).friction
     approach, phase, speed, friction = np.random.default_rng((seed, index)).random(4).tolist()
     return scenario.replace(
         {
             "start.approach": 0.05 + 0.1 * approach,
             "start.track_phase": phase * scenario.robot.outline.grouser_pitch,
             "drive.speed": scenario.drive.speed * (0.98 + 0.04 * speed),
-            "terrain.friction": 0.9 * (0.98 + 0.04 * friction),
+            "terrain.friction": nominal * (0.98 + 0.04 * friction),
         }
     )
 
@@ -171,12 +175,14 @@ def table(cells: Iterable[Cell]) -> str:
 
 def real_time_factors(runs_by_cell: dict[tuple[str, float], list[Run]]) -> dict[str, float]:
     """Divide simulated time by the computing time of one thread, for every model."""
-    simulated: Counter[str] = Counter()
-    computed: Counter[str] = Counter()
-    for (model, _), runs in runs_by_cell.items():
-        simulated[model] += sum(run.metrics.get("time", 0.0) for run in runs)  # type: ignore[assignment]
-        computed[model] += sum(run.wall_time for run in runs)  # type: ignore[assignment]
-    return {model: simulated[model] / computed[model] for model in simulated}
+    factors = {}
+    for name in dict.fromkeys(model for model, _ in runs_by_cell):
+        runs = [run for (model, _), cell in runs_by_cell.items() if model == name for run in cell]
+        finished = [run for run in runs if run.error is None]
+        computed = sum(run.wall_time for run in finished)
+        simulated = sum(run.metrics["time"] for run in finished)
+        factors[name] = simulated / computed if computed > 0.0 else math.nan
+    return factors
 
 
 def write_runs(path: Path, runs_by_cell: dict[tuple[str, float], list[Run]]) -> None:
@@ -259,17 +265,18 @@ def _draw(cells: list[Cell], path: Path) -> bool:
 def _header(heights: Sequence[float], repeats: int, seed: int) -> str:
     robot = c2d.robots.engineer()
     build = ", ".join(f"{name} {value}" for name, value in c2d.build_info().items())
-    belly = min(y for _, y in robot.belly or ())
-    clearance = robot.outline.rear_radius + belly
+    clearance = robot.outline.rear_radius + min(y for _, y in robot.belly or ((0.0, 0.0),))
+    nominal = Scenario(robot, Step(heights[0]))
+    friction = Step(heights[0]).friction
     return (
         f"Engineer without flippers over steps of {1000 * heights[0]:.0f} to "
         f"{1000 * heights[-1]:.0f} mm, {repeats} repeats, seed {seed}\n"
         f"build: {build}\n"
         f"estimates: centre of mass {robot.center_of_mass} m, belly clearance "
         f"{1000 * clearance:.0f} mm, track mass {robot.track_mass} kg,\n"
-        f"  torque {robot.drivetrain.max_torque} N m a sprocket, friction 0.9; "
-        "drawn: approach 0.05 to 0.15 m, track phase over one grouser pitch,\n"
-        "  speed 0.4 m/s and friction within 2 %\n"
+        f"  torque {robot.drivetrain.max_torque} N m a sprocket, friction {friction}\n"
+        "drawn: approach 0.05 to 0.15 m, track phase over one grouser pitch, "
+        f"speed {nominal.drive.speed} m/s and friction within 2 %\n"
     )
 
 

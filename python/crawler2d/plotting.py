@@ -86,7 +86,7 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    ax.set_title(_title(run), loc="left", fontsize="medium")
+    ax.set_title(run.title, loc="left", fontsize="medium")
     ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
 
 
@@ -112,7 +112,7 @@ def time_strips(run: Run, axes: tuple[Axes, ...]) -> None:
     force.set(ylabel="drive\nforce [N]", xlabel="time [s]")
     for ax in axes:
         ax.grid(alpha=0.3)
-        ax.set_xlim(run.time[0], run.time[-1])
+        ax.margins(x=0.0)
         for start, end in zip(run.events["start"], run.events["end"], strict=True):
             ax.axvspan(start, end, color=_ORANGE, alpha=0.15, linewidth=0.0)
     if run.events:
@@ -140,7 +140,7 @@ def _extent(
     left, right = float(x.min()) - reach, float(x.max()) + reach
     visited = profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1]
     ground = np.concatenate([visited, np.interp([left, right], profile[:, 0], profile[:, 1])])
-    bottom = min(float(ground.min()), float(y.min()) - reach)
+    bottom = min(float(ground.min()), float(y.min()) - float(circles[:, 2].max()))
     return left, right, bottom - 0.05, max(float(ground.max()), float(y.max()) + reach)
 
 
@@ -197,8 +197,3 @@ def _draw_forces(run: Run, ax: Axes) -> None:
         label="contact forces at the end",
         zorder=4,
     )
-
-
-def _title(run: Run) -> str:
-    robot = run.scenario.robot
-    return f"{robot.name}, {robot.track}: {run.outcome} after {run.time[-1]:.2f} s"

@@ -215,12 +215,23 @@ class Run:
 
     def __repr__(self) -> str:
         """Say what ran and how it ended."""
+        return f"Run({self.title})"
+
+    @property
+    def title(self) -> str:
+        """What ran and how it ended, in one line for tables and plots."""
         robot, terrain = self.scenario.robot, self.scenario.terrain
-        subject = f"{robot.name}, {_kind(robot.track)}, {_kind(terrain)}"
+        names = (
+            getattr(robot, "name", robot),
+            _kind(getattr(robot, "track", None)),
+            _kind(terrain),
+        )
+        subject = ", ".join(str(name) for name in names)
         if self.error is not None:
-            return f"Run({subject}: {type(self.error).__name__})"
-        return f"Run({subject}: {self.outcome} after {self.metrics['time']:.3g} s)"
+            return f"{subject}: {type(self.error).__name__}"
+        return f"{subject}: {self.outcome} after {self.metrics['time']:.2f} s"
 
 
 def _kind(part: object) -> str:
+    # A scenario that was refused may hold anything here.
     return str(getattr(part, "kind", type(part).__name__))

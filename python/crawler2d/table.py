@@ -31,8 +31,8 @@ class Table(Mapping[str, "NDArray[Any]"]):
     Examples
     --------
     >>> table = Table({"x": [0.0, 0.5], "kind": ["stop", "stop"]})
-    >>> len(table), list(table), table["x"].sum()
-    (2, ['x', 'kind'], 0.5)
+    >>> len(table), list(table), table["x"].tolist()
+    (2, ['x', 'kind'], [0.0, 0.5])
     """
 
     __slots__ = ("_columns",)

@@ -2,54 +2,72 @@ use crawler2d_core::*;
 fn main() {
     let text = std::fs::read_to_string("tests/scenarios/engineer_belt_step.json").unwrap();
     let s = Scenario::from_json(&text).unwrap();
-    for (it, freq, dt, sp, ax) in [
-        (8, 120., 1e-3, 0.005, 20.),
-        (200, 120., 1e-3, 0.005, 20.),
-        (200, 480., 1e-3, 0.005, 20.),
-        (200, 120., 2.5e-4, 0.005, 20.),
-        (200, 120., 1e-3, 0.002, 20.),
-        (50, 120., 1e-3, 0.005, 90.),
+    for (it, dt, sub, freq, zeta) in [
+        (8, 1e-3, 4, 120., 5.),
+        (200, 1e-3, 4, 120., 5.),
+        (200, 2.5e-4, 4, 120., 5.),
+        (200, 2.5e-4, 1, 120., 5.),
+        (200, 1e-3, 4, 30., 5.),
+        (200, 1e-3, 4, 30., 10.),
+        (200, 1e-3, 1, 60., 5.),
+        (200, 1e-3, 8, 60., 1.),
     ] {
-        let mu: f64 = 0.4;
-        let e = 0.064 * (1. - 1. / (1. + mu * mu).sqrt());
-        let (mut lo, mut hi) = (e * 0.8, e * 1.2);
-        while hi - lo > 1e-6 {
-            let m = 0.5 * (lo + hi);
-            let mut c = s.clone();
-            c.robot.belly = None;
-            c.robot.drivetrain.max_torque = 100.;
-            c.robot.drivetrain.max_acceleration = 1.0;
-            c.robot.outline.axle_distance = ax;
-            c.robot.outline.grouser_height = 0.;
-            c.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
-            c.robot.center_of_mass = [ax / 2., 0.];
-            c.robot.moment_of_inertia = 100.;
-            c.robot.track_mass = 0.1;
-            c.terrain = Terrain::Step {
-                height: m,
-                edge_radius: 0.,
-                friction: mu,
-            };
-            c.robot.track = Track::Line(LineOfWheels {
-                count: 2,
-                wheel_radius: None,
-                wheel: Wheel::Round,
-            });
-            c.drive.speed = sp;
-            c.start.approach = 0.0;
-            c.duration = 20. * 0.005 / sp;
-            c.solver.time_step = dt;
-            c.solver.iterations = it;
-            c.solver.contact_frequency = freq;
-            if simulate(&c, Record::summary()).unwrap().metrics.final_y > 0.064 + 0.45 * m {
-                lo = m
-            } else {
-                hi = m
+        let mut c = s.clone();
+        c.robot.belly = None;
+        c.robot.drivetrain.max_torque = 100.;
+        c.robot.drivetrain.max_acceleration = 1.0;
+        c.robot.center_of_mass = [(0.476562847 - 0.5) * 0.365, 0.011985913];
+        c.robot.track = Track::Line(LineOfWheels {
+            count: 5,
+            wheel_radius: None,
+            wheel: Wheel::Round,
+        });
+        c.terrain = Terrain::Step {
+            height: 0.0975850577,
+            edge_radius: 0.,
+            friction: 1.01589201,
+        };
+        c.drive.speed = 0.05;
+        c.start.approach = 0.02;
+        c.duration = 40.;
+        c.solver.time_step = dt;
+        c.solver.iterations = it;
+        c.solver.contact_frequency = freq;
+        c.solver.contact_damping_ratio = zeta;
+        c.solver.substeps = sub;
+        let r = simulate(&c, Record::default()).unwrap();
+        println!(
+            "it {it} dt {dt} sub {sub} f {freq} z {zeta}: {} t {:.2} a {:.5} pen {:.4}mm",
+            r.outcome,
+            r.metrics.time,
+            r.metrics.final_angle,
+            r.metrics.max_penetration * 1e3
+        );
+        if r.outcome == Outcome::Stopped {
+            let mut sim = Simulation::new(&c).unwrap();
+            while sim.time() < r.metrics.time.min(30.) {
+                sim.step().unwrap();
+            }
+            for _ in 0..6 {
+                sim.step().unwrap();
+                let t = sim.contact_table();
+                let rd = sim.reading();
+                print!(
+                    "   v {:+.1e} {:+.1e} w {:+.1e} s {:.4} |",
+                    rd.velocity.x, rd.velocity.y, rd.angular_velocity, rd.track_speed
+                );
+                for i in 0..t.time.len() {
+                    print!(
+                        " w{} e{} N{:7.2} mu{:+.3} slip{:+.4} |",
+                        t.body[i],
+                        t.edge[i],
+                        t.normal_force[i],
+                        t.friction_force[i] / t.normal_force[i],
+                        t.surface_speed[i]
+                    );
+                }
+                println!();
             }
         }
-        println!(
-            "v it {it} freq {freq} dt {dt} sp {sp} ax {ax}: {:+.2} %",
-            (lo / e - 1.) * 100.
-        );
     }
 }

@@ -85,10 +85,10 @@ struct Row {
     tangent_lever: f64,
     drive: Option<usize>,
     friction: f64,
-    normal_mass: f64,
-    tangent_mass: f64,
-    /// The same while the motor holds the surface at its set-point.
-    held_tangent_mass: f64,
+    /// What an impulse does to the velocities of the contact: with the drive free, ...
+    free: Admittance,
+    /// ... and while the motor holds it at its set-point.
+    held: Admittance,
     normal_impulse: f64,
     friction_impulse: f64,
     normal_total: f64,
@@ -98,29 +98,52 @@ struct Row {
     gap: f64,
 }
 
+/// Velocity change at a contact for a unit impulse along normal and tangent.
+#[derive(Clone, Copy, Debug)]
+struct Admittance {
+    normal: f64,
+    tangent: f64,
+    /// Normal velocity for a tangent impulse, and the other way round.
+    cross: f64,
+}
+
+impl Admittance {
+    fn new(
+        inverse_mass: f64,
+        inverse_inertia: f64,
+        normal_lever: f64,
+        tangent_lever: f64,
+        of_drive: f64,
+    ) -> Self {
+        Self {
+            normal: inverse_mass + normal_lever * normal_lever * inverse_inertia,
+            tangent: inverse_mass + tangent_lever * tangent_lever * inverse_inertia + of_drive,
+            cross: normal_lever * tangent_lever * inverse_inertia,
+        }
+    }
+}
+
 /// Coefficients of a damped spring integrated implicitly.
 #[derive(Clone, Copy)]
 struct Softness {
+    /// [1/s] Share of a penetration that is pushed out in a second.
     push_rate: f64,
-    mass_scale: f64,
-    impulse_scale: f64,
+    /// Compliance in units of the contact's own admittance.
+    compliance: f64,
 }
 
 impl Softness {
     const RIGID: Self = Self {
         push_rate: 0.0,
-        mass_scale: 1.0,
-        impulse_scale: 0.0,
+        compliance: 0.0,
     };
 
     fn new(frequency: f64, damping_ratio: f64, h: f64) -> Self {
         let omega = std::f64::consts::TAU * frequency;
         let a1 = 2.0 * damping_ratio + h * omega;
-        let a2 = h * omega * a1;
         Self {
             push_rate: omega / a1,
-            mass_scale: a2 / (1.0 + a2),
-            impulse_scale: 1.0 / (1.0 + a2),
+            compliance: 1.0 / (h * omega * a1),
         }
     }
 }
@@ -272,11 +295,20 @@ impl Dynamics {
                 tangent_lever,
                 drive: part.drive,
                 friction: self.friction.min(part.friction_limit),
-                normal_mass: 1.0 / (inverse_mass + normal_lever * normal_lever * inverse_inertia),
-                tangent_mass: 1.0
-                    / (inverse_mass + tangent_lever * tangent_lever * inverse_inertia + of_drive),
-                held_tangent_mass: 1.0
-                    / (inverse_mass + cross(arm, tangent).powi(2) * inverse_locked_inertia),
+                free: Admittance::new(
+                    inverse_mass,
+                    inverse_inertia,
+                    normal_lever,
+                    tangent_lever,
+                    of_drive,
+                ),
+                held: Admittance::new(
+                    inverse_mass,
+                    inverse_locked_inertia,
+                    normal_lever,
+                    cross(arm, tangent),
+                    0.0,
+                ),
                 normal_impulse: last.map_or(0.0, |l| l.normal_impulse),
                 friction_impulse: last.map_or(0.0, |l| l.friction_impulse),
                 normal_total: 0.0,
@@ -318,8 +350,7 @@ impl Dynamics {
                 change = change.max(self.solve_push(state, set_point, h));
             }
             for i in 0..self.rows.len() {
-                change = change.max(self.solve_friction(state, i, set_point, h));
-                change = change.max(self.solve_normal(state, i, h, softness));
+                change = change.max(self.solve_contact(state, i, set_point, h, softness));
             }
             if change < AGREEMENT {
                 break;
@@ -372,27 +403,18 @@ impl Dynamics {
         self.motor_impulses[drive].abs() < self.model.drive_force * h * (1.0 - 1e-12)
     }
 
-    fn solve_friction(&mut self, state: &mut State, i: usize, set_point: f64, h: f64) -> f64 {
+    /// One contact by itself, exactly: open, sticking or sliding.
+    fn solve_contact(
+        &mut self,
+        state: &mut State,
+        i: usize,
+        set_point: f64,
+        h: f64,
+        softness: Softness,
+    ) -> f64 {
         let row = self.rows[i];
-        let limit = row.friction * row.normal_impulse;
         let held = row.drive.filter(|k| self.holds(*k, h));
-        let mass = if held.is_some() {
-            row.held_tangent_mass
-        } else {
-            row.tangent_mass
-        };
-        let new = (row.friction_impulse - mass * self.slip(state, &row)).clamp(-limit, limit);
-        self.rows[i].friction_impulse = new;
-        self.push_tangent(state, &row, new - row.friction_impulse);
-        if let Some(k) = held {
-            self.solve_motor(state, k, set_point, h);
-        }
-        (new - row.friction_impulse).abs() / mass
-    }
-
-    fn solve_normal(&mut self, state: &mut State, i: usize, h: f64, softness: Softness) -> f64 {
-        let row = self.rows[i];
-        let speed = row.normal.dot(state.velocity) + row.normal_lever * state.angular_velocity;
+        let a = if held.is_some() { row.held } else { row.free };
         // An open gap may close within the substep, rigidly; a penetration is pushed out softly.
         let (bias, softness) = if row.gap > 0.0 {
             (row.gap / h, Softness::RIGID)
@@ -402,12 +424,25 @@ impl Dynamics {
                 softness,
             )
         };
-        let impulse = -row.normal_mass * softness.mass_scale * (speed + bias)
-            - softness.impulse_scale * row.normal_impulse;
-        let new = (row.normal_impulse + impulse).max(0.0);
-        self.rows[i].normal_impulse = new;
-        self.push_normal(state, &row, new - row.normal_impulse);
-        (new - row.normal_impulse).abs() / row.normal_mass
+        let compliance = softness.compliance * a.normal;
+        let approach =
+            row.normal.dot(state.velocity) + row.normal_lever * state.angular_velocity + bias;
+        let slip = self.slip(state, &row);
+        // Velocities that the contact would have without its impulses.
+        let free_approach =
+            approach - a.normal * row.normal_impulse - a.cross * row.friction_impulse;
+        let free_slip = slip - a.cross * row.normal_impulse - a.tangent * row.friction_impulse;
+        let (normal, friction) = coulomb(free_approach, free_slip, a, compliance, row.friction);
+        self.rows[i].normal_impulse = normal;
+        self.rows[i].friction_impulse = friction;
+        let (more_normal, more_friction) =
+            (normal - row.normal_impulse, friction - row.friction_impulse);
+        self.push_normal(state, &row, more_normal);
+        self.push_tangent(state, &row, more_friction);
+        if let Some(k) = held {
+            self.solve_motor(state, k, set_point, h);
+        }
+        (more_normal.abs() * a.normal).max(more_friction.abs() * a.tangent)
     }
 
     /// [m/s] Velocity of the robot's surface over the ground along the tangent.
@@ -502,6 +537,32 @@ impl Dynamics {
         }
         self.loaded = loaded;
     }
+}
+
+/// Impulses of one contact under Signorini's and Coulomb's laws, given its velocities without them.
+fn coulomb(approach: f64, slip: f64, a: Admittance, compliance: f64, friction: f64) -> (f64, f64) {
+    if approach >= 0.0 {
+        return (0.0, 0.0);
+    }
+    let normal_admittance = a.normal + compliance;
+    let determinant = normal_admittance * a.tangent - a.cross * a.cross;
+    let normal = (a.cross * slip - a.tangent * approach) / determinant;
+    let sticking = (a.cross * approach - normal_admittance * slip) / determinant;
+    if normal >= 0.0 && sticking.abs() <= friction * normal {
+        return (normal, sticking);
+    }
+    // It slides, and friction opposes the slip that sticking would have to overcome.
+    let limit = friction.copysign(sticking);
+    let along = normal_admittance + limit * a.cross;
+    if along > 0.0 {
+        let normal = -approach / along;
+        return (normal, limit * normal);
+    }
+    // The friction would press the contact together faster than it resists: it jams.
+    (
+        normal.max(0.0),
+        (friction * normal.max(0.0)).copysign(sticking),
+    )
 }
 
 /// The last step's contact of the same part that lies nearest, if near enough; each is taken once.

@@ -6,4 +6,5 @@ mod basics;
 mod belt;
 mod climbing;
 mod drive;
+mod seizure;
 mod slopes;

@@ -1,0 +1,439 @@
+//! Seizure of a row of equal wheels: every stop on three sliding contacts is a pose that plane
+//! statics predicts, with the forces it predicts.
+
+use crate::common::*;
+use crawler2d_core::{Outcome, Run, Scenario};
+
+/// A row of equal, turning wheels before a step; lengths [m].
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    count: u32,
+    spacing: f64,
+    radius: f64,
+    /// Centre of mass ahead of the rear axle.
+    behind: f64,
+    /// Centre of mass above the axles.
+    above: f64,
+    height: f64,
+    friction: f64,
+}
+
+/// A pose in which three sliding contacts may hold the robot.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// Rear one of the wheels on the edge.
+    on_edge: u32,
+    /// Wheel of the third contact: `on_edge + 1` on the same edge, or a wheel on the top.
+    third: Third,
+    angle: f64,
+    /// Normal forces of rear wheel, edge and third contact as shares of the weight.
+    shares: [f64; 3],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Third {
+    SameEdge,
+    OnTop(u32),
+}
+
+impl Row {
+    /// Axle of a wheel if the rear one stands at x.
+    fn axle(&self, x: f64, angle: f64, wheel: u32) -> [f64; 2] {
+        let (s, c) = libm::sincos(angle);
+        let along = f64::from(wheel) * self.spacing;
+        [x + along * c, self.radius + along * s]
+    }
+
+    /// Whether no wheel cuts ground, face, edge or top.
+    fn is_clear(&self, x: f64, angle: f64) -> bool {
+        let gap = |wheel: u32| {
+            let [ax, ay] = self.axle(x, angle, wheel);
+            if ax >= 0.0 {
+                ay - self.height
+            } else if ay <= self.height {
+                ay.min(-ax)
+            } else {
+                ay.min(libm::hypot(ax, ay - self.height))
+            }
+        };
+        (0..self.count).all(|wheel| gap(wheel) > self.radius - 1e-9)
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let mut found = Vec::new();
+        for on_edge in 0..self.count - 1 {
+            found.extend(self.pocket(on_edge));
+            for top in on_edge + 1..self.count {
+                for side in [-1.0, 1.0] {
+                    found.extend(self.on_top(on_edge, top, side));
+                }
+            }
+        }
+        found
+    }
+
+    /// The edge at the bottom of the pocket between two wheels.
+    fn pocket(&self, on_edge: u32) -> Option<Candidate> {
+        let depth = (self.radius.powi(2) - 0.25 * self.spacing.powi(2)).sqrt();
+        if depth.is_nan() {
+            return None;
+        }
+        let half_way = (f64::from(on_edge) + 0.5) * self.spacing;
+        let edge_height =
+            |angle: f64| self.radius + half_way * libm::sin(angle) - depth * libm::cos(angle);
+        if edge_height(0.0) > self.height || edge_height(1.5) < self.height {
+            return None;
+        }
+        let angle = bisect(1e-12, 1.5, |angle| edge_height(angle) < self.height);
+        let (mut low, mut high) = (angle - 1e-3, angle + 1e-3);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if edge_height(middle) < self.height {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        let (s, c) = libm::sincos(low);
+        let x = -(half_way * c + depth * s);
+        let rear = self.axle(x, low, 0);
+        let edge = [0.0, self.height];
+        let towards = |wheel| unit([0.0, self.height], self.axle(x, low, wheel));
+        let contacts = [
+            ([rear[0], 0.0], [0.0, 1.0]),
+            (edge, towards(on_edge)),
+            (edge, towards(on_edge + 1)),
+        ];
+        self.balance(on_edge, Third::SameEdge, x, low, contacts)
+    }
+
+    /// One wheel on the edge, one in front of it on the top.
+    fn on_top(&self, on_edge: u32, top: u32, side: f64) -> Option<Candidate> {
+        let sine = self.height / (f64::from(top) * self.spacing);
+        if sine >= 1.0 {
+            return None;
+        }
+        let angle = libm::asin(sine);
+        let [along, axle_height] = self.axle(0.0, angle, on_edge);
+        let reach = self.radius.powi(2) - (axle_height - self.height).powi(2);
+        if reach < 0.0 {
+            return None;
+        }
+        let x = side * reach.sqrt() - along;
+        let (rear, front) = (self.axle(x, angle, 0), self.axle(x, angle, top));
+        let edge = [0.0, self.height];
+        let contacts = [
+            ([rear[0], 0.0], [0.0, 1.0]),
+            (edge, unit(edge, self.axle(x, angle, on_edge))),
+            ([front[0], self.height], [0.0, 1.0]),
+        ];
+        self.balance(on_edge, Third::OnTop(top), x, angle, contacts)
+    }
+
+    /// Forces and moment about the centre of mass: three linear equations for three normal forces.
+    fn balance(
+        &self,
+        on_edge: u32,
+        third: Third,
+        x: f64,
+        angle: f64,
+        contacts: [([f64; 2], [f64; 2]); 3],
+    ) -> Option<Candidate> {
+        if !self.is_clear(x, angle) {
+            return None;
+        }
+        let (s, c) = libm::sincos(angle);
+        let com = [
+            x + self.behind * c - self.above * s,
+            self.radius + self.behind * s + self.above * c,
+        ];
+        let mut columns = [[0.0; 3]; 3];
+        for (column, (point, normal)) in columns.iter_mut().zip(contacts) {
+            // The surface turns forwards: its friction is known, along the normal turned by -90 degrees.
+            let force = [
+                normal[0] + self.friction * normal[1],
+                normal[1] - self.friction * normal[0],
+            ];
+            let moment = (point[0] - com[0]) * force[1] - (point[1] - com[1]) * force[0];
+            *column = [force[0], force[1], moment];
+        }
+        let shares = solve(columns, [0.0, 1.0, 0.0])?;
+        shares.iter().all(|n| *n >= 0.0).then_some(Candidate {
+            on_edge,
+            third,
+            angle,
+            shares,
+        })
+    }
+
+    fn scenario(&self) -> Scenario {
+        let mut scenario = slow_and_strong();
+        let length = f64::from(self.count - 1) * self.spacing;
+        let outline = &mut scenario.robot.outline;
+        outline.axle_distance = length;
+        (outline.front_radius, outline.rear_radius) = (self.radius, self.radius);
+        scenario.robot.center_of_mass = [self.behind - 0.5 * length, self.above];
+        scenario.robot.track = line(self.count);
+        scenario.terrain = step(self.height, self.friction);
+        scenario.duration = 40.0;
+        scenario
+    }
+}
+
+/// Cramer's rule; columns of the matrix are given.
+fn solve(columns: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
+    let det = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    let [a, b, c] = columns;
+    let whole = det(a, b, c);
+    (whole.abs() > 1e-12).then(|| {
+        [
+            det(right, b, c) / whole,
+            det(a, right, c) / whole,
+            det(a, b, right) / whole,
+        ]
+    })
+}
+
+fn unit(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let d = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(d[0], d[1]);
+    [d[0] / length, d[1] / length]
+}
+
+/// A contact over the last second of a run.
+#[derive(Clone, Copy, Debug)]
+struct Loaded {
+    wheel: i64,
+    edge: i64,
+    x: f64,
+    /// Mean normal force as a share of the weight.
+    share: f64,
+    slides: bool,
+}
+
+fn loaded(run: &Run, friction: f64) -> Vec<Loaded> {
+    let c = &run.contacts;
+    let from = run.metrics.time - 1.0;
+    let weight = 21.2 * G;
+    let mut seen: Vec<(Loaded, f64, f64)> = Vec::new();
+    for i in (0..c.time.len()).filter(|i| c.time[*i] > from + 1e-9) {
+        let new = Loaded {
+            wheel: c.body[i],
+            edge: c.edge[i],
+            x: c.x[i],
+            share: 0.0,
+            slides: false,
+        };
+        let known = seen.iter().position(|(l, ..)| {
+            l.wheel == new.wheel && l.edge == new.edge && (l.x - new.x).abs() < 5e-3
+        });
+        let k = known.unwrap_or_else(|| {
+            seen.push((new, 0.0, 0.0));
+            seen.len() - 1
+        });
+        seen[k].1 += c.normal_force[i] / 100.0;
+        seen[k].2 += c.friction_force[i] / 100.0;
+    }
+    seen.into_iter()
+        .filter(|(_, normal, _)| *normal > 1e-3 * weight)
+        .map(|(l, normal, traction)| Loaded {
+            share: normal / weight,
+            slides: (traction / (friction * normal) - 1.0).abs() < 1e-3,
+            ..l
+        })
+        .collect()
+}
+
+/// The convex edge of a step is its second corner.
+const EDGE: i64 = 1;
+
+/// What a stopped run shows of a candidate: how far angle [rad] and shares of the weight are off.
+#[derive(Clone, Copy, Debug)]
+enum Stop {
+    /// Three sliding contacts, the pose and forces of a candidate.
+    Candidate { angle_off: f64, share_off: f64 },
+    /// The nose against edge or face, all else on the ground: friction is too low to lift it.
+    Nose { share_off: f64 },
+}
+
+fn classify(row: &Row, run: &Run) -> Stop {
+    let contacts = loaded(run, row.friction);
+    let angle = run.metrics.final_angle;
+    let describe = || format!("{row:?} stopped at {angle} rad on {contacts:?}");
+    assert!(contacts.iter().all(|l| l.slides), "{}", describe());
+    let on_edge: Vec<&Loaded> = contacts.iter().filter(|l| l.edge == EDGE).collect();
+    let on_ground: Vec<&Loaded> = contacts
+        .iter()
+        .filter(|l| l.x < -1e-4 && l.edge != EDGE)
+        .collect();
+    if angle.abs() < 1e-2 {
+        return Stop::Nose {
+            share_off: nose_off(row, &contacts),
+        };
+    }
+    assert!(
+        contacts.len() == 3 && on_ground.len() == 1 && !on_edge.is_empty(),
+        "{}",
+        describe()
+    );
+    let wheel = on_edge.iter().map(|l| l.wheel).min().unwrap();
+    let third = if on_edge.len() == 2 {
+        Third::SameEdge
+    } else {
+        let top = contacts
+            .iter()
+            .find(|l| l.x > 1e-4 && l.edge != EDGE)
+            .unwrap_or_else(|| panic!("{}", describe()));
+        Third::OnTop(top.wheel as u32)
+    };
+    let of_these = row
+        .candidates()
+        .into_iter()
+        .filter(|c| i64::from(c.on_edge) == wheel && c.third == third);
+    let candidate = of_these
+        .min_by(|a, b| (a.angle - angle).abs().total_cmp(&(b.angle - angle).abs()))
+        .unwrap_or_else(|| panic!("{}: no candidate of {:?}", describe(), row.candidates()));
+    let edge = on_edge.iter().find(|l| l.wheel == wheel).unwrap();
+    let off = [
+        on_ground[0].share - candidate.shares[0],
+        edge.share - candidate.shares[1],
+    ];
+    Stop::Candidate {
+        angle_off: (candidate.angle - angle).abs(),
+        share_off: off[0].abs().max(off[1].abs()),
+    }
+}
+
+/// Share of the nose against plane statics: two equations for the sum of the ground and the nose.
+fn nose_off(row: &Row, contacts: &[Loaded]) -> f64 {
+    let cosine = ((row.radius - row.height) / row.radius).max(0.0);
+    let (sine, mu) = ((1.0 - cosine * cosine).sqrt(), row.friction);
+    let nose = 1.0 / (cosine + mu * sine + (sine - mu * cosine) / mu);
+    let found: f64 = contacts
+        .iter()
+        .filter(|l| l.x > -1e-4)
+        .map(|l| l.share)
+        .sum();
+    (found - nose).abs()
+}
+
+fn drawn(draw: &mut Draw) -> Row {
+    let count = draw.between(4.0, 10.0) as u32;
+    Row {
+        count,
+        spacing: 0.365 / f64::from(count - 1),
+        radius: 0.064,
+        behind: draw.between(0.4, 0.65) * 0.365,
+        above: draw.between(-0.01, 0.04),
+        height: draw.between(0.03, 0.11),
+        friction: draw.between(0.3, 1.2),
+    }
+}
+
+#[test]
+fn stops_on_three_sliding_contacts_are_the_candidates_of_statics() {
+    let seed = 10;
+    let mut draw = Draw(seed);
+    let (cells, mut cleared, mut stops, mut noses) = (200, 0, Vec::new(), Vec::new());
+    for _ in 0..cells {
+        let row = drawn(&mut draw);
+        let run = run(&row.scenario());
+        match run.outcome {
+            Outcome::Stopped => match classify(&row, &run) {
+                Stop::Candidate {
+                    angle_off,
+                    share_off,
+                } => stops.push((angle_off.to_degrees(), share_off)),
+                Stop::Nose { share_off } => noses.push(share_off),
+            },
+            _ => cleared += 1,
+        }
+    }
+    let worst = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let angle = worst(&mut stops.iter().map(|s| s.0));
+    let share = worst(&mut stops.iter().map(|s| s.1));
+    let nose = worst(&mut noses.iter().copied());
+    println!(
+        "seed {seed}, {cells} cells: {cleared} did not stop; {} stopped on three sliding contacts, all candidates, \
+         angle within {angle:.3} degrees, forces within {share:.4} of the weight; {} stopped with the nose, force \
+         within {nose:.4} of the weight",
+        stops.len(),
+        noses.len()
+    );
+    assert!(stops.len() > 15);
+    assert!(angle < 0.3 && share < 0.05 && nose < 0.01);
+}
+
+#[test]
+fn seized_pose_comes_closer_to_statics_as_contacts_stiffen() {
+    // The worked case of a row of five: wheel 2 on the edge, wheel 3 on the top.
+    let row = Row {
+        count: 5,
+        spacing: 0.365 / 4.0,
+        radius: 0.064,
+        behind: 0.6 * 0.365,
+        above: 0.0,
+        height: 0.100,
+        friction: 0.95,
+    };
+    let mut before = f64::INFINITY;
+    for frequency in [15.0, 30.0, 60.0, 120.0] {
+        let mut scenario = row.scenario();
+        scenario.solver.contact_frequency = frequency;
+        let run = run(&scenario);
+        let Stop::Candidate {
+            angle_off,
+            share_off,
+        } = classify(&row, &run)
+        else {
+            panic!("it is no nose")
+        };
+        println!(
+            "{frequency} Hz: angle off {:.4} degrees, forces off {share_off:.5} of the weight",
+            angle_off.to_degrees()
+        );
+        assert!(angle_off < before);
+        before = angle_off;
+    }
+    assert!(before.to_degrees() < 0.01);
+}
+
+#[test]
+fn friction_at_which_a_row_no_longer_seizes_lies_at_or_below_that_of_statics() {
+    for (count, behind, height) in [
+        (5, 0.5, 0.075),
+        (5, 0.6, 0.075),
+        (5, 0.6, 0.100),
+        (7, 0.6, 0.050),
+        (9, 0.6, 0.050),
+    ] {
+        let at = |friction: f64| Row {
+            count,
+            spacing: 0.365 / f64::from(count - 1),
+            radius: 0.064,
+            behind: behind * 0.365,
+            above: 0.0,
+            height,
+            friction,
+        };
+        let grid = |from: f64, holds: &dyn Fn(f64) -> bool| {
+            (0..200)
+                .map(|i| from - 0.01 * f64::from(i))
+                .find(|mu| *mu > 0.3 && holds(*mu))
+        };
+        let statics = grid(1.5, &|mu| !at(mu).candidates().is_empty()).expect("a candidate exists");
+        let seizes = |mu: f64| {
+            let run = run(&at(mu).scenario());
+            run.outcome == Outcome::Stopped && run.metrics.final_angle > 0.01
+        };
+        // Above the limit of statics nothing may hold the robot.
+        assert!(!seizes(statics + 0.02) && !seizes(statics + 0.1));
+        let found = grid(statics, &seizes);
+        println!(
+            "{count} wheels, b/L {behind}, h {height}: statics up to mu {statics:.2}, simulated up to {found:.2?}"
+        );
+    }
+}

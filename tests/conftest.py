@@ -1,0 +1,65 @@
+"""What the tests share: scenarios that cover every variant, and how long to test."""
+
+import os
+from collections.abc import Callable
+
+import hypothesis
+import pytest
+
+import crawler2d as c2d
+from crawler2d.scenario import Scenario
+
+SOAK = "CRAWLER2D_SOAK" in os.environ
+"""Set by make soak: a hundred times the cases."""
+
+hypothesis.settings.register_profile("test", max_examples=100, deadline=None, derandomize=True)
+hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)
+hypothesis.settings.load_profile("soak" if SOAK else "test")
+
+ROBOT = c2d.robots.engineer()
+POINTS = [[-3.0, 0.0], [0.0, 0.0], [0.0, 0.05], [3.0, 0.05]]
+
+VARIANTS = {
+    "belt-step": Scenario(ROBOT, c2d.terrains.step(0.05, edge_radius=0.01)),
+    "line-flat": Scenario(
+        ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.06)), c2d.terrains.flat(), goal=1.0
+    ),
+    "force-ramp": Scenario(ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.ramp(0.2)),
+    "belt-points": Scenario(ROBOT, c2d.terrains.from_points(POINTS, goal=0.0)),
+    "belt-lanes": Scenario(
+        ROBOT,
+        c2d.terrains.lanes(
+            c2d.terrains.step(0.05), c2d.terrains.step(0.05), middle=c2d.terrains.step(0.05)
+        ),
+    ),
+}
+"""One scenario for every kind of track and terrain."""
+
+
+@pytest.fixture
+def scenario() -> Scenario:
+    """A short run that clears."""
+    return Scenario(ROBOT, c2d.terrains.step(0.03), duration=6.0)
+
+
+@pytest.fixture(scope="session")
+def run() -> c2d.Run:
+    """A finished run with its history."""
+    return c2d.simulate(c2d.robots.engineer(track=c2d.LineOfWheels(3)), c2d.terrains.step(0.05))
+
+
+@pytest.fixture
+def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
+    """Print a measured figure although the test passes."""
+
+    def print_now(text: str) -> None:
+        with capsys.disabled():
+            print(f"\n  {text}")  # noqa: T201
+
+    return print_now
+
+
+@pytest.fixture(autouse=True)
+def _no_thread_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep a limit of the developer's own out of the tests."""
+    monkeypatch.delenv("CRAWLER2D_THREADS", raising=False)

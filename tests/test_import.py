@@ -1,0 +1,49 @@
+"""The package as it is imported: cost, build, public names."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+
+import crawler2d as c2d
+
+MEASURE = """
+import time
+import numpy
+begin = time.perf_counter()
+import crawler2d
+print(time.perf_counter() - begin)
+"""
+
+LAZY = """
+import sys
+import crawler2d
+heavy = {"matplotlib", "pandas", "xarray", "scipy", "tqdm"} & set(sys.modules)
+assert not heavy, heavy
+"""
+
+
+def python(program: str) -> str:
+    command = [sys.executable, "-W", "error", "-c", program]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def test_the_import_costs_at_most_50_ms_beyond_numpy(say: Callable[[str], None]) -> None:
+    seconds = min(float(python(MEASURE)) for _ in range(5))
+    say(f"import crawler2d took {1000 * seconds:.1f} ms beyond numpy")
+    assert seconds < 0.05
+
+
+def test_the_import_brings_no_optional_package() -> None:
+    python(LAZY)
+
+
+def test_the_core_is_a_release_build() -> None:
+    info = c2d.build_info()
+    assert info["profile"] == "release"
+    assert info["version"] == c2d.__version__
+
+
+def test_every_public_name_exists_and_is_documented() -> None:
+    assert len(c2d.__all__) < 40
+    for name in c2d.__all__:
+        assert getattr(c2d, name).__doc__, name

@@ -1,0 +1,115 @@
+"""Ctrl-C: answered at once, and what is finished is kept."""
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+
+import pytest
+
+Say = Callable[[str], None]
+
+BATCH = """
+import sys, time
+import crawler2d as c2d
+
+base = c2d.Scenario(c2d.robots.engineer(track=c2d.LineOfWheels(9)), c2d.terrains.flat(length=50.0))
+scenarios = [base.replace({"duration": 1.0})] * 3 + [base.replace({"duration": 1000.0})] * 20
+
+def progress(done, total):
+    if done == 3:
+        print("ready", flush=True)
+
+try:
+    c2d.simulate_many(scenarios, threads=2, record="summary", progress=progress)
+except c2d.BatchInterrupted as interrupt:
+    now = time.monotonic()
+    runs = interrupt.runs
+    kept = [run is not None for run in runs]
+    again = c2d.simulate(scenarios[0], record="summary").metrics == runs[0].metrics
+    print(now, len(runs), sum(kept), all(kept[:3]), again, flush=True)
+"""
+
+RUN = """
+import time
+import crawler2d as c2d
+
+scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat(length=900.0), duration=10000.0)
+print("ready", flush=True)
+try:
+    c2d.simulate(scenario, sample_interval=1.0)
+except KeyboardInterrupt:
+    print(time.monotonic(), flush=True)
+"""
+
+ADVANCE = """
+import time
+import crawler2d as c2d
+
+sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat()))
+print("ready", flush=True)
+try:
+    sim.advance(10000.0)
+except KeyboardInterrupt:
+    now = time.monotonic()
+    before = sim.time
+    sim.advance(0.5)
+    print(now, before > 0.0, abs(sim.time - before - 0.5) < 1e-9, flush=True)
+"""
+
+# [s] The promise is 0.2 s; a loaded test machine may schedule the process late.
+SLACK = 1.0
+
+
+def interrupted(program: str, delay: float) -> tuple[float, list[str]]:
+    """Run a program, interrupt it, and return its latency [s] and what it said after that."""
+    command = [sys.executable, "-c", program]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(delay)
+        sent = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        try:
+            answer, _ = process.communicate(timeout=30.0)
+        finally:
+            process.kill()
+    assert process.returncode == 0
+    now, *said = answer.split()
+    return float(now) - sent, said
+
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to a child")
+
+
+def check_batch(delay: float) -> float:
+    """Interrupt a batch `delay` seconds after its third run; return the latency [s]."""
+    latency, (total, kept, first_three, repeats) = interrupted(BATCH, delay)
+    assert latency < SLACK
+    assert (total, first_three, repeats) == ("23", "True", "True")
+    assert int(kept) >= 3
+    return latency
+
+
+def test_a_batch_answers_ctrl_c_and_keeps_the_finished_runs(say: Say) -> None:
+    say(f"a batch answered Ctrl-C after {1000 * check_batch(0.1):.0f} ms")
+
+
+@pytest.mark.soak
+def test_a_batch_answers_ctrl_c_at_any_time(say: Say) -> None:
+    latencies = [check_batch(0.005 * repeat) for repeat in range(100)]
+    say(f"100 batches answered Ctrl-C after at most {1000 * max(latencies):.0f} ms")
+
+
+def test_a_run_answers_ctrl_c(say: Say) -> None:
+    latency, _ = interrupted(RUN, 0.3)
+    say(f"a run answered Ctrl-C after {1000 * latency:.0f} ms")
+    assert latency < SLACK
+
+
+def test_a_simulation_answers_ctrl_c_and_can_go_on(say: Say) -> None:
+    latency, said = interrupted(ADVANCE, 0.3)
+    say(f"a simulation answered Ctrl-C after {1000 * latency:.0f} ms")
+    assert latency < SLACK
+    assert said == ["True", "True"]

@@ -1,0 +1,162 @@
+"""Every leaf of every scenario: what is wrong with it is named by its exact path."""
+
+import copy
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from conftest import VARIANTS
+from crawler2d.scenario import Scenario
+
+# Where -1 is a legal number.
+SIGNED = (
+    "robot.center_of_mass",
+    "robot.belly",
+    "terrain.angle",
+    "terrain.points",
+    "drive.speed",
+    "start.track_phase",
+    "start.angle",
+    "goal",
+    "terrain.goal",
+)
+
+
+def walk(node: Any, keys: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Yield the keys that lead to every value, objects and lists included."""
+    if keys:
+        yield keys
+    if isinstance(node, dict):
+        for key, value in node.items():
+            yield from walk(value, (*keys, key))
+    elif isinstance(node, list):
+        for index, value in enumerate(node):
+            yield from walk(value, (*keys, index))
+
+
+def dotted(keys: tuple[str | int, ...]) -> str:
+    """Write keys as a path, such as ``terrain.points[0][1]``."""
+    return "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).removeprefix(".")
+
+
+def at(plain: Any, keys: tuple[str | int, ...]) -> Any:
+    for key in keys:
+        plain = plain[key]
+    return plain
+
+
+PLAIN = {name: json.loads(scenario.to_json()) for name, scenario in VARIANTS.items()}
+PLACES = [(name, keys) for name, plain in PLAIN.items() for keys in walk(plain)]
+NUMBERS = [(name, keys) for name, keys in PLACES if type(at(PLAIN[name], keys)) in (int, float)]
+OBJECTS = [
+    (name, keys)
+    for name, plain in PLAIN.items()
+    for keys in [(), *walk(plain)]
+    if isinstance(at(plain, keys), dict)
+]
+
+
+def refusal(plain: Any) -> c2d.ScenarioError:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        Scenario.from_json(json.dumps(plain))
+    return caught.value
+
+
+def changed(name: str, keys: tuple[str | int, ...], value: Any) -> Any:
+    plain = copy.deepcopy(PLAIN[name])
+    at(plain, keys[:-1])[keys[-1]] = value
+    return plain
+
+
+def test_there_are_leaves_to_test() -> None:
+    assert len(PLACES) > 200
+    assert len(NUMBERS) > 150
+
+
+@pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", "12", True, [], {}])
+def test_what_is_no_number_is_refused_at_every_number(value: Any) -> None:
+    for name, keys in NUMBERS:
+        error = refusal(changed(name, keys, value))
+        assert error.path == dotted(keys), error
+        assert error.rule.startswith("must"), error
+
+
+def test_a_negative_number_is_refused_wherever_it_has_no_meaning() -> None:
+    for name, keys in NUMBERS:
+        path = dotted(keys)
+        if path.startswith(SIGNED):
+            continue
+        assert refusal(changed(name, keys, -1)).path == path
+
+
+@pytest.mark.parametrize("value", [1e308, -1e308, 1e-320, 2**64])
+def test_an_absurd_number_is_refused_at_every_number(value: float) -> None:
+    for name, keys in NUMBERS:
+        assert refusal(changed(name, keys, value)).path == dotted(keys)
+
+
+def test_a_wrong_type_is_refused_at_every_place() -> None:
+    for name, keys in PLACES:
+        value = at(PLAIN[name], keys)
+        wrong: Any = 5 if isinstance(value, (str, dict, list)) else ["x"]
+        if value is None:
+            wrong = "x"
+        error = refusal(changed(name, keys, wrong))
+        assert error.path == dotted(keys), error
+
+
+def test_an_unknown_key_is_refused_in_every_object() -> None:
+    for name, keys in OBJECTS:
+        error = refusal(changed(name, (*keys, "unknown_key"), 1))
+        assert error.path == dotted((*keys, "unknown_key")), error
+
+
+def test_a_missing_key_is_refused_in_every_object() -> None:
+    for name, keys in OBJECTS:
+        for key in at(PLAIN[name], keys):
+            plain = copy.deepcopy(PLAIN[name])
+            del at(plain, keys)[key]
+            assert refusal(plain).path == dotted((*keys, key))
+
+
+def test_a_misspelt_choice_lists_the_names_and_the_nearest() -> None:
+    for keys, value, nearest in [
+        (("robot", "track", "kind"), "Belt", "belt"),
+        (("terrain", "kind"), "stp", "step"),
+        (("robot", "drivetrain", "torque_sharing"), "wheels", "wheel"),
+    ]:
+        error = refusal(changed("belt-step", keys, value))
+        assert error.path == dotted(keys)
+        assert f"did you mean {nearest}?" in error.rule
+
+
+def test_a_misspelt_key_names_the_nearest() -> None:
+    error = refusal(changed("belt-step", ("robot", "mas"), 1))
+    assert error.path == "robot.mas"
+    assert "did you mean mass?" in error.rule
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("robot.track_mass", 21.2),
+        ("robot.track_mass", 30.0),
+        ("robot.moment_of_inertia", 1e-3),
+        ("robot.outline.grouser_height", 0.064),
+        ("robot.outline.grouser_thickness", 0.048),
+        ("robot.outline.front_radius", 0.5),
+        ("robot.drivetrain.torque_sharing", "wheel"),
+        ("drive.speed", 1.5),
+        ("solver.time_step", 0.0),
+        ("solver.time_step", 0.1),
+        ("solver.substeps", 0),
+        ("solver.substeps", 65),
+        ("schema", 2),
+    ],
+)
+def test_a_rule_between_fields_names_the_field_to_change(path: str, value: Any) -> None:
+    error = refusal(changed("belt-step", tuple(path.split(".")), value))
+    assert error.path == path

@@ -1,0 +1,101 @@
+"""Presets and generators: their figures, and the rules of Robot.simple."""
+
+import dataclasses
+import math
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.scenario import Scenario
+
+
+def test_the_engineer_has_the_figures_of_its_sources() -> None:
+    robot = c2d.robots.engineer()
+    assert (robot.mass, robot.track_mass) == (21.2, 2.4)
+    assert robot.center_of_mass == (0.0, 0.02)
+    assert robot.outline == c2d.TrackOutline(
+        axle_distance=0.365,
+        front_radius=0.064,
+        rear_radius=0.064,
+        grouser_height=0.012,
+        grouser_pitch=0.048,
+        grouser_thickness=0.006,
+    )
+    assert robot.moment_of_inertia == pytest.approx(21.2 / 12 * (0.482**2 + 0.130**2))
+    assert robot.drivetrain.max_torque == 6.0
+    assert robot.track == c2d.BeltTrack()
+
+
+def test_22_grousers_fit_on_the_engineers_belt() -> None:
+    outline = c2d.robots.engineer().outline
+    belt = outline.front_radius - outline.grouser_height
+    perimeter = 2 * outline.axle_distance + 2 * math.pi * belt
+    assert perimeter / outline.grouser_pitch == pytest.approx(22, abs=0.02)
+
+
+def test_the_belly_of_the_engineer_lies_as_high_as_asked() -> None:
+    robot = c2d.robots.engineer(belly_clearance=0.02)
+    assert robot.belly is not None
+    assert min(y for _, y in robot.belly) == pytest.approx(0.02 - 0.064)
+    Scenario(robot, c2d.terrains.flat()).validate()
+
+
+@pytest.mark.parametrize("clearance", ["0.03", None, True])
+def test_a_clearance_that_is_no_number_is_refused(clearance: Any) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.robots.engineer(belly_clearance=clearance)
+    assert caught.value.path == "belly_clearance"
+
+
+def test_a_simple_robot_of_the_engineers_size_is_like_it() -> None:
+    simple = c2d.Robot.simple(21.2, axle_distance=0.365, radius=0.064)
+    preset = c2d.robots.engineer()
+    assert simple.drivetrain.max_torque == pytest.approx(preset.drivetrain.max_torque, rel=0.03)
+    assert simple.outline.grouser_height == pytest.approx(preset.outline.grouser_height)
+    assert simple.outline.grouser_pitch == pytest.approx(preset.outline.grouser_pitch, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("mass", "axle_distance", "radius"),
+    [(0.5, 0.05, 0.01), (20.0, 0.4, 0.06), (38.0, 0.5, 0.089), (5000.0, 3.0, 0.5), (5, 0.05, 0.3)],
+)
+@pytest.mark.parametrize(
+    "track", [None, c2d.LineOfWheels(2), c2d.ForceTrack()], ids=["belt", "line", "force"]
+)
+def test_a_simple_robot_of_any_size_can_be_simulated(
+    mass: float, axle_distance: float, radius: float, track: Any
+) -> None:
+    robot = c2d.Robot.simple(mass, axle_distance=axle_distance, radius=radius, track=track)
+    run = c2d.simulate(robot, c2d.terrains.flat(), duration=0.5)
+    assert run.metrics["distance"] > 0.01
+
+
+def test_a_simple_robot_has_a_whole_number_of_grousers() -> None:
+    outline = c2d.Robot.simple(20.0, axle_distance=0.41, radius=0.07).outline
+    belt = outline.front_radius - outline.grouser_height
+    count = (2 * outline.axle_distance + 2 * math.pi * belt) / outline.grouser_pitch
+    assert count == pytest.approx(round(count))
+
+
+@pytest.mark.parametrize("name", ["mass", "axle_distance", "radius"])
+@pytest.mark.parametrize("value", [0, -1.0, math.nan, math.inf, "1", None, True, 1e300])
+def test_a_simple_robot_of_impossible_figures_is_refused(name: str, value: Any) -> None:
+    figures: dict[str, Any] = {"mass": 20.0, "axle_distance": 0.4, "radius": 0.06, name: value}
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.Robot.simple(figures.pop("mass"), **figures)
+    assert caught.value.path == name
+
+
+def test_a_terrain_generator_sets_what_it_is_given() -> None:
+    assert c2d.terrains.step(0.1, friction=0.5).friction == 0.5
+    assert c2d.terrains.ramp(0.2).length == 1.0
+    assert c2d.terrains.flat().length == 2.0
+    left, right = c2d.terrains.step(0.1), c2d.terrains.flat()
+    assert c2d.terrains.lanes(left, right).middle is None
+
+
+def test_parameters_cannot_be_changed() -> None:
+    robot = c2d.robots.engineer()
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        robot.mass = 1.0  # type: ignore[misc]

@@ -1,0 +1,187 @@
+"""A run: its arrays, tables and ways out."""
+
+import copy
+import pickle
+import sys
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from conftest import ROBOT
+from crawler2d.labelled import UNITS
+from crawler2d.scenario import Scenario
+from crawler2d.table import Table
+
+
+def test_the_arrays_share_their_samples(run: c2d.Run) -> None:
+    n = run.time.size
+    assert n > 100
+    for name in UNITS:
+        assert getattr(run, name).shape[0] == n
+        assert getattr(run, name).dtype == np.float64
+        assert np.isfinite(getattr(run, name)).all()
+    assert run.position.shape == run.velocity.shape == (n, 2)
+    assert run.drive_speeds.shape == run.drive_forces.shape == (n, 1)
+
+
+def test_samples_lie_the_interval_apart_and_end_with_the_run(scenario: Scenario) -> None:
+    run = c2d.simulate(scenario, sample_interval=0.025)
+    steps = np.diff(run.time)
+    assert run.time[0] == 0.0
+    assert steps[:-1] == pytest.approx(0.025)
+    assert 0.0 < steps[-1] <= 0.025 + 1e-9
+    assert run.time[-1] == pytest.approx(run.metrics["time"])
+
+
+def test_the_metrics_agree_with_the_arrays(run: c2d.Run) -> None:
+    assert run.outcome is c2d.Outcome.CLEARED
+    assert run.metrics["time"] == run.time[-1]
+    assert run.metrics["final_x"] == run.position[-1, 0]
+    assert run.metrics["final_y"] == run.position[-1, 1]
+    assert run.metrics["final_angle"] == run.chassis_angle[-1]
+    assert run.metrics["time_to_clear"] < run.metrics["time"]
+    assert run.wall_time > 0.0
+
+
+def test_wheels_of_their_own_servos_have_a_column_each() -> None:
+    robot = ROBOT.with_track(c2d.LineOfWheels(4))
+    scenario = Scenario(robot, c2d.terrains.flat(), duration=0.5)
+    run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": "wheel"}))
+    assert run.drive_forces.shape[1] == run.drive_speeds.shape[1] == 4
+    assert run.drive_forces.sum(axis=1) == pytest.approx(run.drive_force)
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_an_array_cannot_be_written_to(run: c2d.Run, name: str) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(run, name)[0] = 0.0
+
+
+def test_a_summary_has_the_same_figures_and_refuses_arrays_clearly(run: c2d.Run) -> None:
+    summary = c2d.simulate(run.scenario, record="summary")
+    assert (summary.outcome, summary.metrics) == (run.outcome, run.metrics)
+    assert len(summary.edges) == len(run.edges)
+    for name in [*UNITS, "contacts"]:
+        with pytest.raises(AttributeError, match="record='summary'"):
+            getattr(summary, name)
+    for way_out in (summary.plot, summary.to_xarray):
+        with pytest.raises(AttributeError, match="record='summary'"):
+            way_out()
+
+
+def test_a_run_survives_pickling(run: c2d.Run) -> None:
+    for twin in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+        assert repr(twin) == repr(run)
+        assert twin.scenario == run.scenario
+        assert twin.metrics == run.metrics
+        for name in UNITS:
+            assert np.array_equal(getattr(twin, name), getattr(run, name))
+        for name, column in run.contacts.items():
+            assert np.array_equal(twin.contacts[name], column)
+        with pytest.raises(ValueError, match="read-only"):
+            twin.time[0] = 1.0
+
+
+def test_the_repr_is_one_short_line(run: c2d.Run) -> None:
+    assert repr(run) == f"Run(engineer, line, step: cleared after {run.time[-1]:.2f} s)"
+
+
+def test_contacts_carry_the_weight_on_flat_ground() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), duration=1.0)
+    last = run.contacts["time"] == run.time[-1]
+    weight = ROBOT.mass * run.scenario.gravity
+    assert run.contacts["normal_force"][last].sum() == pytest.approx(weight, rel=1e-3)
+    assert run.contacts["normal_y"][last] == pytest.approx(1.0)
+    assert set(run.contacts["body_kind"]) == {1}  # belt
+
+
+def test_the_contact_table_has_the_documented_columns(run: c2d.Run) -> None:
+    assert list(run.contacts) == [
+        "time",
+        "lane",
+        "body",
+        "body_kind",
+        "segment",
+        "edge",
+        "x",
+        "y",
+        "normal_x",
+        "normal_y",
+        "normal_force",
+        "friction_force",
+        "surface_speed",
+        "penetration",
+    ]
+    assert list(run.edges) == ["id", "lane", "x", "y", "angle", "radius"]
+    assert list(run.events)[:3] == ["kind", "start", "end"]
+
+
+def test_the_edges_are_those_of_the_step(run: c2d.Run) -> None:
+    assert run.edges["x"].tolist() == [0.0, 0.0]
+    assert run.edges["y"].tolist() == [0.0, 0.05]
+    assert run.edges["angle"] == pytest.approx([-np.pi / 2, np.pi / 2])
+    touched = run.contacts["edge"][run.contacts["edge"] >= 0]
+    assert set(touched) <= set(run.edges["id"])
+    assert touched.size > 0
+
+
+def test_a_stop_is_an_event_that_lasts_to_the_end() -> None:
+    run = c2d.simulate(ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1))
+    assert run.outcome is c2d.Outcome.STOPPED
+    assert run.events["kind"].tolist() == ["stop"]
+    assert run.events["end"][0] == pytest.approx(run.time[-1])
+    length = run.events["end"][0] - run.events["start"][0]
+    assert run.metrics["stopped_time"] == pytest.approx(length)
+
+
+def test_a_table_has_columns_rows_and_a_short_repr(run: c2d.Run) -> None:
+    table = run.contacts
+    assert len(table) == table["time"].size
+    assert bool(table)
+    assert not Table({"x": []})
+    assert repr(run.edges) == "Table(2 rows: id, lane, x, y, angle, radius)"
+    with pytest.raises(KeyError):
+        table["height"]
+    with pytest.raises(ValueError, match="read-only"):
+        table["x"][0] = 0.0
+
+
+def test_a_table_shows_its_first_rows_in_a_notebook() -> None:
+    shown = Table({"<x>": list(range(25)), "bodies": [(1, 2)] * 25})._repr_html_()
+    assert shown.count("<tr>") == 1 + 10
+    assert "&lt;x&gt;" in shown
+    assert "(1, 2)" in shown
+    assert "25 rows, 10 shown" in shown
+    assert "shown" not in Table({"x": [1.5]})._repr_html_()
+
+
+def test_a_table_becomes_a_data_frame(run: c2d.Run) -> None:
+    frame = run.contacts.to_pandas()
+    assert list(frame.columns) == list(run.contacts)
+    assert frame["normal_force"].to_numpy() == pytest.approx(run.contacts["normal_force"])
+    frame.loc[0, "x"] = 7.0
+    assert run.contacts["x"][0] != 7.0
+    assert len(run.events.to_pandas()) == len(run.events)
+
+
+def test_the_data_set_has_units_and_provenance(run: c2d.Run) -> None:
+    dataset = run.to_xarray()
+    assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1}
+    assert dataset["position"].sel(axis="x").values == pytest.approx(run.position[:, 0])
+    assert {name: dataset[name].attrs["units"] for name in UNITS} == UNITS
+    assert dataset.attrs["outcome"] == "cleared"
+    assert Scenario.from_json(dataset.attrs["scenario"]) == run.scenario
+    assert dataset.attrs["identity"] == run.scenario.identity
+    assert dataset.attrs["build_version"] == c2d.__version__
+
+
+def test_a_missing_package_names_its_extra(run: c2d.Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("xarray", "pandas", "matplotlib.pyplot"):
+        monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+        run.to_xarray()
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+        run.contacts.to_pandas()
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[plot\]"):
+        run.plot()
