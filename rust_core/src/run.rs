@@ -131,7 +131,7 @@ pub(crate) fn simulate_until(
         min_angle: monitor.min_angle.min(start.chassis_angle),
         max_penetration: monitor.max_penetration,
         drive_work: monitor.drive_work,
-        stopped_time: events.iter().map(|e| e.end - e.start).sum(),
+        stopped_time: events.iter().fold(0.0, |sum, e| sum + e.end - e.start),
     };
     Ok(Run {
         outcome: simulation.outcome_now(),

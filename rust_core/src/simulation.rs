@@ -64,13 +64,15 @@ impl Simulation {
     /// [`Error::Scenario`] with the first broken rule.
     pub fn new(scenario: &Scenario) -> Result<Self, Error> {
         scenario.validate()?;
-        let ground = Ground::new(&scenario.terrain)?;
-        let position = robot::start_pose(scenario, &ground)?;
-        Ok(Self::on(scenario, ground, position))
+        Self::on_ground(scenario, Ground::new(&scenario.terrain)?)
     }
 
-    /// On a ground of the caller's own, the chassis frame at `position`.
-    fn on(scenario: &Scenario, ground: Ground, position: Vector) -> Self {
+    /// The same on a ground of the caller's own in place of the scenario's.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the robot does not fit on it.
+    pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
+        let position = robot::start_pose(scenario, &ground)?;
         let model = Model::new(&scenario.robot);
         let contact = ReferenceContact::new(&model.parts, &ground.profile);
         let state = State::at_rest(
@@ -87,7 +89,7 @@ impl Simulation {
             scenario.gravity,
             scenario.solver.clone(),
         );
-        Self {
+        Ok(Self {
             command: scenario.drive.speed,
             scenario: scenario.clone(),
             ground,
@@ -99,7 +101,7 @@ impl Simulation {
             set_point: 0.0,
             contacts: Vec::new(),
             reach,
-        }
+        })
     }
 
     /// Advances by one time step.

@@ -46,7 +46,7 @@ pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
     /// Normals closer than this are one direction; f64 keeps about 1e-16.
     const SAME_DIRECTION: f64 = 1e-12;
     /// [m] Gaps closer than this to the chord of their neighbours lie on one face.
-    const SAME_FACE: f64 = 1e-12;
+    const SAME_FACE: f64 = 1e-9;
 
     // A stable order: by part, then from the left, so that neighbours lie side by side.
     contacts.sort_by(|a, b| a.part.cmp(&b.part).then(a.point.x.total_cmp(&b.point.x)));

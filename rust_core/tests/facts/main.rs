@@ -6,5 +6,7 @@ mod basics;
 mod belt;
 mod climbing;
 mod drive;
+mod ghosts;
+mod repeat;
 mod seizure;
 mod slopes;

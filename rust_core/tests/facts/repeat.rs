@@ -1,0 +1,121 @@
+//! The same scenario gives the same bits, wherever and whenever it runs.
+
+use crawler2d_core::{Error, Progress, Record, Run, Scenario, simulate, simulate_many};
+
+use crate::common::*;
+
+/// A hash of every number of a run that is meant to repeat.
+fn fingerprint(run: &Run) -> u64 {
+    let t = &run.trace;
+    let columns = [
+        &t.time,
+        &t.position,
+        &t.velocity,
+        &t.chassis_angle,
+        &t.drive_speeds,
+        &t.drive_forces,
+    ];
+    let numbers = columns
+        .into_iter()
+        .flatten()
+        .chain(&run.contacts.normal_force)
+        .copied();
+    let metrics = run.metrics.entries().into_iter().map(|(_, value)| value);
+    // FNV-1a over the bit patterns.
+    numbers
+        .chain(metrics)
+        .fold(0xcbf2_9ce4_8422_2325, |hash, x| {
+            x.to_bits().to_le_bytes().iter().fold(hash, |h, b| {
+                (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3)
+            })
+        })
+}
+
+fn batch() -> Vec<Scenario> {
+    let mut draw = Draw(5);
+    (0..12)
+        .map(|i| {
+            let mut scenario = engineer();
+            scenario.robot.track = [belt(), line(3), line(5), force()][i % 4].clone();
+            scenario.terrain = step(draw.between(0.03, 0.12), draw.between(0.5, 1.1));
+            scenario.duration = 4.0;
+            scenario
+        })
+        .collect()
+}
+
+fn fingerprints(results: Vec<Option<Result<Run, Error>>>) -> Vec<u64> {
+    results
+        .into_iter()
+        .map(|r| fingerprint(&r.expect("finished").expect("finite")))
+        .collect()
+}
+
+#[test]
+fn threads_and_order_do_not_change_a_bit() {
+    let scenarios = batch();
+    let go = |scenarios: &[Scenario], threads| {
+        fingerprints(simulate_many(scenarios, threads, Record::default(), |_| {
+            Progress::Continue
+        }))
+    };
+    let alone: Vec<u64> = scenarios
+        .iter()
+        .map(|s| fingerprint(&simulate(s, Record::default()).expect("finite")))
+        .collect();
+    for threads in [1, 2, 3, 8] {
+        assert_eq!(go(&scenarios, threads), alone);
+    }
+    let reversed: Vec<Scenario> = scenarios.iter().rev().cloned().collect();
+    let mut back = go(&reversed, 2);
+    back.reverse();
+    assert_eq!(back, alone);
+}
+
+#[test]
+fn hundredth_run_repeats_the_first() {
+    let mut scenario = batch()[2].clone();
+    scenario.duration = 1.0;
+    let first = fingerprint(&run(&scenario));
+    for _ in 0..100 {
+        assert_eq!(fingerprint(&run(&scenario)), first);
+    }
+}
+
+#[test]
+fn recording_does_not_change_the_run() {
+    let scenario = &batch()[1];
+    let (full, short) = (run(scenario), summary(scenario));
+    assert_eq!(full.metrics, short.metrics);
+    assert_eq!(full.outcome, short.outcome);
+}
+
+/// Debug and release builds give the same bits: both must find this value.
+///
+/// It changes only together with the physics. A commit that changes it says which and why.
+#[test]
+fn every_build_finds_the_same_value() {
+    const EXPECTED: u64 = 0;
+    let mut scenario = batch()[2].clone();
+    scenario.duration = 2.5;
+    let found = fingerprint(&run(&scenario));
+    assert_eq!(
+        found, EXPECTED,
+        "found {found:#018x}; if the physics was meant to change, write this value down"
+    );
+}
+
+#[test]
+fn cancelled_batch_keeps_what_is_finished() {
+    let scenarios = vec![batch()[0].clone(); 40];
+    let results = simulate_many(&scenarios, 2, Record::summary(), |done| {
+        if done >= 3 {
+            Progress::Stop
+        } else {
+            Progress::Continue
+        }
+    });
+    let finished = results.iter().filter(|r| r.is_some()).count();
+    assert!((3..40).contains(&finished), "{finished}");
+    assert!(results.into_iter().flatten().all(|r| r.is_ok()));
+}
