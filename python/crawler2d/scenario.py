@@ -84,7 +84,7 @@ class Solver(Parameters):
     time_step: float = 1e-3
     substeps: int = 4
     iterations: int = 8
-    contact_frequency: float = 120.0
+    contact_frequency: float = 240.0
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5
     prediction_distance: float = 0.005

@@ -37,6 +37,7 @@ pub fn simulate_many(
     );
     let results: Vec<Mutex<Option<Result<Run, Error>>>> =
         scenarios.iter().map(|_| Mutex::new(None)).collect();
+    let caller = std::thread::current();
     let work = || {
         while !cancel.load(Ordering::Relaxed) {
             let i = next.fetch_add(1, Ordering::Relaxed);
@@ -51,6 +52,7 @@ pub fn simulate_many(
                 done.fetch_add(1, Ordering::Release);
             }
         }
+        caller.unpark();
     };
     std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads.clamp(1, scenarios.len().max(1)))

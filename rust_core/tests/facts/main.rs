@@ -2,6 +2,7 @@
 
 mod common;
 
+mod another_engine;
 mod basics;
 mod belt;
 mod climbing;

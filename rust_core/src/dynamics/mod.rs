@@ -5,46 +5,29 @@
 //! "Solver2D", 2024). The drives are degrees of freedom of their own: the speed of a belt is found
 //! together with the contact forces, so its force limit acts on the net traction inside the step.
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
+mod drives;
+mod law;
+mod state;
+#[cfg(test)]
+mod tests;
+
+use rapier2d_f64::math::{Rotation, Vector};
 
 use crate::contact::Contact;
 use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
+use law::{Admittance, Softness, coulomb};
+pub(crate) use state::{DriveState, State};
 
 /// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a substep of
 /// 0.25 ms that is a force of 4e-5 of the weight, far below what any outcome turns on.
 const AGREEMENT: f64 = 1e-7;
+/// [s] Contacts that stick can pull against each other without end, which no body that gives way at
+/// all would keep up. The friction that balance does not ask for fades with this time.
+const SELF_STRESS_TIME: f64 = 0.1;
 /// [m] A contact carries on from the last step's if it moved less than this.
 const CARRIED_OVER: f64 = 5e-3;
-
-/// The moving state.
-#[derive(Clone, Debug)]
-pub(crate) struct State {
-    /// [m] Centre of mass.
-    pub center: Vector,
-    /// [rad] Chassis angle; it counts full turns.
-    pub angle: f64,
-    /// [m/s] Velocity of the centre of mass.
-    pub velocity: Vector,
-    /// [rad/s] Angular velocity of the chassis.
-    pub angular_velocity: f64,
-    /// One for each drive.
-    pub drives: Vec<DriveState>,
-}
-
-/// State of one drive.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct DriveState {
-    /// [rad/s] Spin over ground; a drive of a robot at rest has none.
-    pub spin: f64,
-    /// [m] How far the surface has run along its path.
-    pub position: f64,
-    /// [N] Mean force of the motor at the surface over the last step.
-    pub force: f64,
-    /// [N] Mean force of the ground on the robot along the surface over the last step.
-    pub traction: f64,
-}
 
 /// A contact as the solver keeps it from step to step.
 #[derive(Clone, Copy, Debug)]
@@ -96,100 +79,6 @@ struct Row {
     /// [m] Gap at the start of the step and now.
     start_gap: f64,
     gap: f64,
-}
-
-/// Velocity change at a contact for a unit impulse along normal and tangent.
-#[derive(Clone, Copy, Debug)]
-struct Admittance {
-    normal: f64,
-    tangent: f64,
-    /// Normal velocity for a tangent impulse, and the other way round.
-    cross: f64,
-}
-
-impl Admittance {
-    fn new(
-        inverse_mass: f64,
-        inverse_inertia: f64,
-        normal_lever: f64,
-        tangent_lever: f64,
-        of_drive: f64,
-    ) -> Self {
-        Self {
-            normal: inverse_mass + normal_lever * normal_lever * inverse_inertia,
-            tangent: inverse_mass + tangent_lever * tangent_lever * inverse_inertia + of_drive,
-            cross: normal_lever * tangent_lever * inverse_inertia,
-        }
-    }
-}
-
-/// Coefficients of a damped spring integrated implicitly.
-#[derive(Clone, Copy)]
-struct Softness {
-    /// [1/s] Share of a penetration that is pushed out in a second.
-    push_rate: f64,
-    /// Compliance in units of the contact's own admittance.
-    compliance: f64,
-}
-
-impl Softness {
-    const RIGID: Self = Self {
-        push_rate: 0.0,
-        compliance: 0.0,
-    };
-
-    fn new(frequency: f64, damping_ratio: f64, h: f64) -> Self {
-        let omega = std::f64::consts::TAU * frequency;
-        let a1 = 2.0 * damping_ratio + h * omega;
-        Self {
-            push_rate: omega / a1,
-            compliance: 1.0 / (h * omega * a1),
-        }
-    }
-}
-
-impl State {
-    /// A robot at rest with its chassis frame at `position`.
-    pub(crate) fn at_rest(model: &Model, position: Vector, angle: f64, track_phase: f64) -> Self {
-        let rotation = Rotation::new(angle);
-        let drive = DriveState {
-            position: track_phase,
-            ..DriveState::default()
-        };
-        Self {
-            center: position + rotation * model.center_of_mass,
-            angle,
-            velocity: Vector::ZERO,
-            angular_velocity: 0.0,
-            drives: vec![drive; model.drives],
-        }
-    }
-
-    /// Pose of the chassis frame.
-    pub(crate) fn pose(&self, model: &Model) -> Pose {
-        let rotation = Rotation::new(self.angle);
-        Pose::from_parts(self.center - rotation * model.center_of_mass, rotation)
-    }
-
-    /// [m/s] Velocity of a point that rides with the chassis.
-    pub(crate) fn velocity_at(&self, point: Vector) -> Vector {
-        self.velocity + self.angular_velocity * left_of(point - self.center)
-    }
-
-    /// [m/s] Surface speed of a drive; positive drives towards +x.
-    pub(crate) fn track_speed(&self, model: &Model, drive: usize) -> f64 {
-        (self.angular_velocity - self.drives[drive].spin) * model.drive_radius
-    }
-
-    fn is_finite(&self) -> bool {
-        let body = self.center.is_finite() && self.velocity.is_finite();
-        let turn = self.angle.is_finite() && self.angular_velocity.is_finite();
-        body && turn
-            && self
-                .drives
-                .iter()
-                .all(|d| d.spin.is_finite() && d.position.is_finite())
-    }
 }
 
 impl Dynamics {
@@ -267,6 +156,7 @@ impl Dynamics {
         let (inverse_mass, inverse_inertia) = (1.0 / m.mass, 1.0 / m.moment_of_inertia);
         let inverse_drive = 1.0 / m.drive_mass;
         let inverse_locked_inertia = 1.0 / self.locked_inertia();
+        let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
         self.rows.clear();
         for contact in contacts {
             let part = &m.parts[contact.part];
@@ -310,19 +200,13 @@ impl Dynamics {
                     0.0,
                 ),
                 normal_impulse: last.map_or(0.0, |l| l.normal_impulse),
-                friction_impulse: last.map_or(0.0, |l| l.friction_impulse),
+                friction_impulse: last.map_or(0.0, |l| l.friction_impulse * fading),
                 normal_total: 0.0,
                 friction_total: 0.0,
                 start_gap: contact.distance,
                 gap: contact.distance,
             });
         }
-    }
-
-    /// [kg m^2] Moment of inertia of the robot with its drives locked to the chassis.
-    fn locked_inertia(&self) -> f64 {
-        let m = &self.model;
-        m.moment_of_inertia + m.drives as f64 * m.drive_mass * m.drive_radius * m.drive_radius
     }
 
     /// Starts a substep from the impulses of the last one.
@@ -356,51 +240,6 @@ impl Dynamics {
                 break;
             }
         }
-    }
-
-    /// The motor holds the surface at the set-point within its force limit.
-    fn solve_motor(&mut self, state: &mut State, k: usize, set_point: f64, h: f64) -> f64 {
-        let m = &self.model;
-        let admittance = 1.0 / m.drive_mass + m.drive_radius * m.drive_radius / m.moment_of_inertia;
-        let limit = m.drive_force * h;
-        let error = set_point - state.track_speed(m, k);
-        let old = self.motor_impulses[k];
-        let new = (old + error / admittance).clamp(-limit, limit);
-        self.motor_impulses[k] = new;
-        self.push_motor(state, k, new - old);
-        (new - old).abs() * admittance
-    }
-
-    /// The push drives the chassis as if its axis ran on a rail: no slip, the motor limits it.
-    fn solve_push(&mut self, state: &mut State, set_point: f64, h: f64) -> f64 {
-        let m = &self.model;
-        let (axis, lever) = self.push_axis(state);
-        let slip = axis.dot(state.velocity)
-            + lever * state.angular_velocity
-            + m.drive_radius * state.drives[0].spin;
-        let held = self.holds(0, h);
-        let admittance = if held {
-            // The lever at the line of action itself: the locked drive turns with the chassis.
-            let lever = lever + m.drive_radius;
-            1.0 / m.mass + lever * lever / self.locked_inertia()
-        } else {
-            1.0 / m.mass + lever * lever / m.moment_of_inertia + 1.0 / m.drive_mass
-        };
-        let impulse = -slip / admittance;
-        self.push_impulse += impulse;
-        self.push_chassis(state, impulse);
-        if held {
-            self.solve_motor(state, 0, set_point, h);
-        }
-        slip.abs()
-    }
-
-    /// The motor is within its limit, so that it gives the speed of its surface.
-    ///
-    /// Friction on such a surface moves the robot with the drive locked to it. Solving both
-    /// together makes the sweeps agree about ten times sooner than a free, light drive would.
-    fn holds(&self, drive: usize, h: f64) -> bool {
-        self.motor_impulses[drive].abs() < self.model.drive_force * h * (1.0 - 1e-12)
     }
 
     /// One contact by itself, exactly: open, sticking or sliding.
@@ -466,32 +305,6 @@ impl Dynamics {
         }
     }
 
-    fn push_motor(&self, state: &mut State, k: usize, impulse: f64) {
-        self.spin_up(state, k, -impulse);
-        state.angular_velocity += self.model.drive_radius * impulse / self.model.moment_of_inertia;
-    }
-
-    fn push_chassis(&self, state: &mut State, impulse: f64) {
-        let (axis, lever) = self.push_axis(state);
-        state.velocity += axis * (impulse / self.model.mass);
-        state.angular_velocity += lever * impulse / self.model.moment_of_inertia;
-        self.spin_up(state, 0, impulse);
-    }
-
-    /// An impulse at the drive's radius; its inertia is `drive_mass x drive_radius^2`.
-    fn spin_up(&self, state: &mut State, k: usize, impulse: f64) {
-        state.drives[k].spin += impulse / (self.model.drive_mass * self.model.drive_radius);
-    }
-
-    /// Direction and lever of a force along the chassis at axle height.
-    fn push_axis(&self, state: &State) -> (Vector, f64) {
-        let rotation = Rotation::new(state.angle);
-        let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
-        // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
-        let arm = self.model.drive_radius * up - rotation * self.model.center_of_mass;
-        (axis, cross(arm, axis))
-    }
-
     /// Updates the gaps for the motion since the start of the step.
     fn follow(&mut self, state: &State, (center, angle): (Vector, f64)) {
         let moved = state.center - center;
@@ -537,32 +350,6 @@ impl Dynamics {
         }
         self.loaded = loaded;
     }
-}
-
-/// Impulses of one contact under Signorini's and Coulomb's laws, given its velocities without them.
-fn coulomb(approach: f64, slip: f64, a: Admittance, compliance: f64, friction: f64) -> (f64, f64) {
-    if approach >= 0.0 {
-        return (0.0, 0.0);
-    }
-    let normal_admittance = a.normal + compliance;
-    let determinant = normal_admittance * a.tangent - a.cross * a.cross;
-    let normal = (a.cross * slip - a.tangent * approach) / determinant;
-    let sticking = (a.cross * approach - normal_admittance * slip) / determinant;
-    if normal >= 0.0 && sticking.abs() <= friction * normal {
-        return (normal, sticking);
-    }
-    // It slides, and friction opposes the slip that sticking would have to overcome.
-    let limit = friction.copysign(sticking);
-    let along = normal_admittance + limit * a.cross;
-    if along > 0.0 {
-        let normal = -approach / along;
-        return (normal, limit * normal);
-    }
-    // The friction would press the contact together faster than it resists: it jams.
-    (
-        normal.max(0.0),
-        (friction * normal.max(0.0)).copysign(sticking),
-    )
 }
 
 /// The last step's contact of the same part that lies nearest, if near enough; each is taken once.

@@ -1,0 +1,150 @@
+//! Motion without ground, and on contacts that no terrain could make.
+
+use approx::assert_relative_eq;
+use rapier2d_f64::math::Vector;
+
+use super::*;
+use crate::scenario::{Scenario, Track};
+
+fn engineer() -> Scenario {
+    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+    Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
+    let mut scenario = engineer();
+    change(&mut scenario);
+    let model = Model::new(&scenario.robot);
+    let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
+    (
+        Dynamics::new(model, 0.5, scenario.gravity, scenario.solver),
+        state,
+    )
+}
+
+fn advance(
+    dynamics: &mut Dynamics,
+    state: &mut State,
+    steps: u64,
+    set_point: f64,
+    contacts: &[Contact],
+) {
+    for step in 0..steps {
+        dynamics
+            .advance(state, contacts, set_point, step)
+            .expect("finite");
+    }
+}
+
+#[test]
+fn free_fall_is_half_g_t_squared() {
+    let (mut dynamics, mut state) = setup(|_| {});
+    let start = state.center.y;
+    advance(&mut dynamics, &mut state, 1000, 0.0, &[]);
+    // The body moves with the speed of the end of each substep: half a substep too far, 0.025 %.
+    assert_relative_eq!(start - state.center.y, 0.5 * 9.81, max_relative = 5e-4);
+    assert_relative_eq!(state.velocity.y, -9.81, max_relative = 1e-12);
+}
+
+#[test]
+fn drive_in_the_air_spins_up_by_its_force_and_turns_the_chassis_back() {
+    let (mut dynamics, mut state) = setup(|s| s.gravity = 0.0);
+    advance(&mut dynamics, &mut state, 10, 100.0, &[]);
+    let m = dynamics.model();
+    let (force, radius) = (2.0 * 6.0 / 0.052, m.drive_radius);
+    let expected = force * 0.01 * (1.0 / m.drive_mass + radius * radius / m.moment_of_inertia);
+    assert_relative_eq!(state.track_speed(m, 0), expected, max_relative = 1e-4);
+    assert_relative_eq!(state.drives[0].force, force, max_relative = 1e-9);
+    // No outer moment: what the chassis turns one way, the drive turns the other.
+    let of_drive = m.drive_mass * radius * radius * state.drives[0].spin;
+    assert_relative_eq!(
+        m.moment_of_inertia * state.angular_velocity,
+        -of_drive,
+        max_relative = 1e-9
+    );
+    assert!(state.velocity.length() < 1e-12);
+}
+
+/// A belt clamped between a floor and a ceiling that follow the robot.
+fn clamped(state: &State) -> [Contact; 2] {
+    let at = |y: f64, up: f64| Contact {
+        part: 0,
+        facet: 0,
+        edge: -1,
+        point: state.center + Vector::new(0.0, y),
+        normal: Vector::new(0.0, up),
+        distance: -5e-6,
+    };
+    [at(-0.064, 1.0), at(0.064, -1.0)]
+}
+
+#[test]
+fn force_limit_acts_on_the_signed_sum_of_the_tractions() {
+    // A free belt sliding between floor and ceiling: each drags it, one forwards and one backwards.
+    let (mut dynamics, mut state) = setup(|s| {
+        s.robot.drivetrain.max_torque = 0.0;
+        s.robot.center_of_mass = [0.0, 0.0];
+        s.gravity = 0.0;
+    });
+    state.velocity.x = 1.0;
+    let mass = dynamics.model().mass;
+    for step in 0..20 {
+        let before = state.velocity.x;
+        let contacts = clamped(&state);
+        advance(&mut dynamics, &mut state, 1, 0.0, &contacts);
+        let load: f64 = dynamics.loaded().iter().map(|l| l.normal_force).sum();
+        let net: f64 = dynamics.loaded().iter().map(|l| l.friction_force).sum();
+        let gross: f64 = dynamics
+            .loaded()
+            .iter()
+            .map(|l| l.friction_force.abs())
+            .sum();
+        if step > 0 {
+            assert!(load > 50.0);
+            assert_relative_eq!(gross, 0.5 * load, max_relative = 5e-3);
+            assert!(net.abs() < 5e-3 * gross, "net {net}, gross {gross}");
+            assert_relative_eq!(
+                (before - state.velocity.x) / 1e-3,
+                gross / mass,
+                max_relative = 5e-3
+            );
+        }
+    }
+    let speed = state.track_speed(dynamics.model(), 0);
+    assert!(
+        speed.abs() < 5e-3,
+        "the belt stays where it is, not {speed} m/s"
+    );
+}
+
+#[test]
+fn force_alone_drives_the_chassis_in_the_air() {
+    let (mut dynamics, mut state) = setup(|s| {
+        s.gravity = 0.0;
+        s.robot.center_of_mass = [0.0, 0.0];
+        s.robot.track = Track::Force(crate::scenario::ForceTrack {
+            support: crate::scenario::ForceSupport::Skids,
+            skid_friction: 0.0,
+        });
+    });
+    advance(&mut dynamics, &mut state, 10, 100.0, &[]);
+    let m = dynamics.model();
+    let expected = 0.01 * m.drive_force / (m.mass + m.drive_mass);
+    // The motor's reaction turns the chassis back a little, which adds a quarter of a per cent.
+    assert_relative_eq!(state.velocity.x, expected, max_relative = 5e-3);
+    assert_relative_eq!(
+        state.track_speed(m, 0),
+        state.velocity.x,
+        max_relative = 0.05
+    );
+}
+
+#[test]
+fn non_finite_state_is_an_error_and_names_the_step() {
+    let (mut dynamics, mut state) = setup(|_| {});
+    state.velocity.x = f64::INFINITY;
+    let error = dynamics
+        .advance(&mut state, &[], 0.0, 7)
+        .expect_err("not finite");
+    assert_eq!(error.step, 7);
+}
