@@ -73,5 +73,5 @@ $(VENV)/.dependencies: pyproject.toml | tools
 # An old core of another kind (abi3 or not) would be preferred silently: it goes first.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
 	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras all
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,analysis,progress
 	@touch $@

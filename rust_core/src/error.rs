@@ -15,6 +15,7 @@ pub struct ScenarioError {
 }
 
 impl ScenarioError {
+    #[allow(clippy::needless_pass_by_value)] // numbers and texts come as they are at hand
     pub(crate) fn new(
         path: impl Into<String>,
         value: impl ToString,

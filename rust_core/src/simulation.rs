@@ -130,8 +130,11 @@ impl Simulation {
             .solver
             .prediction_distance
             .max(2.0 * speed * self.time_step());
+        // In the middle of the step: normals that lag behind by half a step would be wrong by as
+        // much as a wheel turns round an edge meanwhile.
+        let middle = self.state.moved(0.5 * self.time_step());
         self.contact.find(
-            self.state.pose(self.dynamics.model()),
+            middle.pose(self.dynamics.model()),
             prediction,
             &mut self.contacts,
         );

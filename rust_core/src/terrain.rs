@@ -326,6 +326,7 @@ impl Profile {
     }
 }
 
+#[allow(clippy::float_cmp)] // the points of a vertical face have exactly one x
 fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), ScenarioError> {
     for (i, pair) in points.windows(2).enumerate() {
         let ((_, a), (row, b)) = (pair[0], pair[1]);

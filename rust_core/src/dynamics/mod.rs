@@ -1,8 +1,8 @@
 //! The equations of motion: one body, drives that turn surfaces, contacts with Coulomb friction.
 //!
 //! A substep applies gravity, solves the constraints by projected Gauss-Seidel until they agree,
-//! moves the body, and solves once more without the penetration push (a soft step after Catto,
-//! "Solver2D", 2024). The drives are degrees of freedom of their own: the speed of a belt is found
+//! moves the body, and solves once more without the penetration push: the soft step of Erin Catto's
+//! 2D solvers (2024). The drives are degrees of freedom of their own: the speed of a belt is found
 //! together with the contact forces, so its force limit acts on the net traction inside the step.
 
 mod drives;
@@ -26,6 +26,14 @@ const AGREEMENT: f64 = 1e-7;
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.
 const SELF_STRESS_TIME: f64 = 0.1;
+/// [m] Surfaces closer than this touch; a gap that a substep has just closed is rounding.
+const TOUCHING: f64 = 1e-10;
+/// [m/s] A gap that closes faster is a collision; slower ones are contacts that come and go.
+const COLLISION_SPEED: f64 = 0.01;
+/// [s] Substep of a collision. What motor and weight do during the substep in which a wheel strikes
+/// an edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which
+/// a robot just climbs by 1 %, this shifts it by less than 0.1 %.
+const COLLISION_SUBSTEP: f64 = 2e-5;
 /// [m] A contact carries on from the last step's if it moved less than this.
 const CARRIED_OVER: f64 = 5e-3;
 
@@ -63,7 +71,7 @@ struct Row {
     normal: Vector,
     tangent: Vector,
     /// [m] From the centre of mass to the contact at the start of the step.
-    arm: Vector,
+    arm_at_start: Vector,
     normal_lever: f64,
     tangent_lever: f64,
     drive: Option<usize>,
@@ -106,6 +114,8 @@ impl Dynamics {
     }
 
     /// Advances the state by one step towards the surface speed `set_point`.
+    ///
+    /// The contacts are those of the middle of the step, [`State::moved`] by half of it.
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -113,15 +123,22 @@ impl Dynamics {
         set_point: f64,
         step: u64,
     ) -> Result<(), SimulationError> {
-        let substeps = self.solver.substeps;
         let dt = self.solver.time_step;
+        self.prepare(state, contacts);
+        let substeps = if self.collides(state) {
+            self.solver
+                .substeps
+                .max((dt / COLLISION_SUBSTEP).ceil() as u32)
+        } else {
+            self.solver.substeps
+        };
         let h = dt / f64::from(substeps);
+        self.scale_impulses(h);
         let soft = Softness::new(
             self.solver.contact_frequency,
             self.solver.contact_damping_ratio,
             h,
         );
-        self.prepare(state, contacts);
         for drive in &mut state.drives {
             (drive.force, drive.traction) = (0.0, 0.0);
         }
@@ -129,16 +146,17 @@ impl Dynamics {
         for _ in 0..substeps {
             state.velocity.y -= self.gravity * h;
             self.apply_last_impulses(state);
-            self.solve(state, set_point, h, soft);
+            self.solve(state, set_point, h, Some(soft));
             state.center += state.velocity * h;
             state.angle += state.angular_velocity * h;
             for k in 0..state.drives.len() {
                 state.drives[k].position += state.track_speed(&self.model, k) * h;
             }
             self.follow(state, start);
-            self.solve(state, set_point, h, Softness::RIGID);
+            self.solve(state, set_point, h, None);
             self.collect(state, dt);
         }
+        self.scale_impulses(1.0 / h);
         self.report(state, contacts, dt);
         if state.is_finite() {
             Ok(())
@@ -157,11 +175,18 @@ impl Dynamics {
         let inverse_drive = 1.0 / m.drive_mass;
         let inverse_locked_inertia = 1.0 / self.locked_inertia();
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
+        let middle = state.moved(0.5 * self.solver.time_step);
+        let back = Rotation::new(state.angle - middle.angle);
         self.rows.clear();
         for contact in contacts {
             let part = &m.parts[contact.part];
             let tangent = right_of(contact.normal);
-            let arm = contact.point - state.center;
+            let arm = contact.point - middle.center;
+            // The gap was found in the middle of the step; the body point was here at its start.
+            let arm_at_start = back * arm;
+            let approached = contact
+                .normal
+                .dot(middle.center - state.center + arm - arm_at_start);
             // A surface that runs on a drive pulls at the drive's own radius from its axle: force at
             // the contact is force at the axle plus torque on the drive.
             let reach = if part.drive.is_some() {
@@ -180,7 +205,6 @@ impl Dynamics {
             self.rows.push(Row {
                 normal: contact.normal,
                 tangent,
-                arm,
                 normal_lever,
                 tangent_lever,
                 drive: part.drive,
@@ -203,10 +227,32 @@ impl Dynamics {
                 friction_impulse: last.map_or(0.0, |l| l.friction_impulse * fading),
                 normal_total: 0.0,
                 friction_total: 0.0,
-                start_gap: contact.distance,
-                gap: contact.distance,
+                arm_at_start,
+                start_gap: contact.distance - approached,
+                gap: contact.distance - approached,
             });
         }
+    }
+
+    /// A gap will close in this step, and not gently.
+    fn collides(&self, state: &State) -> bool {
+        let dt = self.solver.time_step;
+        self.rows.iter().any(|row| {
+            let speed = row.normal.dot(state.velocity) + row.normal_lever * state.angular_velocity;
+            speed < -COLLISION_SPEED && row.gap + speed * dt <= 0.0
+        })
+    }
+
+    /// Between steps the last substep is kept as forces, for the next one may be shorter.
+    fn scale_impulses(&mut self, factor: f64) {
+        for row in &mut self.rows {
+            row.normal_impulse *= factor;
+            row.friction_impulse *= factor;
+        }
+        for impulse in &mut self.motor_impulses {
+            *impulse *= factor;
+        }
+        self.push_impulse *= factor;
     }
 
     /// Starts a substep from the impulses of the last one.
@@ -224,7 +270,7 @@ impl Dynamics {
     }
 
     /// Sweeps over all constraints until they agree.
-    fn solve(&mut self, state: &mut State, set_point: f64, h: f64, softness: Softness) {
+    fn solve(&mut self, state: &mut State, set_point: f64, h: f64, softness: Option<Softness>) {
         for _ in 0..self.solver.iterations {
             let mut change: f64 = 0.0;
             for k in 0..self.motor_impulses.len() {
@@ -249,19 +295,21 @@ impl Dynamics {
         i: usize,
         set_point: f64,
         h: f64,
-        softness: Softness,
+        softness: Option<Softness>,
     ) -> f64 {
         let row = self.rows[i];
         let held = row.drive.filter(|k| self.holds(*k, h));
         let a = if held.is_some() { row.held } else { row.free };
-        // An open gap may close within the substep, rigidly; a penetration is pushed out softly.
-        let (bias, softness) = if row.gap > 0.0 {
-            (row.gap / h, Softness::RIGID)
-        } else {
-            (
-                (softness.push_rate * row.gap).max(-self.solver.max_push_speed),
-                softness,
-            )
+        let (bias, softness) = match softness {
+            // Before the motion an open gap may just close, and a penetration is pushed out softly.
+            Some(_) if row.gap > 0.0 => (row.gap / h, Softness::RIGID),
+            Some(soft) => (
+                (soft.push_rate * row.gap).max(-self.solver.max_push_speed),
+                soft,
+            ),
+            // After it, surfaces that touch may not approach; the others are left alone.
+            None if row.gap > TOUCHING => (f64::INFINITY, Softness::RIGID),
+            None => (0.0, Softness::RIGID),
         };
         let compliance = softness.compliance * a.normal;
         let approach =
@@ -310,7 +358,10 @@ impl Dynamics {
         let moved = state.center - center;
         let turned = Rotation::new(state.angle - angle);
         for row in &mut self.rows {
-            row.gap = row.start_gap + row.normal.dot(moved + turned * row.arm - row.arm);
+            row.gap = row.start_gap
+                + row
+                    .normal
+                    .dot(moved + turned * row.arm_at_start - row.arm_at_start);
         }
     }
 

@@ -56,6 +56,15 @@ impl State {
         Pose::from_parts(self.center - rotation * model.center_of_mass, rotation)
     }
 
+    /// Where the body will be after a time [s] if nothing changes its velocity.
+    pub(crate) fn moved(&self, time: f64) -> Self {
+        Self {
+            center: self.center + self.velocity * time,
+            angle: self.angle + self.angular_velocity * time,
+            ..self.clone()
+        }
+    }
+
     /// [m/s] Velocity of a point that rides with the chassis.
     pub(crate) fn velocity_at(&self, point: Vector) -> Vector {
         self.velocity + self.angular_velocity * left_of(point - self.center)

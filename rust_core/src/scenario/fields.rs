@@ -163,13 +163,10 @@ impl<'a> Fields<'a> {
         let found = choices
             .iter()
             .find(|(choice, _)| value.as_str() == Some(choice));
-        match found {
-            Some((_, choice)) => Ok(*choice),
-            None => {
-                let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-                Err(self.error(name, value, one_of(value.as_str(), &names)))
-            }
-        }
+        found.map(|(_, choice)| *choice).ok_or_else(|| {
+            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+            self.error(name, value, one_of(value.as_str(), &names))
+        })
     }
 
     pub(crate) fn point(
@@ -245,7 +242,7 @@ fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioErro
     // Non-finite numbers do not exist in JSON and cross as text, so that the field can be named.
     let x = match value {
         Value::String(text) if matches!(text.as_str(), "NaN" | "Infinity" | "-Infinity") => {
-            f64::NAN
+            return Err(ScenarioError::new(path, text, range.rule()));
         }
         other => other
             .as_f64()

@@ -60,13 +60,15 @@ impl Scenario {
 
     /// The one canonical text of this scenario: fixed order of fields, shortest exact numbers.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(self).expect("plain data with text keys always serialises")
+        serde_json::to_string(self).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
     }
 
     /// The identity of a run: SHA-256 of the canonical JSON, in hexadecimal.
     pub fn identity(&self) -> String {
         let digest = Sha256::digest(self.to_json().as_bytes());
-        digest.iter().map(|byte| format!("{byte:02x}")).collect()
+        digest
+            .iter()
+            .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
     }
 
     /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
@@ -74,8 +76,8 @@ impl Scenario {
     /// # Errors
     /// The first broken rule, with the path of its field.
     pub fn validate(&self) -> Result<(), ScenarioError> {
-        let value =
-            serde_json::to_value(self).expect("plain data with text keys always serialises");
+        let value = serde_json::to_value(self)
+            .unwrap_or_else(|e| unreachable!("plain data serialises: {e}"));
         Self::read(&value).map(|_| ())
     }
 

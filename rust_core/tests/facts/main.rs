@@ -1,6 +1,7 @@
 //! Facts of mechanics that every model must keep, each with its closed form.
 
 mod common;
+mod engine_world;
 
 mod another_engine;
 mod basics;

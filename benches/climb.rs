@@ -1,0 +1,84 @@
+//! One step in the middle of a climb, and one whole climb; the bare engine's loop of the same scene beside.
+
+use std::hint::black_box;
+
+use crawler2d_benches::{SCENES, Scene};
+use crawler2d_core::{Record, Simulation, simulate};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+
+/// [s] Every scene is on its edge by then.
+const IN_THE_CLIMB: f64 = 1.5;
+/// Steps of one measurement; a single one is shorter than the clock is fine.
+const STEPS: u64 = 200;
+
+fn simulation(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(&scene.scenario()).expect("a valid scene");
+    while simulation.time() < IN_THE_CLIMB {
+        simulation.step().expect("a finite state");
+    }
+    simulation
+}
+
+fn steps(criterion: &mut Criterion) {
+    for scene in &SCENES {
+        let mut group = criterion.benchmark_group(format!("{}/steps", scene.name));
+        group.throughput(Throughput::Elements(STEPS));
+        group.bench_function("crawler2d", |bencher| {
+            bencher.iter_batched_ref(
+                || simulation(scene),
+                |s| {
+                    (0..STEPS)
+                        .try_for_each(|_| s.step())
+                        .expect("a finite state");
+                },
+                BatchSize::LargeInput,
+            );
+        });
+        if let Some(engine) = scene.engine() {
+            drop(engine);
+            group.bench_function("bare engine", |bencher| {
+                bencher.iter_batched_ref(
+                    || {
+                        let mut engine = scene.engine().expect("a scene of wheels");
+                        let dt = scene.scenario().solver.time_step;
+                        (0..(IN_THE_CLIMB / dt) as u64).for_each(|_| engine.step());
+                        engine
+                    },
+                    |engine| (0..STEPS).for_each(|_| engine.step()),
+                    BatchSize::LargeInput,
+                );
+            });
+        }
+        group.finish();
+    }
+}
+
+fn climbs(criterion: &mut Criterion) {
+    for scene in &SCENES {
+        let scenario = scene.scenario();
+        let run = simulate(&scenario, Record::default()).expect("a valid scene");
+        let steps = (run.metrics.time / scenario.solver.time_step).round() as u64;
+        let mut group = criterion.benchmark_group(format!("{}/climb", scene.name));
+        group.sample_size(20);
+        group.throughput(Throughput::Elements(steps));
+        group.bench_function("crawler2d", |bencher| {
+            bencher.iter(|| simulate(black_box(&scenario), Record::default()));
+        });
+        group.bench_function("crawler2d, summary", |bencher| {
+            bencher.iter(|| simulate(black_box(&scenario), Record::summary()));
+        });
+        if scene.wheels.is_some() {
+            group.bench_function("bare engine", |bencher| {
+                bencher.iter(|| {
+                    let mut engine = scene.engine().expect("a scene of wheels");
+                    (0..steps).for_each(|_| engine.step());
+                    engine.pose()
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, steps, climbs);
+criterion_main!(benches);
