@@ -83,7 +83,7 @@ class Solver(Parameters):
     contact: Literal["reference"] = "reference"
     time_step: float = 1e-3
     substeps: int = 4
-    iterations: int = 8
+    iterations: int = 30
     contact_frequency: float = 240.0
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5

@@ -246,5 +246,6 @@ pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
     )?;
     info.set_item("schema", crawler2d_core::SCHEMA)?;
+    info.set_item("build_id", env!("CRAWLER2D_BUILD_ID"))?;
     Ok(info)
 }

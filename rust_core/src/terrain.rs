@@ -19,7 +19,7 @@ pub struct Ground {
     pub profile: Profile,
     /// [m] The x that must be left behind.
     pub goal: f64,
-    /// [m] Where the first edge lies; 0 where there is none.
+    /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
     pub first_edge: f64,
 }
 
@@ -109,7 +109,12 @@ impl Ground {
             } => return Self::lanes(path, left, right, middle.as_deref()),
         };
         let profile = Profile::new(path, &points, radius, friction, true)?;
-        let first_edge = profile.edges.first().map_or(0.0, |edge| edge.x);
+        let edges = &profile.edges;
+        let first_edge = edges
+            .iter()
+            .find(|edge| edge.x >= -COLLINEAR)
+            .or(edges.first());
+        let first_edge = first_edge.map_or(0.0, |edge| edge.x);
         let ground = Self {
             profile,
             goal,

@@ -273,14 +273,15 @@ impl Dynamics {
     fn solve(&mut self, state: &mut State, set_point: f64, h: f64, softness: Option<Softness>) {
         for _ in 0..self.solver.iterations {
             let mut change: f64 = 0.0;
-            for k in 0..self.motor_impulses.len() {
-                change = change.max(self.solve_motor(state, k, set_point, h));
+            for i in 0..self.rows.len() {
+                change = change.max(self.solve_contact(state, i, set_point, h, softness));
             }
             if self.model.pushes_chassis {
                 change = change.max(self.solve_push(state, set_point, h));
             }
-            for i in 0..self.rows.len() {
-                change = change.max(self.solve_contact(state, i, set_point, h, softness));
+            // Last, so that no motor ever pushes on past its set-point.
+            for k in 0..self.motor_impulses.len() {
+                change = change.max(self.solve_motor(state, k, set_point, h));
             }
             if change < AGREEMENT {
                 break;

@@ -15,7 +15,7 @@ pub struct Drive {
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Start {
-    /// [m] From the robot's foremost point to the first edge.
+    /// [m] From the robot's foremost point to the first edge at or beyond x = 0.
     pub approach: f64,
     /// [m] Common advance of all wheels or of the belt.
     pub track_phase: f64,

@@ -10,5 +10,6 @@ mod climbing;
 mod drive;
 mod ghosts;
 mod repeat;
+mod robustness;
 mod seizure;
 mod slopes;

@@ -1,0 +1,39 @@
+//! Gives the compiled core an id of the sources that it was built from.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use sha2::{Digest, Sha256};
+
+fn main() {
+    let root = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("..");
+    let mut files = vec![root.join("Cargo.lock")];
+    for folder in ["rust_core/src", "python/src"] {
+        println!("cargo::rerun-if-changed=../{folder}");
+        collect(&root.join(folder), &mut files);
+    }
+    println!("cargo::rerun-if-changed=../Cargo.lock");
+    files.sort();
+    let mut digest = Sha256::new();
+    for file in files {
+        digest.update(fs::read(&file).unwrap_or_default());
+    }
+    let id: String = digest
+        .finalize()
+        .iter()
+        .take(8)
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    println!("cargo::rustc-env=CRAWLER2D_BUILD_ID={id}");
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
