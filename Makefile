@@ -30,6 +30,7 @@ study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
 
 test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 	$(CARGO) test --release
+	$(CARGO) test --package crawler2d-core --test facts every_build
 	$(BIN)/python -m pytest
 	@$(MAKE) --no-print-directory check
 

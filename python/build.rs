@@ -18,12 +18,11 @@ fn main() {
     for file in files {
         digest.update(fs::read(&file).unwrap_or_default());
     }
-    let id: String = digest
-        .finalize()
+    let digest = digest.finalize();
+    let id = digest
         .iter()
         .take(8)
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+        .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"));
     println!("cargo::rustc-env=CRAWLER2D_BUILD_ID={id}");
 }
 

@@ -1,4 +1,4 @@
-//! From the core's plain data to dictionaries of NumPy arrays.
+//! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
     ContactTable, Edge, Ground, Model, Record, Run, Scenario, Shape, SimulationError, Trace,

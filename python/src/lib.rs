@@ -1,4 +1,4 @@
-//! The Python module `crawler2d._core`: JSON text in, NumPy columns out.
+//! The Python module `crawler2d._core`: JSON text in, `NumPy` columns out.
 
 mod convert;
 mod errors;
@@ -81,7 +81,7 @@ mod _core {
             match result {
                 Some(Ok(run)) => list.append(convert::run(py, run)?)?,
                 Some(Err(Error::Simulation(error))) => {
-                    list.append(convert::failure(py, &error)?)?
+                    list.append(convert::failure(py, &error)?)?;
                 }
                 Some(Err(error)) => return Err(errors::to_python(error)),
                 None => list.append(py.None())?,

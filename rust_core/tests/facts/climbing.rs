@@ -21,9 +21,9 @@ fn highest_step(radius: f64, behind: f64, above: f64) -> (f64, f64) {
     while high - low > 1e-9 {
         let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
         if height(a) < height(b) {
-            low = a
+            low = a;
         } else {
-            high = b
+            high = b;
         }
     }
     (height(low), low)
@@ -65,13 +65,21 @@ fn belt_climbs_as_high_as_a_rigid_track_can_on_the_engineer() {
         (0.6, 0.03),
     ] {
         let (expected, _) = highest_step(0.064, share * 0.365, above);
-        let scenario = rigid_track(0.365, 0.064, share, above);
-        let found = highest_step_simulated(&scenario, expected);
+        let mut scenario = rigid_track(0.365, 0.064, share, above);
+        // The closed form is the limit of no speed: momentum carries a robot over what it could not
+        // climb, most where it turns far before it is on top.
+        let mut off = [0.0; 2];
+        for (off, speed) in off.iter_mut().zip([0.05, 0.02]) {
+            scenario.drive.speed = speed;
+            scenario.duration = 3.0 / speed;
+            *off = highest_step_simulated(&scenario, expected) / expected - 1.0;
+        }
         println!(
-            "b/L {share} g {above}: {found:.5} m, closed form {expected:.5} m, {:+.2} %",
-            100.0 * (found / expected - 1.0)
+            "b/L {share} g {above}: closed form {expected:.5} m, {:+.2} % at 0.05 m/s, {:+.2} % at 0.02 m/s",
+            100.0 * off[0],
+            100.0 * off[1]
         );
-        assert!((found / expected - 1.0).abs() < 0.01);
+        assert!(off[0].abs() < 0.02 && off[1].abs() < 0.01);
     }
 }
 
@@ -102,9 +110,7 @@ fn belt_climbs_as_high_as_a_rigid_track_can_on_drawn_geometries() {
             100.0 * fast,
             100.0 * slow
         );
-        // The closed form is the limit of no speed: momentum carries a robot over what it could
-        // not climb, most where it stands steep and near its balance.
-        assert!(slow.abs() < 0.01 && slow.abs() <= fast.abs() + 1e-3);
+        assert!(fast.abs() < 0.02 && slow.abs() < 0.01);
     }
 }
 

@@ -6,16 +6,16 @@ use crawler2d_core::{
 };
 
 /// [m/s^2] The gravity of every scenario here.
-pub const G: f64 = 9.81;
+pub(crate) const G: f64 = 9.81;
 
 /// The Engineer with a belt before a step, as the Python presets write it.
-pub fn engineer() -> Scenario {
+pub(crate) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
     Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
 /// The same without a belly, slow and strong: what the quasi-static oracles assume.
-pub fn slow_and_strong() -> Scenario {
+pub(crate) fn slow_and_strong() -> Scenario {
     let mut scenario = engineer();
     scenario.robot.belly = None;
     scenario.robot.drivetrain.max_torque = 100.0;
@@ -26,7 +26,7 @@ pub fn slow_and_strong() -> Scenario {
     scenario
 }
 
-pub fn line(count: u32) -> Track {
+pub(crate) fn line(count: u32) -> Track {
     Track::Line(LineOfWheels {
         count,
         wheel_radius: None,
@@ -34,18 +34,18 @@ pub fn line(count: u32) -> Track {
     })
 }
 
-pub fn belt() -> Track {
+pub(crate) fn belt() -> Track {
     Track::Belt(BeltTrack {})
 }
 
-pub fn force() -> Track {
+pub(crate) fn force() -> Track {
     Track::Force(ForceTrack {
         support: ForceSupport::Skids,
         skid_friction: 0.0,
     })
 }
 
-pub fn step(height: f64, friction: f64) -> Terrain {
+pub(crate) fn step(height: f64, friction: f64) -> Terrain {
     Terrain::Step {
         height,
         edge_radius: 0.0,
@@ -54,7 +54,7 @@ pub fn step(height: f64, friction: f64) -> Terrain {
 }
 
 /// One straight slope through the origin, rising forwards if the angle is positive.
-pub fn slope(angle: f64, friction: f64) -> Terrain {
+pub(crate) fn slope(angle: f64, friction: f64) -> Terrain {
     let (s, c) = libm::sincos(angle);
     let points = vec![[-20.0 * c, -20.0 * s], [20.0 * c, 20.0 * s]];
     Terrain::Points {
@@ -65,22 +65,22 @@ pub fn slope(angle: f64, friction: f64) -> Terrain {
     }
 }
 
-pub fn run(scenario: &Scenario) -> Run {
+pub(crate) fn run(scenario: &Scenario) -> Run {
     simulate(scenario, Record::default()).expect("the scenario runs")
 }
 
-pub fn summary(scenario: &Scenario) -> Run {
+pub(crate) fn summary(scenario: &Scenario) -> Run {
     simulate(scenario, Record::summary()).expect("the scenario runs")
 }
 
 /// Advances a fresh simulation and hands it over.
-pub fn after(scenario: &Scenario, duration: f64) -> Simulation {
+pub(crate) fn after(scenario: &Scenario, duration: f64) -> Simulation {
     let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
     advance(&mut simulation, duration);
     simulation
 }
 
-pub fn advance(simulation: &mut Simulation, duration: f64) {
+pub(crate) fn advance(simulation: &mut Simulation, duration: f64) {
     let steps = (duration / simulation.time_step()).round() as u64;
     for _ in 0..steps {
         simulation.step().expect("the state stays finite");
@@ -88,7 +88,7 @@ pub fn advance(simulation: &mut Simulation, duration: f64) {
 }
 
 /// The largest x in [low, high] for which `holds` is true, to a relative 1e-4; it must hold at low only.
-pub fn bisect(mut low: f64, mut high: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
+pub(crate) fn bisect(mut low: f64, mut high: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
     assert!(
         holds(low) && !holds(high),
         "the boundary lies outside [{low}, {high}]"
@@ -96,19 +96,19 @@ pub fn bisect(mut low: f64, mut high: f64, mut holds: impl FnMut(f64) -> bool) -
     while high - low > 1e-4 * high {
         let middle = 0.5 * (low + high);
         if holds(middle) {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     0.5 * (low + high)
 }
 
 /// A small generator of test cases: the printed seed makes every case again (splitmix64).
-pub struct Draw(pub u64);
+pub(crate) struct Draw(pub u64);
 
 impl Draw {
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -116,7 +116,7 @@ impl Draw {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 }

@@ -1,5 +1,12 @@
 //! Facts of mechanics that every model must keep, each with its closed form.
 
+// Each test prints the figures that it found beside the bounds; `--nocapture` shows them.
+#![allow(clippy::print_stdout)]
+// A helper that fails fails its test; samples of one instant have exactly one time.
+#![allow(clippy::unwrap_used, clippy::float_cmp)]
+// The engine's world is shared with the benchmarks.
+#![allow(unreachable_pub)]
+
 mod common;
 mod engine_world;
 

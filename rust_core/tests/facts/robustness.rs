@@ -120,11 +120,11 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
             assert!(column.iter().all(|x| x.is_finite()), "case {case}");
         }
         // Coulomb's law in every sample, and nothing pulls.
-        let friction = match scenario.terrain {
-            Terrain::Step { friction, .. }
-            | Terrain::Ramp { friction, .. }
-            | Terrain::Points { friction, .. } => friction,
-            _ => unreachable!("not drawn"),
+        let (Terrain::Step { friction, .. }
+        | Terrain::Ramp { friction, .. }
+        | Terrain::Points { friction, .. }) = scenario.terrain
+        else {
+            unreachable!("not drawn")
         };
         for i in 0..run.contacts.time.len() {
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);

@@ -89,9 +89,9 @@ impl Row {
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if edge_height(middle) < self.height {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         let (s, c) = libm::sincos(low);
