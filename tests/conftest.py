@@ -54,7 +54,7 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
 
     def print_now(text: str) -> None:
         with capsys.disabled():
-            print(f"\n  {text}")  # noqa: T201
+            print(f"\n  {text}")
 
     return print_now
 

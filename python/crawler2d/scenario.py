@@ -40,7 +40,7 @@ class Start(Parameters):
     Parameters
     ----------
     approach : float
-        [m] From the robot's foremost point to the first edge.
+        [m] From the robot's foremost point to the first edge at or beyond x = 0.
     track_phase : float
         [m] Common advance of all wheels, or of the belt.
     angle : float

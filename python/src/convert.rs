@@ -215,7 +215,7 @@ pub(crate) fn geometry<'py>(
     result.set_item("circles", rows(py, &circles))?;
     result.set_item("hull", hull)?;
     result.set_item("belly", rows(py, &belly))?;
-    result.set_item("goal", scenario.goal(ground))?;
+    result.set_item("goal", ground.goal_of(scenario))?;
     Ok(result)
 }
 

@@ -15,12 +15,14 @@
 //! Frame: x forward, y up, angles counter-clockwise, SI units. A speed above 0 drives towards +x.
 
 mod batch;
+mod check;
 mod contact;
 mod drive;
 mod dynamics;
 mod error;
 mod outcome;
 mod outline;
+mod reading;
 mod robot;
 mod run;
 mod scenario;
@@ -30,17 +32,17 @@ mod trace;
 mod track;
 
 pub use batch::{Progress, simulate_many};
-pub use contact::BodyKind;
 pub use error::{Error, ScenarioError, SimulationError};
 pub use outcome::{Event, Outcome};
-pub use robot::{Model, Part, Shape};
+pub use reading::Reading;
+pub use robot::{BodyKind, Model, Part, Shape};
 pub use run::{Metrics, Run, simulate};
 pub use scenario::{
     BeltTrack, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack, LineOfWheels,
     MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria, Solver, Start, Terrain, TorqueSharing,
     Track, TrackOutline, Wheel,
 };
-pub use simulation::{Reading, Simulation};
+pub use simulation::Simulation;
 pub use terrain::{Edge, Ground, Profile};
 pub use trace::{ContactTable, Record, Trace};
 

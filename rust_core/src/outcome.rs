@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use crate::dynamics::LoadedContact;
+use crate::contact::LoadedContact;
+use crate::reading::Reading;
 use crate::scenario::{Scenario, SeizureCriteria};
-use crate::simulation::Reading;
 use crate::terrain::{Ground, Profile};
 
 /// How a run ended.
@@ -109,7 +109,7 @@ impl Monitor {
         Self {
             criteria: scenario.criteria.clone(),
             profile: ground.profile.clone(),
-            goal: scenario.goal(ground),
+            goal: ground.goal_of(scenario),
             half_length: 0.5 * outline.axle_distance,
             rear_radius: outline.rear_radius,
             grouser_pitch: outline.grouser_pitch,

@@ -2,7 +2,6 @@
 
 use rapier2d_f64::math::Vector;
 
-use crate::contact::BodyKind;
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc};
 use crate::scenario::{Robot, Scenario};
@@ -30,6 +29,19 @@ pub struct Model {
     pub drive_force: f64,
     /// The drive pushes the chassis along its axis, whatever touches the ground.
     pub pushes_chassis: bool,
+}
+
+/// What a part of the robot stands for; the code is the `body_kind` of the contact table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A wheel.
+    Wheel = 0,
+    /// A moving belt.
+    Belt = 1,
+    /// A skid runner.
+    Skid = 2,
+    /// The underside of the chassis.
+    Belly = 3,
 }
 
 /// A shape fixed to the chassis that meets the ground.

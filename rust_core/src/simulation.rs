@@ -1,16 +1,14 @@
 //! One robot on one ground, step by step.
 
-use rapier2d_f64::math::Vector;
-
-use crate::contact::{BodyKind, Contact, Readings, ReferenceContact};
+use crate::contact::{Contact, LoadedContact, ReferenceContact};
 use crate::drive;
-use crate::dynamics::{DriveState, Dynamics, LoadedContact, State};
+use crate::dynamics::{DriveState, Dynamics, State};
 use crate::error::{Error, SimulationError};
 use crate::outcome::{Event, Monitor, Outcome};
-use crate::robot::{self, Model};
+use crate::reading::Reading;
+use crate::robot::{self, BodyKind, Model};
 use crate::scenario::Scenario;
 use crate::terrain::Ground;
-use crate::trace::ContactTable;
 
 /// A simulation under way: what was built from the scenario, and the state.
 pub struct Simulation {
@@ -26,35 +24,6 @@ pub struct Simulation {
     contacts: Vec<Contact>,
     /// [m] Farthest point of the robot from its centre of mass.
     reach: f64,
-}
-
-/// The state as a user reads it.
-#[derive(Clone, Copy, Debug)]
-pub struct Reading {
-    /// [s] Simulated time.
-    pub time: f64,
-    /// [m] Origin of the chassis frame.
-    pub position: Vector,
-    /// [m/s] Velocity of that point.
-    pub velocity: Vector,
-    /// [rad] Nose up > 0.
-    pub chassis_angle: f64,
-    /// [rad/s] Its rate.
-    pub angular_velocity: f64,
-    /// [m/s] Set-point of the drivetrain.
-    pub commanded_speed: f64,
-    /// [m/s] Surface speed, the mean of the drives.
-    pub track_speed: f64,
-    /// [m] How far the surface has run, the mean of the drives.
-    pub track_position: f64,
-}
-
-impl Reading {
-    /// [m/s] Speed along the chassis.
-    pub(crate) fn forward_speed(&self) -> f64 {
-        let (sine, cosine) = libm::sincos(self.chassis_angle);
-        self.velocity.x * cosine + self.velocity.y * sine
-    }
 }
 
 impl Simulation {
@@ -188,15 +157,6 @@ impl Simulation {
             track_speed: (0..self.drives()).map(|k| self.drive_speed(k)).sum::<f64>() / drives,
             track_position: self.state.drives.iter().map(|d| d.position).sum::<f64>() / drives,
         }
-    }
-
-    /// Contacts of the last step.
-    pub fn contact_table(&self) -> ContactTable {
-        let mut readings = Readings::default();
-        readings.add(self.loaded());
-        let mut table = ContactTable::default();
-        table.append(self, &mut readings);
-        table
     }
 
     /// [s] Simulated time.

@@ -3,7 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
-use crate::scenario::Terrain;
+use crate::scenario::{Scenario, Terrain};
 
 /// [m] Level ground before and behind a parametric obstacle.
 const RUN_OUT: f64 = 100.0;
@@ -58,6 +58,11 @@ impl Ground {
     /// A profile that cannot be: overhang, too few points, an edge radius that does not fit.
     pub fn new(terrain: &Terrain) -> Result<Self, ScenarioError> {
         Self::at("terrain", terrain)
+    }
+
+    /// [m] The x that the rear axle must leave behind, unless the scenario has its own.
+    pub fn goal_of(&self, scenario: &Scenario) -> f64 {
+        scenario.goal.unwrap_or(self.goal)
     }
 
     fn at(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {

@@ -82,6 +82,17 @@ pub struct ContactTable {
     pub penetration: Vec<f64>,
 }
 
+impl Simulation {
+    /// Contacts of the last step.
+    pub fn contact_table(&self) -> ContactTable {
+        let mut readings = Readings::default();
+        readings.add(self.loaded());
+        let mut table = ContactTable::default();
+        table.append(self, &mut readings);
+        table
+    }
+}
+
 impl ContactTable {
     /// Writes the readings of an interval that ends now.
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {

@@ -4,24 +4,9 @@ mod reading;
 mod reference;
 
 use rapier2d_f64::math::Vector;
-use serde::Serialize;
 
 pub(crate) use reading::Readings;
 pub(crate) use reference::ReferenceContact;
-
-/// What a part of the robot stands for; the code is the `body_kind` of the contact table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyKind {
-    /// A wheel.
-    Wheel = 0,
-    /// A moving belt.
-    Belt = 1,
-    /// A skid runner.
-    Skid = 2,
-    /// The underside of the chassis.
-    Belly = 3,
-}
 
 /// One place where a part is on the ground or about to be.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +23,22 @@ pub(crate) struct Contact {
     pub normal: Vector,
     /// [m] Gap; negative in penetration.
     pub distance: f64,
+}
+
+/// A contact as the solver keeps it from step to step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoadedContact {
+    /// Where and what.
+    pub contact: Contact,
+    /// [N] Mean normal force over the step.
+    pub normal_force: f64,
+    /// [N] Mean friction on the robot over the step, along the normal turned by -90 degrees.
+    pub friction_force: f64,
+    /// [m/s] Velocity of the surface over ground in the same direction.
+    pub surface_speed: f64,
+    pub normal_impulse: f64,
+    pub friction_impulse: f64,
+    pub carried_over: bool,
 }
 
 /// Leaves out contacts that add nothing: those that repeat another of the same part, and those

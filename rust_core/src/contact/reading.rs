@@ -1,7 +1,6 @@
 //! Contact forces averaged over a sample interval.
 
-use super::Contact;
-use crate::dynamics::LoadedContact;
+use super::{Contact, LoadedContact};
 
 /// Contacts seen since the last sample, each with its summed forces.
 #[derive(Default)]

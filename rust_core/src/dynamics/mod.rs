@@ -13,7 +13,7 @@ mod tests;
 
 use rapier2d_f64::math::{Rotation, Vector};
 
-use crate::contact::Contact;
+use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
@@ -36,22 +36,6 @@ const COLLISION_SPEED: f64 = 0.01;
 const COLLISION_SUBSTEP: f64 = 2e-5;
 /// [m] A contact carries on from the last step's if it moved less than this.
 const CARRIED_OVER: f64 = 5e-3;
-
-/// A contact as the solver keeps it from step to step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LoadedContact {
-    /// Where and what.
-    pub contact: Contact,
-    /// [N] Mean normal force over the step.
-    pub normal_force: f64,
-    /// [N] Mean friction on the robot over the step, along the normal turned by -90 degrees.
-    pub friction_force: f64,
-    /// [m/s] Velocity of the surface over ground in the same direction.
-    pub surface_speed: f64,
-    normal_impulse: f64,
-    friction_impulse: f64,
-    carried_over: bool,
-}
 
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {

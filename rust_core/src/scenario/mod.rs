@@ -16,7 +16,6 @@ pub use terrain::{MAX_POINTS, Terrain};
 pub use track::{BeltTrack, ForceSupport, ForceTrack, LineOfWheels, Track, Wheel};
 
 use crate::error::ScenarioError;
-use crate::terrain::Ground;
 use fields::{Fields, Range};
 
 /// The only version of the format so far.
@@ -48,16 +47,6 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads and checks a scenario.
-    ///
-    /// # Errors
-    /// The first broken rule, with the path of its field.
-    pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
-        let value: Value = serde_json::from_str(text)
-            .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
-        Self::read(&value)
-    }
-
     /// The one canonical text of this scenario: fixed order of fields, shortest exact numbers.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
@@ -71,21 +60,6 @@ impl Scenario {
             .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
     }
 
-    /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
-    ///
-    /// # Errors
-    /// The first broken rule, with the path of its field.
-    pub fn validate(&self) -> Result<(), ScenarioError> {
-        let value = serde_json::to_value(self)
-            .unwrap_or_else(|e| unreachable!("plain data serialises: {e}"));
-        Self::read(&value).map(|_| ())
-    }
-
-    /// [m] The x that the rear axle must leave behind.
-    pub fn goal(&self, ground: &Ground) -> f64 {
-        self.goal.unwrap_or(ground.goal)
-    }
-
     /// Number of steps of the whole run; a remainder counts as one more step.
     pub fn step_count(&self) -> u64 {
         // The tolerance takes 15 s / 1 ms as 15,000 steps although neither number is exact.
@@ -94,7 +68,8 @@ impl Scenario {
             .max(0.0) as u64
     }
 
-    fn read(value: &Value) -> Result<Self, ScenarioError> {
+    /// Reads the tree; the rules that need the built robot and ground are those of `check`.
+    pub(crate) fn read(value: &Value) -> Result<Self, ScenarioError> {
         let mut f = Fields::new("", value)?;
         let schema = f.integer("schema", SCHEMA, SCHEMA)?;
         let scenario = Self {
@@ -110,31 +85,6 @@ impl Scenario {
             criteria: SeizureCriteria::read(f.child("criteria")?)?,
         };
         f.finish()?;
-        scenario.check()?;
         Ok(scenario)
-    }
-
-    /// Rules that join several branches of the tree.
-    fn check(&self) -> Result<(), ScenarioError> {
-        let limit = self.robot.drivetrain.max_speed;
-        if self.drive.speed.abs() > limit {
-            let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
-            return Err(ScenarioError::new("drive.speed", self.drive.speed, rule));
-        }
-        // A surface that turns further than this between two collision checks rolls over corners unseen.
-        let turn = limit * self.solver.time_step / crate::outline::smallest_radius(&self.robot);
-        if turn > 0.7 {
-            let rule = format!(
-                "must keep max_speed x time_step / radius <= 0.7 rad a step, here {turn:.3}"
-            );
-            return Err(ScenarioError::new(
-                "solver.time_step",
-                self.solver.time_step,
-                rule,
-            ));
-        }
-        let ground = Ground::new(&self.terrain)?;
-        crate::robot::start_pose(self, &ground)?;
-        Ok(())
     }
 }

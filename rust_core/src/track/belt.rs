@@ -1,9 +1,8 @@
 //! A smooth closed belt: contact surface motion on the outline (Pecka et al., IROS 2017).
 
 use super::TrackModel;
-use crate::contact::BodyKind;
 use crate::outline;
-use crate::robot::{Part, Shape};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::scenario::Robot;
 
 /// One hull round the end discs, its whole surface at one speed.

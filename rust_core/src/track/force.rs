@@ -1,7 +1,7 @@
 //! Brute-force acceleration: a speed servo that pushes the chassis itself.
 
 use super::{TrackModel, belt};
-use crate::contact::BodyKind;
+use crate::robot::BodyKind;
 use crate::scenario::{ForceSupport, ForceTrack, Robot};
 
 /// Skids of the outline's shape; the force acts along the chassis at axle height, in the air too.

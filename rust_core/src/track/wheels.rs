@@ -4,9 +4,8 @@
 //! its mass rides with the chassis and its spin is a degree of freedom of the drive.
 
 use super::TrackModel;
-use crate::contact::BodyKind;
 use crate::outline;
-use crate::robot::{Part, Shape};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::scenario::{LineOfWheels, Robot, TorqueSharing, Wheel};
 
 /// Wheels on the straight line between the end axles.

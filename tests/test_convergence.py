@@ -1,0 +1,89 @@
+"""Success rates do not move when the solver's steps are halved.
+
+Cells are chosen where the rate lies between 5 and 95 %: there a robot only just gets over, and any
+error of the discretisation shows as a shift of the rate. `make soak` runs all of them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.statistics import newcombe
+
+RUNS = 400
+
+# Track model, friction, height of the step [m].
+CELLS: list[tuple[c2d.LineOfWheels | c2d.BeltTrack, float, float]] = [
+    (c2d.LineOfWheels(3), 0.6, 0.049),
+    (c2d.LineOfWheels(3), 0.6, 0.050),
+    (c2d.LineOfWheels(3), 0.9, 0.106),
+    (c2d.LineOfWheels(4, wheel_radius=0.365 / 6), 0.6, 0.050),
+    (c2d.LineOfWheels(4, wheel_radius=0.365 / 6), 0.9, 0.071),
+    (c2d.LineOfWheels(5), 0.6, 0.052),
+    (c2d.LineOfWheels(5), 0.6, 0.053),
+    (c2d.LineOfWheels(9), 0.6, 0.052),
+    (c2d.LineOfWheels(9), 0.6, 0.053),
+    (c2d.LineOfWheels(9), 0.9, 0.104),
+    (c2d.BeltTrack(), 0.6, 0.052),
+    (c2d.BeltTrack(), 0.6, 0.053),
+]
+
+
+def ensemble(
+    track: c2d.LineOfWheels | c2d.BeltTrack, friction: float, height: float, solver: c2d.Solver
+) -> list[c2d.Run]:
+    """Runs with the same draws of approach, phase, speed and friction for every solver."""
+    scenarios = []
+    for repeat in range(RUNS):
+        draw = np.random.default_rng([0, repeat]).random(4)
+        scenarios.append(
+            c2d.Scenario(
+                robot=c2d.robots.engineer(track=track),
+                terrain=c2d.terrains.step(height, friction=friction * (0.98 + 0.04 * draw[3])),
+                drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * draw[2])),
+                start=c2d.Start(approach=0.05 + 0.1 * draw[0], track_phase=0.048 * draw[1]),
+                duration=12.0,
+                solver=solver,
+            )
+        )
+    return c2d.simulate_many(scenarios, record="summary")
+
+
+@pytest.mark.soak
+def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
+    solver = c2d.Solver()
+    finer = {
+        "half the time step": replace(solver, time_step=0.5 * solver.time_step),
+        "twice the substeps": replace(solver, substeps=2 * solver.substeps),
+    }
+    shifts: dict[str, list[float]] = {name: [] for name in finer}
+    holds = []
+    for track, friction, height in CELLS:
+        base = ensemble(track, friction, height, solver)
+        cleared = sum(run.outcome == "cleared" for run in base)
+        for name, variant in finer.items():
+            runs = ensemble(track, friction, height, variant)
+            shift, low, high = newcombe(
+                sum(run.outcome == "cleared" for run in runs), RUNS, cleared, RUNS
+            )
+            apart = [
+                np.hypot(
+                    a.metrics["final_x"] - b.metrics["final_x"],
+                    a.metrics["final_y"] - b.metrics["final_y"],
+                )
+                for a, b in zip(base, runs, strict=True)
+                if a.outcome == b.outcome == "stopped"
+            ]
+            print(
+                f"{track} friction {friction} step {height}: rate {cleared / RUNS:.3f}; "
+                f"{name} {shift:+.3f} [{low:+.3f}, {high:+.3f}], "
+                f"stopped poses within {1e3 * max(apart, default=0.0):.2f} mm"
+            )
+            shifts[name].append(shift)
+            holds.append(abs(shift) < 0.05 or low <= 0.0 <= high)
+            assert max(apart, default=0.0) < 1e-3
+    print({name: f"pooled {np.mean(values):+.4f}" for name, values in shifts.items()})
+    assert np.mean(holds) >= 0.95
+    assert all(abs(np.mean(values)) <= 0.02 for values in shifts.values())
