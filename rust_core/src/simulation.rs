@@ -101,12 +101,10 @@ impl Simulation {
             .max(2.0 * speed * self.time_step());
         // In the middle of the step: normals that lag behind by half a step would be wrong by as
         // much as a wheel turns round an edge meanwhile.
-        let middle = self.state.moved(0.5 * self.time_step());
-        self.contact.find(
-            middle.pose(self.dynamics.model()),
-            prediction,
-            &mut self.contacts,
-        );
+        let middle = self
+            .state
+            .pose_after(0.5 * self.time_step(), self.dynamics.model());
+        self.contact.find(middle, prediction, &mut self.contacts);
     }
 
     fn advance(&mut self) -> Result<(), SimulationError> {

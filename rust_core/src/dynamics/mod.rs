@@ -99,7 +99,7 @@ impl Dynamics {
 
     /// Advances the state by one step towards the surface speed `set_point`.
     ///
-    /// The contacts are those of the middle of the step, [`State::moved`] by half of it.
+    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it.
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -159,18 +159,18 @@ impl Dynamics {
         let inverse_drive = 1.0 / m.drive_mass;
         let inverse_locked_inertia = 1.0 / self.locked_inertia();
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
-        let middle = state.moved(0.5 * self.solver.time_step);
-        let back = Rotation::new(state.angle - middle.angle);
+        let (middle, angle) = state.moved(0.5 * self.solver.time_step);
+        let back = Rotation::new(state.angle - angle);
         self.rows.clear();
         for contact in contacts {
             let part = &m.parts[contact.part];
             let tangent = right_of(contact.normal);
-            let arm = contact.point - middle.center;
+            let arm = contact.point - middle;
             // The gap was found in the middle of the step; the body point was here at its start.
             let arm_at_start = back * arm;
             let approached = contact
                 .normal
-                .dot(middle.center - state.center + arm - arm_at_start);
+                .dot(middle - state.center + arm - arm_at_start);
             // A surface that runs on a drive pulls at the drive's own radius from its axle: force at
             // the contact is force at the axle plus torque on the drive.
             let reach = if part.drive.is_some() {

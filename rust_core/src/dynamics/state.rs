@@ -52,17 +52,21 @@ impl State {
 
     /// Pose of the chassis frame.
     pub(crate) fn pose(&self, model: &Model) -> Pose {
-        let rotation = Rotation::new(self.angle);
-        Pose::from_parts(self.center - rotation * model.center_of_mass, rotation)
+        pose_at(self.center, self.angle, model)
     }
 
-    /// Where the body will be after a time [s] if nothing changes its velocity.
-    pub(crate) fn moved(&self, time: f64) -> Self {
-        Self {
-            center: self.center + self.velocity * time,
-            angle: self.angle + self.angular_velocity * time,
-            ..self.clone()
-        }
+    /// The same after a time [s] if nothing changes the velocity.
+    pub(crate) fn pose_after(&self, time: f64, model: &Model) -> Pose {
+        let (center, angle) = self.moved(time);
+        pose_at(center, angle, model)
+    }
+
+    /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
+    pub(super) fn moved(&self, time: f64) -> (Vector, f64) {
+        (
+            self.center + self.velocity * time,
+            self.angle + self.angular_velocity * time,
+        )
     }
 
     /// [m/s] Velocity of a point that rides with the chassis.
@@ -84,4 +88,9 @@ impl State {
                 .iter()
                 .all(|d| d.spin.is_finite() && d.position.is_finite())
     }
+}
+
+fn pose_at(center: Vector, angle: f64, model: &Model) -> Pose {
+    let rotation = Rotation::new(angle);
+    Pose::from_parts(center - rotation * model.center_of_mass, rotation)
 }
