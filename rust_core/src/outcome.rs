@@ -59,6 +59,8 @@ pub(crate) struct Monitor {
     criteria: SeizureCriteria,
     profile: Profile,
     goal: f64,
+    /// [m] A metre below the whole ground.
+    floor: f64,
     half_length: f64,
     rear_radius: f64,
     grouser_pitch: f64,
@@ -110,6 +112,7 @@ impl Monitor {
             criteria: scenario.criteria.clone(),
             profile: ground.profile.clone(),
             goal: ground.goal_of(scenario),
+            floor: ground.profile.lowest() - 1.0,
             half_length: 0.5 * outline.axle_distance,
             rear_radius: outline.rear_radius,
             grouser_pitch: outline.grouser_pitch,
@@ -171,7 +174,7 @@ impl Monitor {
         let front = now.position.x + cosine * self.half_length;
         let lower_axle = now.position.y - (sine * self.half_length).abs();
         let (low, high) = self.profile.extent();
-        if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor() {
+        if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
             return Some(Outcome::LeftTerrain);
         }
         let level = (now.chassis_angle - self.profile.angle_at(now.position.x)).abs()
@@ -186,16 +189,6 @@ impl Monitor {
             self.goal_since = None;
         }
         None
-    }
-
-    /// [m] Below the whole ground.
-    fn floor(&self) -> f64 {
-        self.profile
-            .points
-            .iter()
-            .map(|p| p.y)
-            .fold(f64::INFINITY, f64::min)
-            - 1.0
     }
 
     /// Compares the progress with that of one window ago.

@@ -283,6 +283,14 @@ impl Profile {
         (self.points[0].x, self.points[self.points.len() - 1].x)
     }
 
+    /// [m] Height of the lowest point.
+    pub(crate) fn lowest(&self) -> f64 {
+        self.points
+            .iter()
+            .map(|p| p.y)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Facets that a range of x touches.
     fn facets(&self, low: f64, high: f64) -> std::ops::Range<usize> {
         let first = self.points.partition_point(|p| p.x < low).saturating_sub(1);

@@ -73,6 +73,13 @@ struct Row {
     gap: f64,
 }
 
+impl Row {
+    /// [m/s] Speed at which the gap opens.
+    fn opening_speed(&self, state: &State) -> f64 {
+        self.normal.dot(state.velocity) + self.normal_lever * state.angular_velocity
+    }
+}
+
 impl Dynamics {
     pub(crate) fn new(model: Model, friction: f64, gravity: f64, solver: Solver) -> Self {
         let motor_impulses = vec![0.0; model.drives];
@@ -222,7 +229,7 @@ impl Dynamics {
     fn collides(&self, state: &State) -> bool {
         let dt = self.solver.time_step;
         self.rows.iter().any(|row| {
-            let speed = row.normal.dot(state.velocity) + row.normal_lever * state.angular_velocity;
+            let speed = row.opening_speed(state);
             speed < -COLLISION_SPEED && row.gap + speed * dt <= 0.0
         })
     }
@@ -297,8 +304,7 @@ impl Dynamics {
             None => (0.0, Softness::RIGID),
         };
         let compliance = softness.compliance * a.normal;
-        let approach =
-            row.normal.dot(state.velocity) + row.normal_lever * state.angular_velocity + bias;
+        let approach = row.opening_speed(state) + bias;
         let slip = self.slip(state, &row);
         // Velocities that the contact would have without its impulses.
         let free_approach =
