@@ -26,15 +26,26 @@ from crawler2d.run import Outcome, Run
 from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
 from crawler2d.simulation import Simulation
 from crawler2d.statistics import newcombe, wilson
-from crawler2d.track import BeltTrack, ForceTrack, LineOfWheels, RoundWheel
+from crawler2d.track import (
+    BeltTrack,
+    CircumferentialWheels,
+    ForceTrack,
+    GearWheel,
+    HybridWheels,
+    LineOfWheels,
+    RoundWheel,
+)
 
 __all__ = [
     "BatchInterrupted",
     "BeltTrack",
+    "CircumferentialWheels",
     "Crawler2dError",
     "Drive",
     "Drivetrain",
     "ForceTrack",
+    "GearWheel",
+    "HybridWheels",
     "InternalError",
     "LimitError",
     "LineOfWheels",

@@ -8,6 +8,9 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 
+# What a row of so many numbers stands for.
+_ROWS = {2: "a point (x, y)", 3: "a circle (x, y, radius)"}
+
 # Every whole number up to here is a float64.
 _EXACT = 2**53
 
@@ -50,22 +53,24 @@ def real_number(value: Any, path: str) -> float:
     return number
 
 
-def frozen_rows(value: Any, path: str, *, rows: bool) -> Any:
+def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
     """Copy an array-like of real numbers to tuples of floats, without losing a bit.
 
     Parameters
     ----------
-    value : array_like, shape (n, 2) or (2,)
+    value : array_like, shape (n, columns) or (columns,)
         Any layout, byte order, and width of float or integer; None stays None.
     path : str
         Path of the field, for messages.
     rows : bool
-        True for points, shape (n, 2); False for one point, shape (2,).
+        True for a list of rows; False for one row.
+    columns : int
+        Numbers of a row: 2 of a point (x, y), 3 of a placed circle (x, y, radius).
 
     Returns
     -------
     tuple or None
-        Of tuples (x, y), or one such tuple.
+        Of rows as tuples, or one such tuple.
 
     Raises
     ------
@@ -80,16 +85,15 @@ def frozen_rows(value: Any, path: str, *, rows: bool) -> Any:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):
         if rows:
-            raise _bad_row(value, path) from None
-        raise ScenarioError(path, value, "must be a point (x, y)") from None
+            raise _bad_row(value, path, columns) from None
+        raise ScenarioError(path, value, f"must be {_ROWS[columns]}") from None
     if array.size == 0 and array.ndim == 1 and rows:
         return ()
     if array.dtype.kind not in "iuf":
         rule = f"must hold real numbers, not {array.dtype}"
         raise ScenarioError(path, _described(value, array), rule)
-    shape_is_right = array.shape[1:] == (2,) and array.ndim == 2 if rows else array.shape == (2,)
-    if not shape_is_right:
-        rule = f"must have shape {'(n, 2)' if rows else '(2,)'}"
+    if (array.shape[1:] if rows else array.shape) != (columns,):
+        rule = f"must have shape {f'(n, {columns})' if rows else f'({columns},)'}"
         raise ScenarioError(path, f"shape {array.shape}", rule)
     with np.errstate(over="ignore"):
         exact = array.astype(np.float64)
@@ -105,16 +109,16 @@ def _same_numbers(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> b
     return bool(np.array_equal(exact.astype(array.dtype), array, equal_nan=True))
 
 
-def _bad_row(value: Any, path: str) -> ScenarioError:
-    """Find the first row of a ragged list that is no point."""
+def _bad_row(value: Any, path: str, columns: int) -> ScenarioError:
+    """Find the first row of a ragged list that has not as many numbers."""
     for index, row in enumerate(value):
         try:
             shape = np.shape(row)
         except (ValueError, TypeError, OverflowError):
             shape = ()
-        if shape != (2,):
-            return ScenarioError(f"{path}[{index}]", row, "must be a point (x, y)")
-    return ScenarioError(path, value, "must be a list of points (x, y)")
+        if shape != (columns,):
+            return ScenarioError(f"{path}[{index}]", row, f"must be {_ROWS[columns]}")
+    return ScenarioError(path, value, f"must be a list, each {_ROWS[columns]}")
 
 
 def _described(value: Any, array: np.ndarray[Any, Any]) -> object:

@@ -18,8 +18,12 @@ from crawler2d.errors import ScenarioError
 
 P = TypeVar("P", bound="Parameters")
 
-PAIR = tuple[float, float]
-POINTS = tuple[tuple[float, float], ...]
+ROWS = {
+    tuple[float, float]: (None, 2),
+    tuple[tuple[float, float], ...]: ("n", 2),
+    tuple[tuple[float, float, float], ...]: ("n", 3),
+}
+"""Number of rows and columns of the fields that hold arrays; None is one row without brackets."""
 
 _RULES = {float: "must be a number", int: "must be a whole number", str: "must be a text"}
 
@@ -43,9 +47,11 @@ class Parameters:
         """Replace every field by its plain Python form."""
         for name, hint in field_hints(type(self)).items():
             value = getattr(self, name)
-            if PAIR in alternatives(hint) or POINTS in alternatives(hint):
+            shape = next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
+            if shape is not None:
+                rows, columns = shape
                 path = f"{self.place}.{name}"
-                value = frozen_rows(value, path, rows=POINTS in alternatives(hint))
+                value = frozen_rows(value, path, rows=rows is not None, columns=columns)
             else:
                 value = frozen_scalar(value, whole=float not in alternatives(hint))
             object.__setattr__(self, name, value)

@@ -34,7 +34,7 @@ def simulate(
     ----------
     scenario : Scenario or Robot
         What to simulate; a robot needs a terrain.
-    terrain : Flat, Step, Ramp, Points or Lanes, optional
+    terrain : Terrain, optional
         The ground; replaces that of a scenario.
     record : {"full", "summary"}
         Whether to keep the history, or only outcome, metrics and events.

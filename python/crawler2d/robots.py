@@ -30,7 +30,7 @@ def engineer(
         [m] From level ground to the belly. Estimate; it decides when the robot lies on an edge.
     flippers : None
         Only None for now.
-    track : LineOfWheels, BeltTrack or ForceTrack, optional
+    track : Track, optional
         The model of the track; None is `Robot`'s default.
 
     Returns

@@ -112,6 +112,9 @@ class SeizureCriteria(Parameters):
         [rad] Largest angle between chassis and ground at the goal.
     tip_over_angle : float
         [rad] Chassis angle at which the robot has tipped over.
+    intrusion_depth : float
+        [m] An edge inside the envelope of the track is an intrusion from this depth; the default lies
+        well above the penetration of a resting robot (below 0.01 mm) and below every pocket.
     """
 
     place: ClassVar[str] = "criteria"
@@ -124,6 +127,7 @@ class SeizureCriteria(Parameters):
     clear_time: float = 0.5
     clear_angle: float = math.radians(5.0)
     tip_over_angle: float = math.pi / 2.0
+    intrusion_depth: float = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +138,7 @@ class Scenario(Parameters):
     ----------
     robot : Robot
         The robot and the model of its track.
-    terrain : Flat, Step, Ramp, Points or Lanes
+    terrain : Terrain
         The ground; `crawler2d.terrains` makes them.
     drive : Drive
         The command.

@@ -7,7 +7,20 @@ from typing import ClassVar
 
 from crawler2d._json import Parameters
 
-__all__ = ["Flat", "Lane", "Lanes", "Points", "Ramp", "Step", "Terrain"]
+__all__ = [
+    "Barrier",
+    "Flat",
+    "Gap",
+    "HalfRound",
+    "Lane",
+    "Lanes",
+    "Points",
+    "Ramp",
+    "Ridge",
+    "Stairs",
+    "Step",
+    "Terrain",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,6 +92,132 @@ class Ramp(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
+class Barrier(Parameters):
+    """A parallelepiped on level ground, its front face at x = 0.
+
+    Parameters
+    ----------
+    height : float
+        [m] Height, above 0.
+    thickness : float
+        [m] Extent along x.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "barrier"
+    place: ClassVar[str] = "terrain"
+
+    height: float
+    thickness: float
+    _: KW_ONLY
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class Ridge(Parameters):
+    """A triangular prism on level ground that begins at x = 0, its edge on top.
+
+    Parameters
+    ----------
+    height : float
+        [m] Height of the edge, above 0.
+    edge_angle : float
+        [rad] Angle between the two flanks: small is a blade, near pi a low bump.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "ridge"
+    place: ClassVar[str] = "terrain"
+
+    height: float
+    edge_angle: float
+    _: KW_ONLY
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class Gap(Parameters):
+    """A trench with vertical walls that begins at x = 0.
+
+    Parameters
+    ----------
+    width : float
+        [m] Extent along x.
+    depth : float
+        [m] Depth, above 0.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "gap"
+    place: ClassVar[str] = "terrain"
+
+    width: float
+    _: KW_ONLY
+    depth: float = 0.5
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stairs(Parameters):
+    """Steps up, the first face at x = 0, then a level top.
+
+    The default rise and run are those of a public arena's stairs.
+
+    Parameters
+    ----------
+    count : int
+        Number of steps.
+    rise, run : float
+        [m] Height of each step, and its extent along x.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "stairs"
+    place: ClassVar[str] = "terrain"
+
+    count: int = 4
+    rise: float = 0.20
+    run: float = 0.233
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class HalfRound(Parameters):
+    """Half a pipe lying on level ground, from x = 0.
+
+    Parameters
+    ----------
+    radius : float
+        [m] Radius, also its height.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "half_round"
+    place: ClassVar[str] = "terrain"
+
+    radius: float
+    _: KW_ONLY
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
 class Points(Parameters):
     """A profile of the user's own.
 
@@ -110,7 +249,7 @@ class Points(Parameters):
     friction: float = 0.9
 
 
-Lane = Flat | Step | Ramp | Points
+Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
 """Every terrain of one profile."""
 
 
@@ -120,9 +259,9 @@ class Lanes(Parameters):
 
     Parameters
     ----------
-    left, right : Flat, Step, Ramp or Points
+    left, right : Lane
         What each track meets.
-    middle : Flat, Step, Ramp or Points, optional
+    middle : Lane, optional
         What the belly meets; None is the upper envelope of the two.
     """
 

@@ -4,17 +4,70 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from crawler2d.terrain import Flat, Lanes, Points, Ramp, Step
+from crawler2d.terrain import (
+    Barrier,
+    Flat,
+    Gap,
+    HalfRound,
+    Lanes,
+    Points,
+    Ramp,
+    Ridge,
+    Stairs,
+    Step,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["flat", "from_points", "lanes", "ramp", "step"]
+__all__ = [
+    "barrier",
+    "flat",
+    "from_points",
+    "gap",
+    "half_round",
+    "knife_edge",
+    "lanes",
+    "ramp",
+    "ridge",
+    "stairs",
+    "step",
+]
 
 flat = Flat
 step = Step
 ramp = Ramp
+barrier = Barrier
+ridge = Ridge
+gap = Gap
+stairs = Stairs
+half_round = HalfRound
 lanes = Lanes
+
+
+def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Barrier:
+    """Make a barrier so thin that it fits between wheels.
+
+    Parameters
+    ----------
+    height : float
+        [m] Height, above 0.
+    thickness : float
+        [m] Extent along x.
+    **fields : float
+        Further fields of `Barrier`: `edge_radius` [m], `friction` [-].
+
+    Returns
+    -------
+    Barrier
+        The terrain.
+
+    Examples
+    --------
+    >>> knife_edge(0.05).thickness
+    0.01
+    """
+    return Barrier(height, thickness, **fields)
 
 
 def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:

@@ -7,7 +7,17 @@ from typing import ClassVar, Literal
 
 from crawler2d._json import Parameters
 
-__all__ = ["BeltTrack", "ForceTrack", "LineOfWheels", "RoundWheel", "Track"]
+__all__ = [
+    "BeltTrack",
+    "CircumferentialWheels",
+    "ForceTrack",
+    "GearWheel",
+    "HybridWheels",
+    "LineOfWheels",
+    "RoundWheel",
+    "Track",
+    "Wheel",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +28,50 @@ class RoundWheel(Parameters):
     place: ClassVar[str] = "robot.track.wheel"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearWheel(Parameters):
+    """A wheel with grousers: a root circle, and rectangles whose tips reach the wheel's radius.
+
+    What is None follows from the robot's outline. The paper gives the grousers of large wheels only;
+    the rules for small ones are ours.
+
+    Parameters
+    ----------
+    grouser_count : int, optional
+        Grousers round the wheel, 3 to 200. None takes as many as fit at the robot's grouser pitch on
+        the root circle, or 8 where that is fewer than 6.
+    grouser_height : float, optional
+        [m] Radius of the wheel less that of its root circle. None takes the robot's, at most a
+        quarter of the radius.
+    tip_thickness : float, optional
+        [m] Thickness of a grouser; its flanks are parallel. None takes the robot's, reduced in
+        proportion where the height is.
+    phase_fraction : float
+        [-] Wheel n, counted from 1 at the rear, starts turned by this share of n times the angle
+        between two grousers: eq. (1) of the paper, where it is a third.
+
+    Examples
+    --------
+    >>> LineOfWheels(3, wheel=GearWheel(grouser_count=12)).wheel.grouser_count
+    12
+    """
+
+    kind: ClassVar[str] = "gear"
+    place: ClassVar[str] = "robot.track.wheel"
+
+    grouser_count: int | None = None
+    grouser_height: float | None = None
+    tip_thickness: float | None = None
+    phase_fraction: float = 1.0 / 3.0
+
+
+Wheel = RoundWheel | GearWheel
+"""Every wheel."""
+
+
 @dataclass(frozen=True, slots=True)
 class LineOfWheels(Parameters):
-    """Driven wheels on the straight line between the end axles, evenly spaced (LWA).
+    """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figs. 1 to 3).
 
     Parameters
     ----------
@@ -29,7 +80,7 @@ class LineOfWheels(Parameters):
     wheel_radius : float, optional
         [m] Radius of every wheel. None takes the outline's, linear between unequal ends. With half
         the spacing the wheels touch, with more they overlap, with less slots stay open.
-    wheel : RoundWheel
+    wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
     Examples
@@ -44,7 +95,68 @@ class LineOfWheels(Parameters):
     count: int
     _: KW_ONLY
     wheel_radius: float | None = None
-    wheel: RoundWheel = RoundWheel()
+    wheel: Wheel = RoundWheel()
+
+
+@dataclass(frozen=True, slots=True)
+class CircumferentialWheels(Parameters):
+    """Small driven wheels all round the outline, each touching it from inside (CWA, Figs. 6, 7).
+
+    Neighbours are equally far apart all the way round. The first wheel sits at the rear end of the
+    lower run, the others follow in the direction of belt travel: up round the rear, forwards on top.
+
+    Parameters
+    ----------
+    count : int
+        Wheels a side, at least 3.
+    wheel_radius : float, optional
+        [m] Radius of every wheel. None packs them tightly: neighbours touch.
+    wheel : RoundWheel or GearWheel
+        The shape of each wheel.
+
+    Examples
+    --------
+    >>> CircumferentialWheels(24, wheel=GearWheel()).count
+    24
+    """
+
+    kind: ClassVar[str] = "circumferential"
+    place: ClassVar[str] = "robot.track"
+
+    count: int
+    _: KW_ONLY
+    wheel_radius: float | None = None
+    wheel: Wheel = RoundWheel()
+
+
+@dataclass(frozen=True, slots=True)
+class HybridWheels(Parameters):
+    """Driven wheels of varying sizes, placed by hand (Fig. 8). All run at one surface speed.
+
+    Parameters
+    ----------
+    placements : array_like, shape (n, 3)
+        [m] Centre x and y in the chassis frame and radius of each wheel, the rearmost first.
+    wheel : RoundWheel or GearWheel
+        The shape of each wheel.
+
+    Raises
+    ------
+    ScenarioError
+        If `placements` holds no real numbers, is masked or has another shape.
+
+    Examples
+    --------
+    >>> HybridWheels([(-0.18, 0, 0.064), (0, -0.03, 0.034), (0.18, 0, 0.064)]).placements[1]
+    (0.0, -0.03, 0.034)
+    """
+
+    kind: ClassVar[str] = "hybrid"
+    place: ClassVar[str] = "robot.track"
+
+    placements: tuple[tuple[float, float, float], ...]
+    _: KW_ONLY
+    wheel: Wheel = RoundWheel()
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,18 +179,22 @@ class ForceTrack(Parameters):
 
     Parameters
     ----------
-    support : {"skids"}
-        What carries the robot: skids of the outline's shape.
+    support : {"skids", "wheels"}
+        What carries the robot: skids of the outline's shape, or a line of round wheels that turn
+        freely, each by itself.
     skid_friction : float
         [-] Friction of the skids; the smaller of this and the terrain's friction acts.
+    wheel_count : int
+        Free wheels a side, the two at the end axles included; at least 2.
     """
 
     kind: ClassVar[str] = "force"
     place: ClassVar[str] = "robot.track"
 
-    support: Literal["skids"] = "skids"
+    support: Literal["skids", "wheels"] = "skids"
     skid_friction: float = 0.0
+    wheel_count: int = 5
 
 
-Track = LineOfWheels | BeltTrack | ForceTrack
+Track = LineOfWheels | CircumferentialWheels | HybridWheels | BeltTrack | ForceTrack
 """Every track model."""

@@ -1,12 +1,13 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    ContactTable, Edge, Ground, Model, Record, Run, Scenario, Shape, SimulationError, Trace,
+    ContactTable, Edge, Event, Ground, Intrusion, Model, Record, Run, Scenario, Shape,
+    SimulationError, Trace, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::errors;
 
@@ -76,34 +77,73 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("trace", trace(py, run.trace, run.drives)?)?;
     result.set_item("contacts", contacts(py, run.contacts)?)?;
     result.set_item("edges", edges(py, &run.edges)?)?;
-    let stops = &run.events;
-    let events = PyDict::new(py);
-    let column = |value: i64| vec![value; stops.len()].into_pyarray(py);
-    events.set_item("kind", vec!["stop"; stops.len()])?;
-    events.set_item(
-        "start",
-        stops
-            .iter()
-            .map(|e| e.start)
-            .collect::<Vec<_>>()
-            .into_pyarray(py),
-    )?;
-    events.set_item(
-        "end",
-        stops
-            .iter()
-            .map(|e| e.end)
-            .collect::<Vec<_>>()
-            .into_pyarray(py),
-    )?;
-    events.set_item("lane", column(0))?;
-    events.set_item("edge", column(-1))?;
-    events.set_item("bodies", vec![PyTuple::empty(py); stops.len()])?;
-    events.set_item("depth", vec![0.0; stops.len()].into_pyarray(py))?;
-    events.set_item("force", vec![0.0; stops.len()].into_pyarray(py))?;
-    result.set_item("events", events)?;
+    result.set_item("events", events(py, &run.events)?)?;
     result.set_item("wall_time", run.wall_time)?;
     Ok(result)
+}
+
+fn events<'py>(py: Python<'py>, events: &[Event]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let column = |value: fn(&Event) -> f64| {
+        events
+            .iter()
+            .map(value)
+            .collect::<Vec<_>>()
+            .into_pyarray(py)
+    };
+    let whole = |value: fn(&Event) -> i64| {
+        events
+            .iter()
+            .map(value)
+            .collect::<Vec<_>>()
+            .into_pyarray(py)
+    };
+    let kinds: Vec<&str> = events.iter().map(|e| e.kind.name()).collect();
+    let bodies = events
+        .iter()
+        .map(|e| {
+            e.bodies
+                .map_or(Ok(PyTuple::empty(py)), |pair| PyTuple::new(py, pair))
+        })
+        .collect::<PyResult<Vec<_>>>()?;
+    columns.set_item("kind", kinds)?;
+    columns.set_item("start", column(|e| e.start))?;
+    columns.set_item("end", column(|e| e.end))?;
+    columns.set_item("lane", whole(|_| 0))?;
+    columns.set_item("edge", whole(|e| i64::from(e.edge)))?;
+    columns.set_item("bodies", bodies)?;
+    columns.set_item("depth", column(|e| e.depth))?;
+    columns.set_item("root_depth", column(|e| e.root_depth))?;
+    columns.set_item("force", column(|e| e.force))?;
+    Ok(columns)
+}
+
+/// What of the ground is inside the track.
+pub(crate) fn intrusions<'py>(
+    py: Python<'py>,
+    found: &[Intrusion],
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let column =
+        |value: fn(&Intrusion) -> f64| found.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
+    let edge: Vec<i64> = found.iter().map(|i| i64::from(i.edge)).collect();
+    let edges = found
+        .iter()
+        .map(|i| PyTuple::new(py, &i.edges))
+        .collect::<PyResult<Vec<_>>>()?;
+    let bodies = found
+        .iter()
+        .map(|i| PyTuple::new(py, i.bodies))
+        .collect::<PyResult<Vec<_>>>()?;
+    columns.set_item("edge", edge.into_pyarray(py))?;
+    columns.set_item("edges", edges)?;
+    columns.set_item("bodies", bodies)?;
+    columns.set_item("depth", column(|i| i.depth))?;
+    columns.set_item("root_depth", column(|i| i.root_depth))?;
+    columns.set_item("area", column(|i| i.area))?;
+    columns.set_item("x", column(|i| i.x))?;
+    columns.set_item("y", column(|i| i.y))?;
+    Ok(columns)
 }
 
 /// A run of a batch that gave no result.
@@ -141,6 +181,13 @@ fn trace(py: Python<'_>, trace: Trace, drives: usize) -> PyResult<Bound<'_, PyDi
     columns.set_item(
         "drive_speeds",
         trace.drive_speeds.into_pyarray(py).reshape([n, drives])?,
+    )?;
+    columns.set_item(
+        "drive_positions",
+        trace
+            .drive_positions
+            .into_pyarray(py)
+            .reshape([n, drives])?,
     )?;
     columns.set_item(
         "drive_forces",
@@ -189,9 +236,13 @@ pub(crate) fn geometry<'py>(
     model: &Model,
     ground: &Ground,
 ) -> PyResult<Bound<'py, PyDict>> {
+    /// Points of one root arc between two grousers.
+    const ARC_POINTS: usize = 12;
+
     let mut circles: Vec<[f64; 3]> = Vec::new();
     let mut belly: Vec<[f64; 2]> = Vec::new();
     let mut hull = false;
+    let gears = PyList::empty(py);
     for part in &model.parts {
         match &part.shape {
             Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
@@ -205,6 +256,20 @@ pub(crate) fn geometry<'py>(
                 circles.push([rear.x, rear.y, *rear_radius]);
                 circles.push([front.x, front.y, *front_radius]);
             }
+            Shape::Gear { center, gear } => {
+                circles.push([center.x, center.y, gear.radius]);
+                let outline: Vec<[f64; 2]> = gear
+                    .outline(ARC_POINTS)
+                    .iter()
+                    .map(|p| [p.x, p.y])
+                    .collect();
+                let drawn = PyDict::new(py);
+                drawn.set_item("center", (center.x, center.y))?;
+                drawn.set_item("radius", gear.radius)?;
+                drawn.set_item("drive", part.drive)?;
+                drawn.set_item("outline", rows(py, &outline))?;
+                gears.append(drawn)?;
+            }
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }
     }
@@ -214,9 +279,33 @@ pub(crate) fn geometry<'py>(
     result.set_item("edges", edges(py, &ground.profile.edges)?)?;
     result.set_item("circles", rows(py, &circles))?;
     result.set_item("hull", hull)?;
+    result.set_item("gears", gears)?;
+    result.set_item("wheels", wheels(py, model)?)?;
     result.set_item("belly", rows(py, &belly))?;
     result.set_item("goal", ground.goal_of(scenario))?;
     Ok(result)
+}
+
+/// Wheels of both sides together, as an engine of bodies and joints would hold them.
+fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
+    let (_, wheels) = model.bodies();
+    let columns = PyDict::new(py);
+    let column = |value: fn(&WheelBody) -> f64| {
+        wheels
+            .iter()
+            .map(value)
+            .collect::<Vec<_>>()
+            .into_pyarray(py)
+    };
+    let body: Vec<u64> = wheels.iter().map(|w| w.part as u64).collect();
+    columns.set_item("body", body.into_pyarray(py))?;
+    columns.set_item("x", column(|w| w.center.x))?;
+    columns.set_item("y", column(|w| w.center.y))?;
+    columns.set_item("radius", column(|w| w.radius))?;
+    columns.set_item("area", column(|w| w.area))?;
+    columns.set_item("mass", column(|w| w.mass))?;
+    columns.set_item("moment_of_inertia", column(|w| w.moment_of_inertia))?;
+    Ok(columns)
 }
 
 fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> Bound<'py, PyArray2<f64>> {

@@ -36,12 +36,13 @@ mod _core {
     /// Ground and robot of a scenario as arrays for drawing.
     #[pyfunction]
     fn geometry<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (scenario, ground) = errors::guarded(|| {
+        let (scenario, model, ground) = errors::guarded(|| {
             let scenario = Scenario::from_json(text)?;
+            let model = Model::new(&scenario.robot)?;
             let ground = crawler2d_core::Ground::new(&scenario.terrain)?;
-            Ok((scenario, ground))
+            Ok((scenario, model, ground))
         })?;
-        convert::geometry(py, &scenario, &Model::new(&scenario.robot), &ground)
+        convert::geometry(py, &scenario, &model, &ground)
     }
 
     /// One run.

@@ -90,6 +90,12 @@ impl Simulation {
         Ok(state)
     }
 
+    /// What of the ground is inside the envelope of the track now.
+    fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
+        convert::intrusions(py, &found)
+    }
+
     /// [s] Simulated time.
     #[getter]
     fn time(&self, py: Python<'_>) -> PyResult<f64> {

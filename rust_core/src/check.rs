@@ -42,7 +42,7 @@ impl Scenario {
             return Err(ScenarioError::new("drive.speed", self.drive.speed, rule));
         }
         // A surface that turns further than this between two collision checks rolls over corners unseen.
-        let turn = limit * self.solver.time_step / outline::smallest_radius(&self.robot);
+        let turn = limit * self.solver.time_step / outline::smallest_radius(&self.robot)?;
         if turn > 0.7 {
             let rule = format!(
                 "must keep max_speed x time_step / radius <= 0.7 rad a step, here {turn:.3}"

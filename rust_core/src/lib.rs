@@ -15,32 +15,39 @@
 //! Frame: x forward, y up, angles counter-clockwise, SI units. A speed above 0 drives towards +x.
 
 mod batch;
+mod bodies;
 mod check;
 mod contact;
 mod drive;
 mod dynamics;
 mod error;
+mod events;
 mod outcome;
 mod outline;
 mod reading;
 mod robot;
 mod run;
 mod scenario;
+mod shaking;
 mod simulation;
 mod terrain;
 mod trace;
 mod track;
 
 pub use batch::{Progress, simulate_many};
+pub use bodies::{ChassisBody, WheelBody};
+pub use contact::Intrusion;
 pub use error::{Error, ScenarioError, SimulationError};
-pub use outcome::{Event, Outcome};
+pub use events::{Event, EventKind};
+pub use outcome::Outcome;
+pub use outline::Gear;
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Part, Shape};
 pub use run::{Metrics, Run, simulate};
 pub use scenario::{
-    BeltTrack, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack, LineOfWheels,
-    MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria, Solver, Start, Terrain, TorqueSharing,
-    Track, TrackOutline, Wheel,
+    BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack,
+    GearWheel, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria,
+    Solver, Start, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use simulation::Simulation;
 pub use terrain::{Edge, Ground, Profile};

@@ -3,9 +3,14 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use crate::contact::LoadedContact;
+use rapier2d_f64::math::Pose;
+
+use crate::contact::{LoadedContact, TrackEnvelope};
+use crate::events::{Event, IntrusionWatch};
 use crate::reading::Reading;
+use crate::robot::{Model, Shape};
 use crate::scenario::{Scenario, SeizureCriteria};
+use crate::shaking::Shaking;
 use crate::terrain::{Ground, Profile};
 
 /// How a run ended.
@@ -42,15 +47,6 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// A stop: a span without progress.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event {
-    /// [s] When progress ended.
-    pub start: f64,
-    /// [s] When it came back, or the end of the run.
-    pub end: f64,
-}
-
 /// [s] Time between two looks at the progress; far below any stop window.
 const LOOK: f64 = 0.01;
 
@@ -71,7 +67,11 @@ pub(crate) struct Monitor {
     commanded: f64,
     last_time: f64,
     stop_since: Option<f64>,
-    events: Vec<Event>,
+    stops: Vec<Event>,
+    envelope: TrackEnvelope,
+    intrusions: IntrusionWatch,
+    /// A turning grouser changes what is there although the pose does not.
+    has_grousers: bool,
     anchor: Option<Anchor>,
     goal_since: Option<f64>,
     certain: Option<Outcome>,
@@ -85,6 +85,10 @@ pub(crate) struct Monitor {
     pub min_angle: f64,
     /// [J] Work of the motors so far.
     pub drive_work: f64,
+    /// [m] How far the chassis frame has moved along its own axis so far.
+    pub path_length: f64,
+    /// How much the chassis shook so far.
+    pub shaking: Shaking,
 }
 
 /// Progress at one instant.
@@ -106,7 +110,7 @@ struct Anchor {
 }
 
 impl Monitor {
-    pub(crate) fn new(scenario: &Scenario, ground: &Ground) -> Self {
+    pub(crate) fn new(scenario: &Scenario, ground: &Ground, model: &Model) -> Self {
         let outline = &scenario.robot.outline;
         Self {
             criteria: scenario.criteria.clone(),
@@ -123,7 +127,13 @@ impl Monitor {
             commanded: 0.0,
             last_time: 0.0,
             stop_since: None,
-            events: Vec::new(),
+            stops: Vec::new(),
+            envelope: TrackEnvelope::new(&model.parts),
+            intrusions: IntrusionWatch::default(),
+            has_grousers: model
+                .parts
+                .iter()
+                .any(|part| matches!(part.shape, Shape::Gear { .. })),
             anchor: None,
             goal_since: None,
             certain: None,
@@ -132,6 +142,8 @@ impl Monitor {
             max_angle: f64::NEG_INFINITY,
             min_angle: f64::INFINITY,
             drive_work: 0.0,
+            path_length: 0.0,
+            shaking: Shaking::default(),
         }
     }
 
@@ -146,6 +158,7 @@ impl Monitor {
         let dt = now.time - self.last_time;
         self.last_time = now.time;
         self.drive_work += work_rate * dt;
+        self.path_length += now.forward_speed() * dt;
         self.max_angle = self.max_angle.max(now.chassis_angle);
         self.min_angle = self.min_angle.min(now.chassis_angle);
         for l in loaded {
@@ -160,6 +173,8 @@ impl Monitor {
         }
         if now.time >= self.looks as f64 * LOOK {
             self.looks += 1;
+            self.shaking.look(now);
+            self.look_inside(now, loaded);
             self.look(now, command, loaded);
         }
     }
@@ -191,6 +206,25 @@ impl Monitor {
         None
     }
 
+    /// Follows what is inside the track.
+    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact]) {
+        let pose = Pose::new(now.position, now.chassis_angle);
+        let (profile, smallest) = (&self.profile, self.criteria.intrusion_depth);
+        let inside = if self.envelope.edge_depth(profile, pose) > smallest {
+            self.envelope.intrusions(profile, pose)
+        } else {
+            Vec::new()
+        };
+        let with_force = inside
+            .into_iter()
+            .filter(|i| i.edge >= 0 && i.depth > smallest)
+            .map(|i| {
+                let force = i.force(profile, loaded);
+                (i, force)
+            });
+        self.intrusions.look(now.time, with_force);
+    }
+
     /// Compares the progress with that of one window ago.
     fn look(&mut self, now: &Reading, command: f64, loaded: &[LoadedContact]) {
         let angle = self.best_angle * 2.0 * self.half_length;
@@ -213,15 +247,15 @@ impl Monitor {
         match (stopped, self.stop_since) {
             (true, None) => self.stop_since = Some(now.time - window),
             (false, Some(start)) => {
-                self.events.push(Event {
-                    start,
-                    end: now.time,
-                });
+                let inside = self.intrusions.most_loaded();
+                self.stops.push(Event::stop(start, now.time, inside));
                 self.stop_since = None;
             }
             _ => {}
         }
-        self.watch_stationary(now, window, loaded);
+        if !self.has_grousers {
+            self.watch_stationary(now, window, loaded);
+        }
     }
 
     /// [s] Time without progress that is a stop.
@@ -286,9 +320,22 @@ impl Monitor {
         })
     }
 
-    /// Stops so far; one that lasts ends at `now`.
+    /// Stops and intrusions so far, in order of their beginning; those that last end at `now`.
     pub(crate) fn events(&self, now: f64) -> Vec<Event> {
-        let open = self.stop_since.map(|start| Event { start, end: now });
-        self.events.iter().copied().chain(open).collect()
+        let inside = self.intrusions.most_loaded();
+        let open = self.stop_since.map(|start| Event::stop(start, now, inside));
+        let stops = self.stops.iter().cloned().chain(open);
+        let mut events: Vec<Event> = stops.chain(self.intrusions.events().cloned()).collect();
+        events.sort_by(|a, b| a.start.total_cmp(&b.start));
+        events
+    }
+
+    /// The most loaded of what is inside the track.
+    pub(crate) fn intrusion(&self) -> Option<&Event> {
+        self.intrusions.most_loaded()
+    }
+
+    pub(crate) fn envelope(&self) -> &TrackEnvelope {
+        &self.envelope
     }
 }

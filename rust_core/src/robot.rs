@@ -3,7 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
-use crate::outline::{self, Disc};
+use crate::outline::{self, Disc, Gear};
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::{Ground, Profile};
 use crate::track;
@@ -19,13 +19,15 @@ pub struct Model {
     pub moment_of_inertia: f64,
     /// What meets the ground; the belly, if any, is the last.
     pub parts: Vec<Part>,
-    /// Number of drives.
+    /// Number of drives, the driven ones first.
     pub drives: usize,
+    /// Number of drives with a motor; the others turn freely.
+    pub motors: usize,
     /// [kg] Mass that moves at the surface speed of each drive.
     pub drive_mass: f64,
     /// [m] Radius that joins surface speed and spin of a drive.
     pub drive_radius: f64,
-    /// [N] Largest traction of each drive.
+    /// [N] Largest traction of each motor.
     pub drive_force: f64,
     /// The drive pushes the chassis along its axis, whatever touches the ground.
     pub pushes_chassis: bool,
@@ -78,6 +80,13 @@ pub enum Shape {
         /// [m] Radius of the front disc.
         front_radius: f64,
     },
+    /// A wheel with grousers that turns with its drive.
+    Gear {
+        /// [m] Centre.
+        center: Vector,
+        /// Its outline.
+        gear: Gear,
+    },
     /// A convex polygon, counter-clockwise.
     Polygon {
         /// [m] Corners.
@@ -88,8 +97,11 @@ pub enum Shape {
 impl Model {
     /// The model of a robot: mass, centre of mass and moments of inertia are the built robot's,
     /// whatever the track model.
-    pub fn new(robot: &Robot) -> Self {
-        let track = track::build(robot);
+    ///
+    /// # Errors
+    /// Wheels that do not fit the robot.
+    pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
+        let track = track::build(robot)?;
         let mut parts = track.parts;
         if let Some(belly) = &robot.belly {
             let corners = belly.iter().map(|p| Vector::new(p[0], p[1])).collect();
@@ -103,79 +115,139 @@ impl Model {
         }
         let drives = track.drives as f64;
         let radius = robot.outline.rear_radius;
-        Self {
+        Ok(Self {
             mass: robot.mass,
             center_of_mass: Vector::from(robot.center_of_mass),
             moment_of_inertia: robot.moment_of_inertia - robot.track_mass * radius * radius,
             parts,
             drives: track.drives,
+            motors: track.motors,
             drive_mass: robot.track_mass / drives,
             drive_radius: radius,
-            drive_force: robot.drivetrain.max_force(&robot.outline) / drives,
+            drive_force: robot.drivetrain.max_force(&robot.outline) / track.motors as f64,
             pushes_chassis: track.pushes_chassis,
-        }
+        })
+    }
+
+    /// [kg m^2] Moment of inertia of the chassis with one drive locked to it.
+    pub(crate) fn locked_inertia(&self) -> f64 {
+        self.moment_of_inertia + self.drive_mass * self.drive_radius * self.drive_radius
     }
 
     /// [m] Farthest point of any part from the centre of mass.
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
-            Shape::Disc { center, radius } => from_center(center) + radius,
-            Shape::Hull {
-                rear,
-                rear_radius,
-                front,
-                front_radius,
-            } => (from_center(rear) + rear_radius).max(from_center(front) + front_radius),
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
+            _ => part
+                .discs()
+                .map(|(tip, _)| from_center(&tip.center) + tip.radius)
+                .fold(0.0, f64::max),
         };
         self.parts.iter().map(of_part).fold(0.0, f64::max)
     }
 }
 
-/// Position of the chassis frame at time 0: on the ground, `start.approach` before the first edge.
-pub(crate) fn start_pose(scenario: &Scenario, ground: &Ground) -> Result<Vector, ScenarioError> {
-    let model = Model::new(&scenario.robot);
-    let (sine, cosine) = libm::sincos(scenario.start.angle);
-    let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
-    let mut discs: Vec<Disc> = outline::end_discs(&scenario.robot.outline).to_vec();
-    let mut segments: Vec<[Vector; 2]> = Vec::new();
-    let outline_discs = discs.len();
-    for part in &model.parts {
-        match &part.shape {
-            Shape::Disc { center, radius } => discs.push(Disc {
-                center: *center,
-                radius: *radius,
-            }),
+impl Part {
+    /// Discs whose hull it fills: circumscribed and root circle of each; none for a polygon.
+    pub(crate) fn discs(&self) -> impl Iterator<Item = (Disc, Disc)> {
+        let round = |center, radius| {
+            let disc = Disc { center, radius };
+            (disc, disc)
+        };
+        let discs = match &self.shape {
+            Shape::Disc { center, radius } => [Some(round(*center, *radius)), None],
             Shape::Hull {
                 rear,
                 rear_radius,
                 front,
                 front_radius,
-            } => {
-                let rear = Disc {
-                    center: turned(*rear),
-                    radius: *rear_radius,
-                };
-                let front = Disc {
-                    center: turned(*front),
-                    radius: *front_radius,
-                };
-                segments.push(outline::lower_tangent(rear, front));
-                let ends = outline::end_discs(&scenario.robot.outline);
-                discs.extend(ends);
+            } => [
+                Some(round(*rear, *rear_radius)),
+                Some(round(*front, *front_radius)),
+            ],
+            Shape::Gear { center, gear } => {
+                let (tip, _) = round(*center, gear.radius);
+                let (root, _) = round(*center, gear.root_radius);
+                [Some((tip, root)), None]
+            }
+            Shape::Polygon { .. } => [None, None],
+        };
+        discs.into_iter().flatten()
+    }
+
+    /// A disc round it: centre and radius [m].
+    pub(crate) fn bound(&self) -> (Vector, f64) {
+        let corners: Vec<Disc> = match &self.shape {
+            Shape::Polygon { corners } => corners
+                .iter()
+                .map(|c| Disc {
+                    center: *c,
+                    radius: 0.0,
+                })
+                .collect(),
+            _ => self.discs().map(|(tip, _)| tip).collect(),
+        };
+        let sum: Vector = corners.iter().map(|d| d.center).sum();
+        let middle = sum / corners.len() as f64;
+        let reach = |d: &Disc| (d.center - middle).length() + d.radius;
+        (middle, corners.iter().map(reach).fold(0.0, f64::max))
+    }
+
+    /// Velocity of the surface over the chassis where the outward normal of the ground is `normal`,
+    /// for a surface speed of 1; `spoke` leads from the centre of a turning wheel to that place.
+    pub(crate) fn surface_motion(&self, normal: Vector, spoke: Vector) -> Vector {
+        match &self.shape {
+            _ if self.drive.is_none() => Vector::ZERO,
+            // Turning does not change the shape: the surface moves along itself.
+            Shape::Disc { .. } | Shape::Hull { .. } | Shape::Polygon { .. } => {
+                Vector::new(-normal.y, normal.x)
+            }
+            Shape::Gear { gear, .. } => Vector::new(spoke.y, -spoke.x) / gear.radius,
+        }
+    }
+}
+
+/// Position of the chassis frame at time 0: on the ground, `start.approach` before the first edge.
+pub(crate) fn start_pose(scenario: &Scenario, ground: &Ground) -> Result<Vector, ScenarioError> {
+    let model = Model::new(&scenario.robot)?;
+    let (sine, cosine) = libm::sincos(scenario.start.angle);
+    let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+    let turned_disc = |d: Disc| Disc {
+        center: turned(d.center),
+        ..d
+    };
+    // What touches the ground: discs, and segments between points.
+    let mut discs: Vec<Disc> = Vec::new();
+    let mut segments: Vec<[Vector; 2]> = Vec::new();
+    for part in &model.parts {
+        discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
+        match &part.shape {
+            Shape::Disc { .. } => {}
+            Shape::Hull { .. } => {
+                if let [rear, front] = discs[discs.len() - 2..] {
+                    segments.push(outline::lower_tangent(rear, front));
+                }
+            }
+            Shape::Gear { center, gear } => {
+                let start = -scenario.start.track_phase / gear.radius;
+                for direction in gear.directions() {
+                    let corners = gear.corners(direction + start);
+                    segments.extend(closed(&corners.map(|c| turned(*center + c))));
+                }
             }
             Shape::Polygon { corners } => {
-                let n = corners.len();
-                segments.extend((0..n).map(|i| [turned(corners[i]), turned(corners[(i + 1) % n])]));
+                let corners: Vec<Vector> = corners.iter().map(|c| turned(*c)).collect();
+                segments.extend(closed(&corners));
             }
         }
     }
-    for disc in &mut discs {
-        disc.center = turned(disc.center);
-    }
-    let of_discs = discs
-        .iter()
+    // The built outline sets where the robot begins, too, although it need not touch the ground.
+    let outline = outline::end_discs(&scenario.robot.outline).into_iter();
+    let tips = model.parts.iter().flat_map(Part::discs).map(|(tip, _)| tip);
+    let of_discs = outline
+        .chain(tips)
+        .map(turned_disc)
         .map(|d| (d.center.x - d.radius, d.center.x + d.radius));
     let of_segments = segments.iter().flatten().map(|p| (p.x, p.x));
     let (rear, front) = of_discs
@@ -197,11 +269,16 @@ pub(crate) fn start_pose(scenario: &Scenario, ground: &Ground) -> Result<Vector,
             rule,
         ));
     }
-    // The built outline only sets where the robot begins; what touches the ground are the parts.
     Ok(Vector::new(
         x,
-        lowest_height(&ground.profile, x, &discs[outline_discs..], &segments),
+        lowest_height(&ground.profile, x, &discs, &segments),
     ))
+}
+
+/// The sides of a polygon.
+fn closed(corners: &[Vector]) -> impl Iterator<Item = [Vector; 2]> {
+    let n = corners.len();
+    (0..n).map(move |i| [corners[i], corners[(i + 1) % n]])
 }
 
 /// [m] Height of the chassis frame at which the shapes, placed at `x`, only touch the ground.

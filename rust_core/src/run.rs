@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::Error;
-use crate::outcome::{Event, Outcome};
+use crate::events::{Event, EventKind};
+use crate::outcome::Outcome;
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 use crate::terrain::Edge;
@@ -23,7 +24,7 @@ pub struct Run {
     pub contacts: ContactTable,
     /// Corners of the ground.
     pub edges: Vec<Edge>,
-    /// Stops.
+    /// Stops and intrusions.
     pub events: Vec<Event>,
     /// Number of drives.
     pub drives: usize,
@@ -46,8 +47,10 @@ pub struct Metrics {
     pub final_angle: f64,
     /// [m] Final x less that of the start.
     pub distance: f64,
-    /// [m] How far the track surface has run.
+    /// [m] How far the track surface has run: what odometry with the circumscribed radius reads.
     pub track_distance: f64,
+    /// [m] How far the chassis frame has moved along its own axis.
+    pub path_length: f64,
     /// [rad] Largest chassis angle.
     pub max_angle: f64,
     /// [rad] Smallest chassis angle.
@@ -58,11 +61,22 @@ pub struct Metrics {
     pub drive_work: f64,
     /// [s] Time spent in stops.
     pub stopped_time: f64,
+    /// [m/s^2] Root mean square of the vertical acceleration, averaged over 10 ms.
+    pub vertical_acceleration: f64,
+    /// [rad/s] Root mean square of the rate of the chassis angle.
+    pub angular_velocity: f64,
+    /// [m] Depth of the most loaded intrusion at the end of the run, below the circumscribed circles;
+    /// 0 if there is none.
+    pub intrusion_depth: f64,
+    /// [m] The same below the root circles.
+    pub intrusion_root_depth: f64,
+    /// [N] Its mean normal force.
+    pub intrusion_force: f64,
 }
 
 impl Metrics {
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 12] {
+    pub fn entries(&self) -> [(&'static str, f64); 18] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -71,11 +85,17 @@ impl Metrics {
             ("final_angle", self.final_angle),
             ("distance", self.distance),
             ("track_distance", self.track_distance),
+            ("path_length", self.path_length),
             ("max_angle", self.max_angle),
             ("min_angle", self.min_angle),
             ("max_penetration", self.max_penetration),
             ("drive_work", self.drive_work),
             ("stopped_time", self.stopped_time),
+            ("vertical_acceleration", self.vertical_acceleration),
+            ("angular_velocity", self.angular_velocity),
+            ("intrusion_depth", self.intrusion_depth),
+            ("intrusion_root_depth", self.intrusion_root_depth),
+            ("intrusion_force", self.intrusion_force),
         ]
     }
 }
@@ -119,6 +139,7 @@ pub(crate) fn simulate_until(
     let end = simulation.reading();
     let events = simulation.events();
     let monitor = simulation.monitor();
+    let inside = monitor.intrusion();
     let metrics = Metrics {
         time: end.time,
         time_to_clear: monitor.time_to_clear,
@@ -127,11 +148,20 @@ pub(crate) fn simulate_until(
         final_angle: end.chassis_angle,
         distance: end.position.x - start.position.x,
         track_distance: end.track_position - start.track_position,
+        path_length: monitor.path_length,
         max_angle: monitor.max_angle.max(start.chassis_angle),
         min_angle: monitor.min_angle.min(start.chassis_angle),
         max_penetration: monitor.max_penetration,
         drive_work: monitor.drive_work,
-        stopped_time: events.iter().fold(0.0, |sum, e| sum + e.end - e.start),
+        stopped_time: events
+            .iter()
+            .filter(|e| e.kind == EventKind::Stop)
+            .fold(0.0, |sum, e| sum + e.end - e.start),
+        vertical_acceleration: monitor.shaking.vertical_acceleration(),
+        angular_velocity: monitor.shaking.angular_velocity(),
+        intrusion_depth: inside.map_or(0.0, |e| e.depth),
+        intrusion_root_depth: inside.map_or(0.0, |e| e.root_depth),
+        intrusion_force: inside.map_or(0.0, |e| e.force),
     };
     Ok(Run {
         outcome: simulation.outcome_now(),

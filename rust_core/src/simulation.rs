@@ -1,10 +1,11 @@
 //! One robot on one ground, step by step.
 
-use crate::contact::{Contact, LoadedContact, ReferenceContact};
+use crate::contact::{Contact, Intrusion, LoadedContact, ReferenceContact};
 use crate::drive;
 use crate::dynamics::{DriveState, Dynamics, State};
 use crate::error::{Error, SimulationError};
-use crate::outcome::{Event, Monitor, Outcome};
+use crate::events::Event;
+use crate::outcome::{Monitor, Outcome};
 use crate::reading::Reading;
 use crate::robot::{self, BodyKind, Model};
 use crate::scenario::Scenario;
@@ -22,6 +23,8 @@ pub struct Simulation {
     command: f64,
     set_point: f64,
     contacts: Vec<Contact>,
+    /// [m] Where the drives are when contacts are looked for.
+    drives_then: Vec<f64>,
     /// [m] Farthest point of the robot from its centre of mass.
     reach: f64,
 }
@@ -42,7 +45,7 @@ impl Simulation {
     /// [`Error::Scenario`] if the robot does not fit on it.
     pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
         let position = robot::start_pose(scenario, &ground)?;
-        let model = Model::new(&scenario.robot);
+        let model = Model::new(&scenario.robot)?;
         let contact = ReferenceContact::new(&model.parts, &ground.profile);
         let state = State::at_rest(
             &model,
@@ -51,7 +54,7 @@ impl Simulation {
             scenario.start.track_phase,
         );
         let reach = model.reach();
-        let monitor = Monitor::new(scenario, &ground);
+        let monitor = Monitor::new(scenario, &ground, &model);
         let dynamics = Dynamics::new(
             model,
             ground.profile.friction,
@@ -69,6 +72,7 @@ impl Simulation {
             step: 0,
             set_point: 0.0,
             contacts: Vec::new(),
+            drives_then: Vec::new(),
             reach,
         })
     }
@@ -101,10 +105,13 @@ impl Simulation {
             .max(2.0 * speed * self.time_step());
         // In the middle of the step: normals that lag behind by half a step would be wrong by as
         // much as a wheel turns round an edge meanwhile.
-        let middle = self
-            .state
-            .pose_after(0.5 * self.time_step(), self.dynamics.model());
-        self.contact.find(middle, prediction, &mut self.contacts);
+        let (half, model) = (0.5 * self.time_step(), self.dynamics.model());
+        let middle = self.state.pose_after(half, model);
+        self.drives_then.clear();
+        self.drives_then
+            .extend(self.state.drive_positions_after(half, model));
+        self.contact
+            .find(middle, &self.drives_then, prediction, &mut self.contacts);
     }
 
     fn advance(&mut self) -> Result<(), SimulationError> {
@@ -144,7 +151,9 @@ impl Simulation {
     /// The state of this instant.
     pub fn reading(&self) -> Reading {
         let pose = self.state.pose(self.dynamics.model());
-        let drives = self.drives() as f64;
+        let model = self.dynamics.model();
+        let driven = 0..model.motors;
+        let motors = model.motors as f64;
         Reading {
             time: self.time(),
             position: pose.translation,
@@ -152,8 +161,8 @@ impl Simulation {
             chassis_angle: self.state.angle,
             angular_velocity: self.state.angular_velocity,
             commanded_speed: self.set_point,
-            track_speed: (0..self.drives()).map(|k| self.drive_speed(k)).sum::<f64>() / drives,
-            track_position: self.state.drives.iter().map(|d| d.position).sum::<f64>() / drives,
+            track_speed: driven.clone().map(|k| self.drive_speed(k)).sum::<f64>() / motors,
+            track_position: driven.map(|k| self.state.drives[k].position).sum::<f64>() / motors,
         }
     }
 
@@ -192,7 +201,14 @@ impl Simulation {
         self.monitor.now()
     }
 
-    /// Stops so far.
+    /// What of the ground is inside the envelope of the track now, from the left.
+    pub fn intrusions(&self) -> Vec<Intrusion> {
+        let pose = self.state.pose(self.dynamics.model());
+        let envelope = self.monitor.envelope();
+        envelope.intrusions(&self.ground.profile, pose)
+    }
+
+    /// Stops and intrusions so far.
     pub fn events(&self) -> Vec<Event> {
         self.monitor.events(self.time())
     }

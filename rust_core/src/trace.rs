@@ -58,6 +58,8 @@ pub struct Trace {
     pub drive_force: Vec<f64>,
     /// [m/s] Surface speed of each drive.
     pub drive_speeds: Vec<f64>,
+    /// [m] How far the surface of each drive has run.
+    pub drive_positions: Vec<f64>,
     /// [N] Force of each motor, mean over the interval.
     pub drive_forces: Vec<f64>,
 }
@@ -194,6 +196,8 @@ impl Recorder {
         t.drive_force.push(self.forces.iter().sum::<f64>() / steps);
         for (k, force) in self.forces.iter_mut().enumerate() {
             t.drive_speeds.push(simulation.drive_speed(k));
+            t.drive_positions
+                .push(simulation.drive_states()[k].position);
             t.drive_forces.push(*force / steps);
             *force = 0.0;
         }

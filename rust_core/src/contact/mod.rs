@@ -1,10 +1,13 @@
 //! Contacts between the robot's parts and the ground.
 
+mod intrusion;
 mod reading;
 mod reference;
 
 use rapier2d_f64::math::Vector;
 
+pub use intrusion::Intrusion;
+pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use reading::Readings;
 pub(crate) use reference::ReferenceContact;
 

@@ -1,14 +1,14 @@
-//! The reference contact: the engine's broad and narrow phase on one oriented polyline a lane.
+//! The reference contact: parry's own queries on one oriented polyline a lane.
 //!
 //! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
-//! kept from step to step but the engine's own tracking, so a contact is always of this pose.
+//! kept from step to step, so a contact is always of this pose.
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
-use rapier2d_f64::prelude::{
-    BroadPhaseBvh, ColliderBuilder, ColliderHandle, ColliderSet, CollisionPipeline, Group,
-    InteractionGroups, InteractionTestMode, IslandManager, NarrowPhase, RigidBodyBuilder,
-    RigidBodyHandle, RigidBodySet, SharedShape,
+use rapier2d_f64::parry::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher,
 };
+use rapier2d_f64::parry::shape::{Polyline, PolylineFlags};
+use rapier2d_f64::prelude::SharedShape;
 
 use super::{Contact, without_redundant};
 use crate::robot::{Part, Shape};
@@ -19,118 +19,117 @@ const AT_VERTEX: f64 = 1e-7;
 /// [rad] Turn of one facet of the larger end of a tapering belt: its chord lies below 1 um deep.
 const FACET_TURN: f64 = 0.01;
 
-/// The engine's collision world of one run.
+/// Shapes of one robot and one ground.
 pub(crate) struct ReferenceContact {
-    bodies: RigidBodySet,
-    colliders: ColliderSet,
-    islands: IslandManager,
-    broad_phase: BroadPhaseBvh,
-    narrow_phase: NarrowPhase,
-    pipeline: CollisionPipeline,
-    chassis: RigidBodyHandle,
-    ground: ColliderHandle,
+    solids: Vec<Solid>,
+    ground: Polyline,
     profile: Profile,
+    manifolds: Vec<ContactManifold<(), ()>>,
+}
+
+/// One convex piece of a part.
+struct Solid {
+    part: usize,
+    shape: SharedShape,
+    /// Place in the frame of the wheel that it turns with, or of the chassis.
+    place: Pose,
+    wheel: Option<Wheel>,
+    /// [m] A disc round the wheel or the piece, in the chassis frame.
+    bound: (Vector, f64),
+}
+
+/// A wheel whose shape turns with its drive.
+#[derive(Clone, Copy)]
+struct Wheel {
+    center: Vector,
+    radius: f64,
+    drive: usize,
+}
+
+impl Solid {
+    /// Place in the chassis frame when the drives have run so far [m].
+    fn at(&self, drives: &[f64]) -> Pose {
+        self.wheel.map_or(self.place, |wheel| {
+            let turned = Rotation::new(-drives[wheel.drive] / wheel.radius);
+            Pose::from_parts(wheel.center, turned) * self.place
+        })
+    }
 }
 
 impl ReferenceContact {
-    /// The world of a robot's parts above a profile.
+    /// The shapes of a robot's parts and of a profile.
     pub(crate) fn new(parts: &[Part], profile: &Profile) -> Self {
-        let (of_robot, of_ground) = (Group::GROUP_1, Group::GROUP_2);
-        let mut bodies = RigidBodySet::new();
-        let mut colliders = ColliderSet::new();
-        let chassis = bodies.insert(RigidBodyBuilder::dynamic().can_sleep(false));
-        for (i, part) in parts.iter().enumerate() {
-            let (shape, position) = engine_shape(&part.shape);
-            let collider = ColliderBuilder::new(shape)
-                .position(position)
-                .density(0.0)
-                .user_data(i as u128)
-                .collision_groups(InteractionGroups::new(
-                    of_robot,
-                    of_ground,
-                    InteractionTestMode::And,
-                ));
-            colliders.insert_with_parent(collider, chassis, &mut bodies);
-        }
         // Outside lies on the right of each segment, so the ground runs from +x to -x.
         let vertices: Vec<Vector> = profile.points.iter().rev().copied().collect();
-        let ground = colliders.insert(
-            ColliderBuilder::oriented_polyline(vertices, None).collision_groups(
-                InteractionGroups::new(of_ground, of_robot, InteractionTestMode::And),
-            ),
-        );
         Self {
-            bodies,
-            colliders,
-            islands: IslandManager::new(),
-            broad_phase: BroadPhaseBvh::new(),
-            narrow_phase: NarrowPhase::new(),
-            pipeline: CollisionPipeline::new(),
-            chassis,
-            ground,
+            solids: parts
+                .iter()
+                .enumerate()
+                .flat_map(|(i, part)| solids_of(i, part))
+                .collect(),
+            ground: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
             profile: profile.clone(),
+            manifolds: Vec::new(),
         }
     }
 
     /// Writes every contact with a gap below `prediction` into `contacts`.
-    pub(crate) fn find(&mut self, pose: Pose, prediction: f64, contacts: &mut Vec<Contact>) {
-        self.bodies[self.chassis].set_position(pose, false);
-        self.pipeline.step(
-            prediction,
-            &mut self.islands,
-            &mut self.broad_phase,
-            &mut self.narrow_phase,
-            &mut self.bodies,
-            &mut self.colliders,
-            &(),
-            &(),
-        );
+    ///
+    /// `drives` holds how far the surface of each drive has run [m].
+    pub(crate) fn find(
+        &mut self,
+        pose: Pose,
+        drives: &[f64],
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
         contacts.clear();
-        for pair in self.narrow_phase.contact_pairs() {
-            let ground_first = pair.collider1 == self.ground;
-            let (part, sign) = if ground_first {
-                (pair.collider2, 1.0)
-            } else {
-                (pair.collider1, -1.0)
-            };
-            let part = self.colliders[part].user_data as usize;
-            let (pose1, pose2) = (
-                self.colliders[pair.collider1].position(),
-                self.colliders[pair.collider2].position(),
-            );
-            for manifold in pair.manifolds() {
-                let subshape = if ground_first {
-                    manifold.subshape1
-                } else {
-                    manifold.subshape2
-                };
-                let facet = self.profile.points.len() - 2 - subshape as usize;
-                let pose1 = manifold
-                    .subshape_pos1()
-                    .map_or(*pose1, |inner| *pose1 * *inner);
-                let pose2 = manifold
-                    .subshape_pos2()
-                    .map_or(*pose2, |inner| *pose2 * *inner);
-                let normal = pose1.transform_vector(manifold.local_n1) * sign;
-                for point in &manifold.points {
-                    let (p1, p2) = (
-                        pose1.transform_point(point.local_p1),
-                        pose2.transform_point(point.local_p2),
-                    );
-                    if point.dist < prediction {
-                        contacts.push(Contact {
-                            part,
-                            facet,
-                            edge: self.edge_at(facet, if ground_first { p1 } else { p2 }),
-                            point: 0.5 * (p1 + p2),
-                            normal,
-                            distance: point.dist,
-                        });
-                    }
-                }
+        for i in 0..self.solids.len() {
+            let solid = &self.solids[i];
+            let (center, radius) = solid.bound;
+            let center = pose.transform_point(center);
+            if self.profile.is_clear_of(center, radius + prediction) {
+                continue;
             }
+            self.find_solid(i, pose * solid.at(drives), prediction, contacts);
         }
         without_redundant(contacts);
+    }
+
+    fn find_solid(
+        &mut self,
+        solid: usize,
+        pose: Pose,
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        let solid = &self.solids[solid];
+        // A manifold that was kept would be reused until the pose changes by a degree.
+        self.manifolds.clear();
+        DefaultQueryDispatcher
+            .contact_manifolds(
+                &pose,
+                &self.ground,
+                &*solid.shape,
+                prediction,
+                &mut self.manifolds,
+                &mut None,
+            )
+            .unwrap_or_else(|e| unreachable!("polylines meet every convex shape: {e}"));
+        for manifold in &self.manifolds {
+            let facet = self.profile.points.len() - 2 - manifold.subshape1 as usize;
+            for point in manifold.points.iter().filter(|p| p.dist < prediction) {
+                let on_solid = pose.transform_point(point.local_p2);
+                contacts.push(Contact {
+                    part: solid.part,
+                    facet,
+                    edge: self.edge_at(facet, point.local_p1),
+                    point: 0.5 * (point.local_p1 + on_solid),
+                    normal: manifold.local_n1,
+                    distance: point.dist,
+                });
+            }
+        }
     }
 
     fn edge_at(&self, facet: usize, point: Vector) -> i32 {
@@ -147,24 +146,50 @@ impl ReferenceContact {
     }
 }
 
-/// The engine's shape and its place in the chassis frame.
-fn engine_shape(shape: &Shape) -> (SharedShape, Pose) {
-    match shape {
+/// The convex pieces of a part.
+fn solids_of(index: usize, part: &Part) -> Vec<Solid> {
+    let bound = part.bound();
+    let solid = |shape, place, wheel| Solid {
+        part: index,
+        shape,
+        place,
+        wheel,
+        bound,
+    };
+    let on_chassis = |shape, place| vec![solid(shape, place, None)];
+    match &part.shape {
         Shape::Disc { center, radius } => {
-            (SharedShape::ball(*radius), Pose::from_translation(*center))
+            on_chassis(SharedShape::ball(*radius), Pose::from_translation(*center))
         }
         Shape::Hull {
             rear,
             rear_radius,
             front,
             front_radius,
-        } => (
+        } => on_chassis(
             hull(*rear, *rear_radius, *front, *front_radius),
             Pose::identity(),
         ),
+        Shape::Gear { center, gear } => {
+            let place = Pose::from_translation(*center);
+            let root = solid(SharedShape::ball(gear.root_radius), place, None);
+            let wheel = part.drive.map(|drive| Wheel {
+                center: *center,
+                radius: gear.radius,
+                drive,
+            });
+            let (reach, half) = (gear.reach(), 0.5 * gear.thickness);
+            let grousers = gear.directions().map(|direction| {
+                let turned = Rotation::new(direction);
+                let middle = turned * Vector::new(0.5 * reach, 0.0);
+                let shape = SharedShape::cuboid(0.5 * reach, half);
+                solid(shape, Pose::from_parts(middle, turned), wheel)
+            });
+            std::iter::once(root).chain(grousers).collect()
+        }
         Shape::Polygon { corners } => {
             let polygon = SharedShape::convex_polyline(corners.clone());
-            (
+            on_chassis(
                 polygon.expect("the scenario holds a convex polygon"),
                 Pose::identity(),
             )

@@ -36,7 +36,7 @@ impl Dynamics {
         let admittance = if held {
             // The lever at the line of action itself: the locked drive turns with the chassis.
             let lever = lever + m.drive_radius;
-            1.0 / m.mass + lever * lever / self.locked_inertia()
+            1.0 / m.mass + lever * lever / m.locked_inertia()
         } else {
             1.0 / m.mass + lever * lever / m.moment_of_inertia + 1.0 / m.drive_mass
         };
@@ -54,7 +54,9 @@ impl Dynamics {
     /// Friction on such a surface moves the robot with the drive locked to it. Solving both
     /// together makes the sweeps agree about ten times sooner than a free, light drive would.
     pub(super) fn holds(&self, drive: usize, h: f64) -> bool {
-        self.motor_impulses[drive].abs() < self.model.drive_force * h * (1.0 - 1e-12)
+        self.motor_impulses
+            .get(drive)
+            .is_some_and(|impulse| impulse.abs() < self.model.drive_force * h * (1.0 - 1e-12))
     }
 
     pub(super) fn push_motor(&self, state: &mut State, k: usize, impulse: f64) {
@@ -81,11 +83,5 @@ impl Dynamics {
         // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
         let arm = self.model.drive_radius * up - rotation * self.model.center_of_mass;
         (axis, cross(arm, axis))
-    }
-
-    /// [kg m^2] Moment of inertia of the chassis with one drive locked to it.
-    pub(super) fn locked_inertia(&self) -> f64 {
-        let m = &self.model;
-        m.moment_of_inertia + m.drive_mass * m.drive_radius * m.drive_radius
     }
 }

@@ -9,22 +9,6 @@ pub(super) struct Admittance {
     pub cross: f64,
 }
 
-impl Admittance {
-    pub(super) fn new(
-        inverse_mass: f64,
-        inverse_inertia: f64,
-        normal_lever: f64,
-        tangent_lever: f64,
-        of_drive: f64,
-    ) -> Self {
-        Self {
-            normal: inverse_mass + normal_lever * normal_lever * inverse_inertia,
-            tangent: inverse_mass + tangent_lever * tangent_lever * inverse_inertia + of_drive,
-            cross: normal_lever * tangent_lever * inverse_inertia,
-        }
-    }
-}
-
 /// Coefficients of a damped spring integrated implicitly.
 #[derive(Clone, Copy)]
 pub(super) struct Softness {

@@ -7,17 +7,19 @@
 
 mod drives;
 mod law;
+mod row;
 mod state;
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::{Rotation, Vector};
+use rapier2d_f64::math::Vector;
 
 use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
-use law::{Admittance, Softness, coulomb};
+use law::{Softness, coulomb};
+use row::{Direction, Row};
 pub(crate) use state::{DriveState, State};
 
 /// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a substep of
@@ -49,40 +51,9 @@ pub(crate) struct Dynamics {
     loaded: Vec<LoadedContact>,
 }
 
-/// One contact's constraint in one step.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    normal: Vector,
-    tangent: Vector,
-    /// [m] From the centre of mass to the contact at the start of the step.
-    arm_at_start: Vector,
-    normal_lever: f64,
-    tangent_lever: f64,
-    drive: Option<usize>,
-    friction: f64,
-    /// What an impulse does to the velocities of the contact: with the drive free, ...
-    free: Admittance,
-    /// ... and while the motor holds it at its set-point.
-    held: Admittance,
-    normal_impulse: f64,
-    friction_impulse: f64,
-    normal_total: f64,
-    friction_total: f64,
-    /// [m] Gap at the start of the step and now.
-    start_gap: f64,
-    gap: f64,
-}
-
-impl Row {
-    /// [m/s] Speed at which the gap opens.
-    fn opening_speed(&self, state: &State) -> f64 {
-        self.normal.dot(state.velocity) + self.normal_lever * state.angular_velocity
-    }
-}
-
 impl Dynamics {
     pub(crate) fn new(model: Model, friction: f64, gravity: f64, solver: Solver) -> Self {
-        let motor_impulses = vec![0.0; model.drives];
+        let motor_impulses = vec![0.0; model.motors];
         Self {
             model,
             friction,
@@ -143,7 +114,9 @@ impl Dynamics {
             for k in 0..state.drives.len() {
                 state.drives[k].position += state.track_speed(&self.model, k) * h;
             }
-            self.follow(state, start);
+            for row in &mut self.rows {
+                row.follow(state, start);
+            }
             self.solve(state, set_point, h, None);
             self.collect(state, dt);
         }
@@ -161,67 +134,16 @@ impl Dynamics {
 
     /// Turns contacts into rows, each with the impulses of the last step's nearest one.
     fn prepare(&mut self, state: &State, contacts: &[Contact]) {
-        let m = &self.model;
-        let (inverse_mass, inverse_inertia) = (1.0 / m.mass, 1.0 / m.moment_of_inertia);
-        let inverse_drive = 1.0 / m.drive_mass;
-        let inverse_locked_inertia = 1.0 / self.locked_inertia();
+        let half = 0.5 * self.solver.time_step;
+        let middle = state.moved(half);
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
-        let (middle, angle) = state.moved(0.5 * self.solver.time_step);
-        let back = Rotation::new(state.angle - angle);
         self.rows.clear();
         for contact in contacts {
-            let part = &m.parts[contact.part];
-            let tangent = right_of(contact.normal);
-            let arm = contact.point - middle;
-            // The gap was found in the middle of the step; the body point was here at its start.
-            let arm_at_start = back * arm;
-            let approached = contact
-                .normal
-                .dot(middle - state.center + arm - arm_at_start);
-            // A surface that runs on a drive pulls at the drive's own radius from its axle: force at
-            // the contact is force at the axle plus torque on the drive.
-            let reach = if part.drive.is_some() {
-                m.drive_radius
-            } else {
-                0.0
-            };
-            let normal_lever = cross(arm, contact.normal);
-            let tangent_lever = cross(arm + reach * contact.normal, tangent);
             let last = take_nearest(&mut self.loaded, contact);
-            let of_drive = if part.drive.is_some() {
-                inverse_drive
-            } else {
-                0.0
-            };
-            self.rows.push(Row {
-                normal: contact.normal,
-                tangent,
-                normal_lever,
-                tangent_lever,
-                drive: part.drive,
-                friction: self.friction.min(part.friction_limit),
-                free: Admittance::new(
-                    inverse_mass,
-                    inverse_inertia,
-                    normal_lever,
-                    tangent_lever,
-                    of_drive,
-                ),
-                held: Admittance::new(
-                    inverse_mass,
-                    inverse_locked_inertia,
-                    normal_lever,
-                    cross(arm, tangent),
-                    0.0,
-                ),
-                normal_impulse: last.map_or(0.0, |l| l.normal_impulse),
-                friction_impulse: last.map_or(0.0, |l| l.friction_impulse * fading),
-                normal_total: 0.0,
-                friction_total: 0.0,
-                arm_at_start,
-                start_gap: contact.distance - approached,
-                gap: contact.distance - approached,
-            });
+            let mut row = Row::new(contact, last, state, &self.model, (middle, half));
+            row.friction = row.friction.min(self.friction);
+            row.friction_impulse *= fading;
+            self.rows.push(row);
         }
     }
 
@@ -305,7 +227,7 @@ impl Dynamics {
         };
         let compliance = softness.compliance * a.normal;
         let approach = row.opening_speed(state) + bias;
-        let slip = self.slip(state, &row);
+        let slip = row.slip(state);
         // Velocities that the contact would have without its impulses.
         let free_approach =
             approach - a.normal * row.normal_impulse - a.cross * row.friction_impulse;
@@ -323,36 +245,23 @@ impl Dynamics {
         (more_normal.abs() * a.normal).max(more_friction.abs() * a.tangent)
     }
 
-    /// [m/s] Velocity of the robot's surface over the ground along the tangent.
-    fn slip(&self, state: &State, row: &Row) -> f64 {
-        let of_drive = row
-            .drive
-            .map_or(0.0, |k| self.model.drive_radius * state.drives[k].spin);
-        row.tangent.dot(state.velocity) + row.tangent_lever * state.angular_velocity + of_drive
-    }
-
     fn push_normal(&self, state: &mut State, row: &Row, impulse: f64) {
-        state.velocity += row.normal * (impulse / self.model.mass);
-        state.angular_velocity += row.normal_lever * impulse / self.model.moment_of_inertia;
+        self.push_along(state, &row.normal, row.drive, impulse);
     }
 
     fn push_tangent(&self, state: &mut State, row: &Row, impulse: f64) {
-        state.velocity += row.tangent * (impulse / self.model.mass);
-        state.angular_velocity += row.tangent_lever * impulse / self.model.moment_of_inertia;
-        if let Some(k) = row.drive {
-            self.spin_up(state, k, impulse);
-        }
+        self.push_along(state, &row.tangent, row.drive, impulse);
     }
 
-    /// Updates the gaps for the motion since the start of the step.
-    fn follow(&mut self, state: &State, (center, angle): (Vector, f64)) {
-        let moved = state.center - center;
-        let turned = Rotation::new(state.angle - angle);
-        for row in &mut self.rows {
-            row.gap = row.start_gap
-                + row
-                    .normal
-                    .dot(moved + turned * row.arm_at_start - row.arm_at_start);
+    fn push_along(&self, state: &mut State, along: &Direction, drive: Option<usize>, impulse: f64) {
+        state.velocity += along.unit * (impulse / self.model.mass);
+        state.angular_velocity += along.lever * impulse / self.model.moment_of_inertia;
+        if let Some(k) = drive {
+            self.spin_up(
+                state,
+                k,
+                along.drive_lever / self.model.drive_radius * impulse,
+            );
         }
     }
 
@@ -362,7 +271,9 @@ impl Dynamics {
             row.normal_total += row.normal_impulse;
             row.friction_total += row.friction_impulse;
             if let Some(k) = row.drive {
-                state.drives[k].traction += row.friction_impulse / dt;
+                let along = row.normal.drive_lever * row.normal_impulse
+                    + row.tangent.drive_lever * row.friction_impulse;
+                state.drives[k].traction += along / (self.model.drive_radius * dt);
             }
         }
         for (drive, impulse) in state.drives.iter_mut().zip(&self.motor_impulses) {
@@ -384,7 +295,7 @@ impl Dynamics {
                 },
                 normal_force: row.normal_total / dt,
                 friction_force: row.friction_total / dt,
-                surface_speed: self.slip(state, row),
+                surface_speed: row.slip(state),
                 normal_impulse: row.normal_impulse,
                 friction_impulse: row.friction_impulse,
                 carried_over: false,

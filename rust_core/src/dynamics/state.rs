@@ -61,6 +61,19 @@ impl State {
         pose_at(center, angle, model)
     }
 
+    /// [m] How far the surface of each drive has run by then.
+    pub(crate) fn drive_positions_after(
+        &self,
+        time: f64,
+        model: &Model,
+    ) -> impl Iterator<Item = f64> {
+        let speeds = (0..self.drives.len()).map(|k| self.track_speed(model, k));
+        self.drives
+            .iter()
+            .zip(speeds)
+            .map(move |(d, speed)| d.position + speed * time)
+    }
+
     /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
     pub(super) fn moved(&self, time: f64) -> (Vector, f64) {
         (

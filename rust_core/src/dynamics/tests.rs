@@ -14,7 +14,7 @@ fn engineer() -> Scenario {
 fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     let mut scenario = engineer();
     change(&mut scenario);
-    let model = Model::new(&scenario.robot);
+    let model = Model::new(&scenario.robot).expect("the robot can be built");
     let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
     (
         Dynamics::new(model, 0.5, scenario.gravity, scenario.solver),
@@ -125,6 +125,7 @@ fn force_alone_drives_the_chassis_in_the_air() {
         s.robot.track = Track::Force(crate::scenario::ForceTrack {
             support: crate::scenario::ForceSupport::Skids,
             skid_friction: 0.0,
+            wheel_count: 5,
         });
     });
     advance(&mut dynamics, &mut state, 10, 100.0, &[]);

@@ -146,6 +146,18 @@ impl<'a> Fields<'a> {
         }
     }
 
+    pub(crate) fn optional_integer(
+        &mut self,
+        name: &'static str,
+        low: u32,
+        high: u32,
+    ) -> Result<Option<u32>, ScenarioError> {
+        if self.value(name)?.is_null() {
+            return Ok(None);
+        }
+        self.integer(name, low, high).map(Some)
+    }
+
     pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
         let value = self.value(name)?;
         value
@@ -175,32 +187,43 @@ impl<'a> Fields<'a> {
         range: Range,
     ) -> Result<[f64; 2], ScenarioError> {
         let value = self.value(name)?;
-        point(&self.path(name), value, range)
+        row(&self.path(name), value, [("x", range), ("y", range)])
     }
 
-    /// A list of points; `index` in the message is the row, from 0.
+    /// A list of rows of numbers, named for the message; the path of a wrong one has its index, from 0.
+    pub(crate) fn rows<const N: usize>(
+        &mut self,
+        name: &'static str,
+        columns: [(&str, Range); N],
+        most: usize,
+    ) -> Result<Vec<[f64; N]>, ScenarioError> {
+        let value = self.value(name)?;
+        let names = columns.map(|(column, _)| column).join(", ");
+        let Value::Array(rows) = value else {
+            return Err(self.error(name, value, format!("must be a list of [{names}]")));
+        };
+        if rows.len() > most {
+            return Err(self.error(
+                name,
+                format!("{} rows", rows.len()),
+                format!("must have at most {most} rows"),
+            ));
+        }
+        let path = self.path(name);
+        rows.iter()
+            .enumerate()
+            .map(|(i, given)| row(&format!("{path}[{i}]"), given, columns))
+            .collect()
+    }
+
+    /// A list of points.
     pub(crate) fn points(
         &mut self,
         name: &'static str,
         range: Range,
         most: usize,
     ) -> Result<Vec<[f64; 2]>, ScenarioError> {
-        let value = self.value(name)?;
-        let Value::Array(rows) = value else {
-            return Err(self.error(name, value, "must be a list of [x, y] points"));
-        };
-        if rows.len() > most {
-            return Err(self.error(
-                name,
-                format!("{} points", rows.len()),
-                format!("must have at most {most} points"),
-            ));
-        }
-        let path = self.path(name);
-        rows.iter()
-            .enumerate()
-            .map(|(i, row)| point(&format!("{path}[{i}]"), row, range))
-            .collect()
+        self.rows(name, [("x", range), ("y", range)], most)
     }
 
     pub(crate) fn child(&mut self, name: &'static str) -> Result<Fields<'a>, ScenarioError> {
@@ -228,14 +251,25 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn point(path: &str, value: &Value, range: Range) -> Result<[f64; 2], ScenarioError> {
-    match value.as_array().map(Vec::as_slice) {
-        Some([x, y]) => Ok([
-            in_range(&format!("{path}[0]"), x, range)?,
-            in_range(&format!("{path}[1]"), y, range)?,
-        ]),
-        _ => Err(ScenarioError::new(path, value, "must be a point [x, y]")),
+fn row<const N: usize>(
+    path: &str,
+    value: &Value,
+    columns: [(&str, Range); N],
+) -> Result<[f64; N], ScenarioError> {
+    let cells = value.as_array().filter(|cells| cells.len() == N);
+    let Some(cells) = cells else {
+        let names = columns.map(|(column, _)| column).join(", ");
+        return Err(ScenarioError::new(
+            path,
+            value,
+            format!("must be [{names}]"),
+        ));
+    };
+    let mut row = [0.0; N];
+    for (i, (_, range)) in columns.iter().enumerate() {
+        row[i] = in_range(&format!("{path}[{i}]"), &cells[i], *range)?;
     }
+    Ok(row)
 }
 
 fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioError> {

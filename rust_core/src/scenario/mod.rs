@@ -5,6 +5,7 @@ mod robot;
 mod settings;
 mod terrain;
 mod track;
+mod wheel;
 
 use serde::Serialize;
 use serde_json::Value;
@@ -13,7 +14,11 @@ use sha2::{Digest, Sha256};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, Drive, SeizureCriteria, Solver, Start};
 pub use terrain::{MAX_POINTS, Terrain};
-pub use track::{BeltTrack, ForceSupport, ForceTrack, LineOfWheels, Track, Wheel};
+pub use track::{
+    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, HybridWheels, LineOfWheels, Track,
+};
+pub(crate) use wheel::MAX_GROUSERS;
+pub use wheel::{GearWheel, Wheel};
 
 use crate::error::ScenarioError;
 use fields::{Fields, Range};

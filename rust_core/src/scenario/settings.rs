@@ -71,6 +71,8 @@ pub struct SeizureCriteria {
     pub clear_angle: f64,
     /// [rad] Chassis angle at which the robot has tipped over.
     pub tip_over_angle: f64,
+    /// [m] An edge inside the envelope of the track is an intrusion from this depth.
+    pub intrusion_depth: f64,
 }
 
 impl Drive {
@@ -124,6 +126,7 @@ impl SeizureCriteria {
             clear_time: f.number("clear_time", Range::between(0.0, 1e4, "s"))?,
             clear_angle: f.number("clear_angle", Range::above(0.0, 3.15, "rad"))?,
             tip_over_angle: f.number("tip_over_angle", Range::above(0.0, 3.15, "rad"))?,
+            intrusion_depth: f.number("intrusion_depth", Range::above(0.0, 1.0, "m"))?,
         };
         f.finish()?;
         Ok(criteria)

@@ -10,6 +10,7 @@ pub const MAX_POINTS: usize = 200_000;
 
 const FRICTION: Range = Range::between(0.0, 100.0, "");
 const EDGE_RADIUS: Range = Range::between(0.0, 10.0, "m");
+const HEIGHT: Range = Range::above(0.0, 100.0, "m");
 const LENGTH: Range = Range::between(1e-3, 1e4, "m");
 
 /// One terrain.
@@ -43,6 +44,59 @@ pub enum Terrain {
         /// Coulomb friction with the robot.
         friction: f64,
     },
+    /// A parallelepiped on level ground, its front face at x = 0.
+    Barrier {
+        /// [m] Height.
+        height: f64,
+        /// [m] Extent along x.
+        thickness: f64,
+        /// [m] Radius of the convex edges; 0 is sharp.
+        edge_radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
+    /// A triangular prism on level ground, from x = 0.
+    Ridge {
+        /// [m] Height of its edge.
+        height: f64,
+        /// [rad] Angle between its flanks.
+        edge_angle: f64,
+        /// [m] Radius of the convex edges; 0 is sharp.
+        edge_radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
+    /// A trench with vertical walls, from x = 0.
+    Gap {
+        /// [m] Extent along x.
+        width: f64,
+        /// [m] Depth.
+        depth: f64,
+        /// [m] Radius of the convex edges; 0 is sharp.
+        edge_radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
+    /// Steps up, the first face at x = 0, then a level top.
+    Stairs {
+        /// Number of steps.
+        count: u32,
+        /// [m] Height of each.
+        rise: f64,
+        /// [m] Extent of each along x.
+        run: f64,
+        /// [m] Radius of the convex edges; 0 is sharp.
+        edge_radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
+    /// Half a pipe on level ground, from x = 0.
+    HalfRound {
+        /// [m] Radius.
+        radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
     /// A profile of the user's own.
     Points {
         /// [m] Points (x, y) from left to right or right to left; vertical faces are allowed.
@@ -67,14 +121,25 @@ pub enum Terrain {
 
 impl Terrain {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let kind = f.text("kind")?;
-        let terrain = match kind {
+        const KINDS: [&str; 10] = [
+            "flat",
+            "step",
+            "ramp",
+            "barrier",
+            "ridge",
+            "gap",
+            "stairs",
+            "half_round",
+            "points",
+            "lanes",
+        ];
+        let terrain = match f.text("kind")? {
             "flat" => Self::Flat {
                 length: f.number("length", LENGTH)?,
                 friction: f.number("friction", FRICTION)?,
             },
             "step" => Self::Step {
-                height: f.number("height", Range::above(0.0, 100.0, "m"))?,
+                height: f.number("height", HEIGHT)?,
                 edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
                 friction: f.number("friction", FRICTION)?,
             },
@@ -82,6 +147,35 @@ impl Terrain {
                 angle: f.number("angle", Range::between(-1.553_343, 1.553_343, "rad"))?,
                 length: f.number("length", LENGTH)?,
                 edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "barrier" => Self::Barrier {
+                height: f.number("height", HEIGHT)?,
+                thickness: f.number("thickness", LENGTH)?,
+                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "ridge" => Self::Ridge {
+                height: f.number("height", HEIGHT)?,
+                edge_angle: f.number("edge_angle", Range::between(0.01, 3.13, "rad"))?,
+                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "gap" => Self::Gap {
+                width: f.number("width", LENGTH)?,
+                depth: f.number("depth", HEIGHT)?,
+                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "stairs" => Self::Stairs {
+                count: f.integer("count", 1, 1000)?,
+                rise: f.number("rise", HEIGHT)?,
+                run: f.number("run", LENGTH)?,
+                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "half_round" => Self::HalfRound {
+                radius: f.number("radius", Range::between(1e-3, 100.0, "m"))?,
                 friction: f.number("friction", FRICTION)?,
             },
             "points" => Self::Points {
@@ -105,8 +199,7 @@ impl Terrain {
                 }
             }
             other => {
-                let kinds = ["flat", "step", "ramp", "points", "lanes"];
-                return Err(f.error("kind", other, one_of(Some(other), &kinds)));
+                return Err(f.error("kind", other, one_of(Some(other), &KINDS)));
             }
         };
         f.finish()?;

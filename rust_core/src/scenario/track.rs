@@ -4,7 +4,14 @@ use serde::Serialize;
 
 use super::fields::{Fields, Range, one_of};
 use super::robot::{Robot, TorqueSharing};
+use super::wheel::Wheel;
 use crate::error::ScenarioError;
+use crate::outline;
+
+/// Most wheels of one side.
+const MAX_WHEELS: u32 = 200;
+const RADIUS: Range = Range::between(1e-3, 100.0, "m");
+const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
 /// A model of the same built track.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -12,6 +19,10 @@ use crate::error::ScenarioError;
 pub enum Track {
     /// Wheels on the straight line between the end axles.
     Line(LineOfWheels),
+    /// Small wheels all round the outline.
+    Circumferential(CircumferentialWheels),
+    /// Wheels of varying sizes, placed by hand.
+    Hybrid(HybridWheels),
     /// A smooth closed belt whose surface moves along the outline.
     Belt(BeltTrack),
     /// No track at all: the drive pushes the chassis.
@@ -29,12 +40,24 @@ pub struct LineOfWheels {
     pub wheel: Wheel,
 }
 
-/// The shape of a wheel.
+/// Equal wheels inside the outline, each touching it, at equal distances all the way round.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Wheel {
-    /// A disc.
-    Round,
+pub struct CircumferentialWheels {
+    /// Number of wheels a side.
+    pub count: u32,
+    /// [m] Radius of every wheel; none packs them tightly, so that neighbours touch.
+    pub wheel_radius: Option<f64>,
+    /// The wheel itself.
+    pub wheel: Wheel,
+}
+
+/// Wheels of varying sizes at places of their own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HybridWheels {
+    /// [m] Centre (x, y) in the chassis frame and radius of each wheel, in the order of eq. (1).
+    pub placements: Vec<[f64; 3]>,
+    /// The wheel itself.
+    pub wheel: Wheel,
 }
 
 /// A smooth belt; it has no parameters of its own.
@@ -48,6 +71,8 @@ pub struct ForceTrack {
     pub support: ForceSupport,
     /// Friction of the skids; the terrain's own friction caps it.
     pub skid_friction: f64,
+    /// Number of passive wheels a side.
+    pub wheel_count: u32,
 }
 
 /// What carries a robot that is pushed by a force.
@@ -56,23 +81,39 @@ pub struct ForceTrack {
 pub enum ForceSupport {
     /// Skid runners of the outline's shape.
     Skids,
+    /// Round wheels on a line that turn freely, each for itself.
+    Wheels,
 }
 
 impl Track {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        const KINDS: [&str; 3] = ["line", "belt", "force"];
-        let kind = f.text("kind")?;
-        let track = match kind {
+        const KINDS: [&str; 5] = ["line", "circumferential", "hybrid", "belt", "force"];
+        let track = match f.text("kind")? {
             "line" => Self::Line(LineOfWheels {
-                count: f.integer("count", 2, 200)?,
-                wheel_radius: f
-                    .optional_number("wheel_radius", Range::between(1e-3, 100.0, "m"))?,
+                count: f.integer("count", 2, MAX_WHEELS)?,
+                wheel_radius: f.optional_number("wheel_radius", RADIUS)?,
+                wheel: Wheel::read(f.child("wheel")?)?,
+            }),
+            "circumferential" => Self::Circumferential(CircumferentialWheels {
+                count: f.integer("count", 3, MAX_WHEELS)?,
+                wheel_radius: f.optional_number("wheel_radius", RADIUS)?,
+                wheel: Wheel::read(f.child("wheel")?)?,
+            }),
+            "hybrid" => Self::Hybrid(HybridWheels {
+                placements: read_placements(&mut f)?,
                 wheel: Wheel::read(f.child("wheel")?)?,
             }),
             "belt" => Self::Belt(BeltTrack {}),
             "force" => Self::Force(ForceTrack {
-                support: f.choice("support", &[("skids", ForceSupport::Skids)])?,
+                support: f.choice(
+                    "support",
+                    &[
+                        ("skids", ForceSupport::Skids),
+                        ("wheels", ForceSupport::Wheels),
+                    ],
+                )?,
                 skid_friction: f.number("skid_friction", Range::between(0.0, 100.0, ""))?,
+                wheel_count: f.integer("wheel_count", 2, MAX_WHEELS)?,
             }),
             other => return Err(f.error("kind", other, one_of(Some(other), &KINDS))),
         };
@@ -80,29 +121,41 @@ impl Track {
         Ok(track)
     }
 
+    /// The shape of the driven wheels, if the model has any.
+    pub(crate) fn wheel(&self) -> Option<&Wheel> {
+        match self {
+            Self::Line(LineOfWheels { wheel, .. })
+            | Self::Circumferential(CircumferentialWheels { wheel, .. })
+            | Self::Hybrid(HybridWheels { wheel, .. }) => Some(wheel),
+            Self::Belt(_) | Self::Force(_) => None,
+        }
+    }
+
     /// Rules that join the model with the robot.
     pub(super) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
-        if robot.drivetrain.torque_sharing == TorqueSharing::Wheel && !matches!(self, Self::Line(_))
-        {
-            let rule = "must be \"track\" for a model without wheels";
+        if robot.drivetrain.torque_sharing == TorqueSharing::Wheel && self.wheel().is_none() {
+            let rule = "must be \"track\" for a model without driven wheels";
             return Err(ScenarioError::new(
                 "robot.drivetrain.torque_sharing",
                 "wheel",
                 rule,
             ));
         }
+        let discs = outline::wheels(robot)?;
+        if let Some(Wheel::Gear(wheel)) = self.wheel() {
+            for (index, disc) in discs.iter().enumerate() {
+                outline::Gear::new(wheel, &robot.outline, disc.radius, index)?;
+            }
+        }
         Ok(())
     }
 }
 
-impl Wheel {
-    fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let kind = f.text("kind")?;
-        let wheel = match kind {
-            "round" => Self::Round,
-            other => return Err(f.error("kind", other, one_of(Some(other), &["round"]))),
-        };
-        f.finish()?;
-        Ok(wheel)
+fn read_placements(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
+    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", RADIUS)];
+    let placements = f.rows("placements", columns, MAX_WHEELS as usize)?;
+    if placements.is_empty() {
+        return Err(f.error("placements", "[]", "must place at least one wheel"));
     }
+    Ok(placements)
 }

@@ -11,6 +11,7 @@ pub(super) fn build(robot: &Robot) -> TrackModel {
     TrackModel {
         parts: vec![part],
         drives: 1,
+        motors: 1,
         pushes_chassis: false,
     }
 }

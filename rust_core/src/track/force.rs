@@ -1,17 +1,21 @@
 //! Brute-force acceleration: a speed servo that pushes the chassis itself.
 
-use super::{TrackModel, belt};
+use super::{TrackModel, belt, wheels};
+use crate::error::ScenarioError;
 use crate::robot::BodyKind;
 use crate::scenario::{ForceSupport, ForceTrack, Robot};
 
-/// Skids of the outline's shape; the force acts along the chassis at axle height, in the air too.
-pub(super) fn build(robot: &Robot, force: &ForceTrack) -> TrackModel {
+/// The force acts along the chassis at axle height, in the air too; skids or free wheels carry it.
+pub(super) fn build(robot: &Robot, force: &ForceTrack) -> Result<TrackModel, ScenarioError> {
     let parts = match force.support {
         ForceSupport::Skids => vec![belt::hull(robot, BodyKind::Skid, None, force.skid_friction)],
+        ForceSupport::Wheels => wheels::passive(robot, 1)?,
     };
-    TrackModel {
+    let free = parts.iter().filter(|part| part.drive.is_some()).count();
+    Ok(TrackModel {
         parts,
-        drives: 1,
+        drives: 1 + free,
+        motors: 1,
         pushes_chassis: true,
-    }
+    })
 }

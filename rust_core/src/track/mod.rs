@@ -4,24 +4,32 @@ mod belt;
 mod force;
 mod wheels;
 
+use crate::error::ScenarioError;
 use crate::robot::Part;
-use crate::scenario::{Robot, Track};
+use crate::scenario::{CircumferentialWheels, HybridWheels, LineOfWheels, Robot, Track};
 
 /// What a track model adds to the chassis.
 pub(crate) struct TrackModel {
     /// Shapes that meet the ground.
     pub parts: Vec<Part>,
-    /// Number of independent drives; they share mass and force evenly.
+    /// Number of independent drives, the driven ones first; they share the mass evenly.
     pub drives: usize,
+    /// Number of drives with a motor; these share the force evenly.
+    pub motors: usize,
     /// The drive pushes the chassis itself instead of the ground under the parts.
     pub pushes_chassis: bool,
 }
 
 /// Builds the model of a robot's track.
-pub(crate) fn build(robot: &Robot) -> TrackModel {
+///
+/// # Errors
+/// Wheels that do not fit the robot.
+pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
     match &robot.track {
-        Track::Line(line) => wheels::line(robot, line),
-        Track::Belt(_) => belt::build(robot),
+        Track::Line(LineOfWheels { wheel, .. })
+        | Track::Circumferential(CircumferentialWheels { wheel, .. })
+        | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
+        Track::Belt(_) => Ok(belt::build(robot)),
         Track::Force(force) => force::build(robot, force),
     }
 }

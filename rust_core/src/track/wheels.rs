@@ -1,31 +1,58 @@
 //! Wheels in place of a track.
 //!
-//! A round wheel on a fixed axle needs no body of its own: turning does not change its shape, so
-//! its mass rides with the chassis and its spin is a degree of freedom of the drive.
+//! A wheel on a fixed axle needs no body of its own: its mass rides with the chassis, and its spin is
+//! a degree of freedom of the drive.
 
 use super::TrackModel;
-use crate::outline;
+use crate::error::ScenarioError;
+use crate::outline::{self, Gear};
 use crate::robot::{BodyKind, Part, Shape};
-use crate::scenario::{LineOfWheels, Robot, TorqueSharing, Wheel};
+use crate::scenario::{Robot, TorqueSharing, Wheel};
 
-/// Wheels on the straight line between the end axles.
-pub(super) fn line(robot: &Robot, line: &LineOfWheels) -> TrackModel {
+/// Wheels that the motors turn, together or each by itself.
+pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, ScenarioError> {
     let own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-    let discs = outline::line_of_wheels(&robot.outline, line);
-    let parts = discs.iter().enumerate().map(|(i, disc)| Part {
-        kind: BodyKind::Wheel,
-        shape: match line.wheel {
-            Wheel::Round => Shape::Disc {
-                center: disc.center,
-                radius: disc.radius,
-            },
-        },
-        drive: Some(if own_motors { i } else { 0 }),
-        friction_limit: f64::INFINITY,
-    });
-    TrackModel {
-        parts: parts.collect(),
-        drives: if own_motors { discs.len() } else { 1 },
+    let parts = outline::wheels(robot)?
+        .iter()
+        .enumerate()
+        .map(|(i, disc)| {
+            let shape = match wheel {
+                Wheel::Round => Shape::Disc {
+                    center: disc.center,
+                    radius: disc.radius,
+                },
+                Wheel::Gear(wheel) => Shape::Gear {
+                    center: disc.center,
+                    gear: Gear::new(wheel, &robot.outline, disc.radius, i)?,
+                },
+            };
+            Ok(part(shape, if own_motors { i } else { 0 }))
+        })
+        .collect::<Result<Vec<Part>, ScenarioError>>()?;
+    let drives = if own_motors { parts.len() } else { 1 };
+    Ok(TrackModel {
+        parts,
+        drives,
+        motors: drives,
         pushes_chassis: false,
+    })
+}
+
+/// Round wheels that turn freely, each by itself, on drives from number `first`.
+pub(super) fn passive(robot: &Robot, first: usize) -> Result<Vec<Part>, ScenarioError> {
+    let discs = outline::wheels(robot)?;
+    let parts = discs.iter().enumerate().map(|(i, disc)| {
+        let (center, radius) = (disc.center, disc.radius);
+        part(Shape::Disc { center, radius }, first + i)
+    });
+    Ok(parts.collect())
+}
+
+fn part(shape: Shape, drive: usize) -> Part {
+    Part {
+        kind: BodyKind::Wheel,
+        shape,
+        drive: Some(drive),
+        friction_limit: f64::INFINITY,
     }
 }

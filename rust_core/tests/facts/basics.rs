@@ -1,7 +1,7 @@
 //! Weight, balance, equal robots, energy: what holds for every model.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Drive, Model, Scenario, Simulation, TorqueSharing, Track};
+use crawler2d_core::{Drive, Model, Scenario, Simulation, TorqueSharing, Track, Vector, Wheel};
 
 use crate::common::*;
 
@@ -12,6 +12,15 @@ fn models() -> Vec<(&'static str, Track)> {
         ("line of 3", line(3)),
         ("line of 5", line(5)),
         ("line of 9", line(9)),
+        ("line of 3 gear", line_of(3, paper_gear())),
+        ("24 round the outline", circumferential(24, Wheel::Round)),
+        (
+            "24 gear round the outline",
+            circumferential(24, paper_gear()),
+        ),
+        ("hybrid", hybrid(Wheel::Round)),
+        ("hybrid gear", hybrid(paper_gear())),
+        ("force on wheels", force_on_wheels()),
     ]
 }
 
@@ -76,17 +85,18 @@ fn resting_penetration_is_below_a_fifth_of_a_millimetre() {
 
 #[test]
 fn every_model_is_the_same_robot() {
-    let reference = Model::new(&engineer().robot);
+    let reference = Model::new(&engineer().robot).expect("it can be built");
     let turning = |m: &Model| m.drives as f64 * m.drive_mass * m.drive_radius * m.drive_radius;
     for (name, track) in models() {
         for sharing in [TorqueSharing::Track, TorqueSharing::Wheel] {
             let mut robot = engineer().robot;
-            if sharing == TorqueSharing::Wheel && !matches!(track, Track::Line(_)) {
+            let driven = !matches!(track, Track::Belt(_) | Track::Force(_));
+            if sharing == TorqueSharing::Wheel && !driven {
                 continue;
             }
             robot.track = track.clone();
             robot.drivetrain.torque_sharing = sharing;
-            let model = Model::new(&robot);
+            let model = Model::new(&robot).expect("it can be built");
             assert_relative_eq!(model.mass, reference.mass, max_relative = 1e-9);
             assert!(
                 (model.center_of_mass - reference.center_of_mass).length() < 1e-9,
@@ -100,8 +110,40 @@ fn every_model_is_the_same_robot() {
                 robot.track_mass,
                 max_relative = 1e-9
             );
-            let force = model.drives as f64 * model.drive_force;
+            let force = model.motors as f64 * model.drive_force;
             assert_relative_eq!(force, 2.0 * 6.0 / 0.052, max_relative = 1e-9);
+        }
+    }
+}
+
+#[test]
+fn chassis_and_wheels_together_are_the_robot() {
+    for (name, track) in models() {
+        let mut robot = engineer().robot;
+        robot.track = track;
+        let (chassis, wheels) = Model::new(&robot).expect("it can be built").bodies();
+        let mass = chassis.mass + wheels.iter().map(|w| w.mass).sum::<f64>();
+        let moment = wheels
+            .iter()
+            .map(|w| w.center * w.mass)
+            .fold(chassis.center_of_mass * chassis.mass, |sum, m| sum + m);
+        let com = Vector::from(robot.center_of_mass);
+        let about = |center: Vector| (center - com).length_squared();
+        let inertia = chassis.moment_of_inertia
+            + chassis.mass * about(chassis.center_of_mass)
+            + wheels
+                .iter()
+                .map(|w| w.moment_of_inertia + w.mass * about(w.center))
+                .sum::<f64>();
+        let reflected: f64 = wheels
+            .iter()
+            .map(|w| w.moment_of_inertia / (w.radius * w.radius))
+            .sum();
+        assert_relative_eq!(mass, robot.mass, max_relative = 1e-9);
+        assert!((moment / mass - com).length() < 1e-9, "{name}");
+        if !wheels.is_empty() {
+            assert_relative_eq!(reflected, robot.track_mass, max_relative = 1e-9);
+            assert_relative_eq!(inertia, robot.moment_of_inertia, max_relative = 1e-9);
         }
     }
 }
@@ -158,18 +200,18 @@ fn contact_forces_sum_to_weight_and_inertia_on_flat_and_ramp() {
 
 #[test]
 fn unpowered_robot_never_gains_energy() {
-    let mut draw = Draw(7);
-    for case in 0..20 {
+    let (mut draw, models) = (Draw(7), models());
+    for case in 0..3 * models.len() {
         let mut scenario = engineer();
         scenario.robot.drivetrain.max_torque = 0.0;
-        scenario.robot.track = models()[case % 5].1.clone();
+        scenario.robot.track = models[case % models.len()].1.clone();
         let angle = draw.between(-0.4, 0.4);
         scenario.terrain = slope(angle, draw.between(0.0, 1.2));
         scenario.start.angle = angle;
         let mut simulation = after(&scenario, 0.0);
         let energy = |s: &Simulation| {
             let (r, robot) = (s.reading(), &s.scenario().robot);
-            let model = Model::new(robot);
+            let model = Model::new(robot).expect("it can be built");
             let (sine, cosine) = libm::sincos(r.chassis_angle);
             let c = robot.center_of_mass;
             let arm = [cosine * c[0] - sine * c[1], sine * c[0] + cosine * c[1]];

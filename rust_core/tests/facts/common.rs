@@ -1,8 +1,8 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, ForceSupport, ForceTrack, LineOfWheels, Record, Run, Scenario, Simulation, Terrain,
-    Track, Wheel, simulate,
+    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, HybridWheels,
+    LineOfWheels, Record, Run, Scenario, Simulation, Terrain, Track, Wheel, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -27,11 +27,52 @@ pub(crate) fn slow_and_strong() -> Scenario {
 }
 
 pub(crate) fn line(count: u32) -> Track {
+    line_of(count, Wheel::Round)
+}
+
+pub(crate) fn line_of(count: u32, wheel: Wheel) -> Track {
     Track::Line(LineOfWheels {
         count,
         wheel_radius: None,
-        wheel: Wheel::Round,
+        wheel,
     })
+}
+
+/// A gear wheel with all its figures from the outline.
+pub(crate) fn gear(phase_fraction: f64) -> Wheel {
+    Wheel::Gear(GearWheel {
+        grouser_count: None,
+        grouser_height: None,
+        tip_thickness: None,
+        phase_fraction,
+    })
+}
+
+/// The paper's gear wheel.
+pub(crate) fn paper_gear() -> Wheel {
+    gear(1.0 / 3.0)
+}
+
+/// Wheels all round, touching.
+pub(crate) fn circumferential(count: u32, wheel: Wheel) -> Track {
+    Track::Circumferential(CircumferentialWheels {
+        count,
+        wheel_radius: None,
+        wheel,
+    })
+}
+
+/// Two large wheels with small ones between them below.
+pub(crate) fn hybrid(wheel: Wheel) -> Track {
+    let small = |x: f64| [x, -0.034, 0.03];
+    let placements = vec![
+        [-0.1825, 0.0, 0.064],
+        small(-0.07),
+        small(0.0),
+        small(0.07),
+        [0.1825, 0.0, 0.064],
+    ];
+    Track::Hybrid(HybridWheels { placements, wheel })
 }
 
 pub(crate) fn belt() -> Track {
@@ -42,6 +83,15 @@ pub(crate) fn force() -> Track {
     Track::Force(ForceTrack {
         support: ForceSupport::Skids,
         skid_friction: 0.0,
+        wheel_count: 5,
+    })
+}
+
+pub(crate) fn force_on_wheels() -> Track {
+    Track::Force(ForceTrack {
+        support: ForceSupport::Wheels,
+        skid_friction: 0.0,
+        wheel_count: 5,
     })
 }
 

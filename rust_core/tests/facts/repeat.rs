@@ -1,6 +1,6 @@
 //! The same scenario gives the same bits, wherever and whenever it runs.
 
-use crawler2d_core::{Error, Progress, Record, Run, Scenario, simulate, simulate_many};
+use crawler2d_core::{Error, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many};
 
 use crate::common::*;
 
@@ -33,10 +33,19 @@ fn fingerprint(run: &Run) -> u64 {
 
 fn batch() -> Vec<Scenario> {
     let mut draw = Draw(5);
-    (0..12)
+    let tracks = [
+        belt(),
+        line(3),
+        line(5),
+        line_of(3, paper_gear()),
+        circumferential(24, paper_gear()),
+        hybrid(Wheel::Round),
+        force_on_wheels(),
+    ];
+    (0..14)
         .map(|i| {
             let mut scenario = engineer();
-            scenario.robot.track = [belt(), line(3), line(5), force()][i % 4].clone();
+            scenario.robot.track = tracks[i % tracks.len()].clone();
             scenario.terrain = step(draw.between(0.03, 0.12), draw.between(0.5, 1.1));
             scenario.duration = 4.0;
             scenario
@@ -90,19 +99,24 @@ fn recording_does_not_change_the_run() {
     assert_eq!(full.outcome, short.outcome);
 }
 
-/// Debug and release builds give the same bits: both must find this value.
+/// Debug and release builds give the same bits: both must find these values.
 ///
-/// It changes only together with the physics. A commit that changes it says which and why.
+/// They change only together with the physics. A commit that changes one says which and why.
 #[test]
-fn every_build_finds_the_same_value() {
-    const EXPECTED: u64 = 0x818a_a7b5_c248_1870;
-    let mut scenario = batch()[2].clone();
-    scenario.duration = 2.5;
-    let found = fingerprint(&run(&scenario));
-    assert_eq!(
-        found, EXPECTED,
-        "found {found:#018x}; if the physics was meant to change, write this value down"
-    );
+fn every_build_finds_the_same_values() {
+    for (track, expected) in [
+        (line(5), 0xdcbb_d07e_21e3_1772),
+        (line_of(3, paper_gear()), 0x2f24_a98f_a607_fd8f),
+    ] {
+        let mut scenario = batch()[2].clone();
+        scenario.robot.track = track;
+        scenario.duration = 2.5;
+        let found = fingerprint(&run(&scenario));
+        assert_eq!(
+            found, expected,
+            "found {found:#018x}; if the physics was meant to change, write this value down"
+        );
+    }
 }
 
 #[test]

@@ -1,27 +1,13 @@
-//! From the described terrain to the profile that contacts are computed on.
+//! One lane of the ground as a polyline with edges.
 
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
-use crate::scenario::{Scenario, Terrain};
 
-/// [m] Level ground before and behind a parametric obstacle.
-const RUN_OUT: f64 = 100.0;
 /// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
 const FACET_TURN: f64 = 0.0175;
 /// [m] Points closer than this to the line of their neighbours do not make an edge.
-const COLLINEAR: f64 = 1e-9;
-
-/// The ground of a scenario.
-#[derive(Clone, Debug)]
-pub struct Ground {
-    /// One profile under both tracks and the belly (equal lanes are simulated as one).
-    pub profile: Profile,
-    /// [m] The x that must be left behind.
-    pub goal: f64,
-    /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
-    pub first_edge: f64,
-}
+pub(super) const COLLINEAR: f64 = 1e-9;
 
 /// One lane: a polyline from left to right with the rounded edges cut into facets.
 #[derive(Clone, Debug)]
@@ -49,113 +35,6 @@ pub struct Edge {
     pub angle: f64,
     /// [m] Radius, 0 is sharp.
     pub radius: f64,
-}
-
-impl Ground {
-    /// Builds the ground of a terrain.
-    ///
-    /// # Errors
-    /// A profile that cannot be: overhang, too few points, an edge radius that does not fit.
-    pub fn new(terrain: &Terrain) -> Result<Self, ScenarioError> {
-        Self::at("terrain", terrain)
-    }
-
-    /// [m] The x that the rear axle must leave behind, unless the scenario has its own.
-    pub fn goal_of(&self, scenario: &Scenario) -> f64 {
-        scenario.goal.unwrap_or(self.goal)
-    }
-
-    fn at(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
-        let (points, goal, radius, friction) = match terrain {
-            Terrain::Flat { length, friction } => (
-                vec![[-RUN_OUT, 0.0], [length + RUN_OUT, 0.0]],
-                *length,
-                0.0,
-                *friction,
-            ),
-            Terrain::Step {
-                height,
-                edge_radius,
-                friction,
-            } => {
-                let points = vec![
-                    [-RUN_OUT, 0.0],
-                    [0.0, 0.0],
-                    [0.0, *height],
-                    [RUN_OUT, *height],
-                ];
-                (points, 0.0, *edge_radius, *friction)
-            }
-            Terrain::Ramp {
-                angle,
-                length,
-                edge_radius,
-                friction,
-            } => {
-                let top = length * libm::tan(*angle);
-                let points = vec![
-                    [-RUN_OUT, 0.0],
-                    [0.0, 0.0],
-                    [*length, top],
-                    [length + RUN_OUT, top],
-                ];
-                (points, *length, *edge_radius, *friction)
-            }
-            Terrain::Points {
-                points,
-                goal,
-                edge_radius,
-                friction,
-            } => (points.clone(), *goal, *edge_radius, *friction),
-            Terrain::Lanes {
-                left,
-                right,
-                middle,
-            } => return Self::lanes(path, left, right, middle.as_deref()),
-        };
-        let profile = Profile::new(path, &points, radius, friction, true)?;
-        let edges = &profile.edges;
-        let first_edge = edges
-            .iter()
-            .find(|edge| edge.x >= -COLLINEAR)
-            .or(edges.first());
-        let first_edge = first_edge.map_or(0.0, |edge| edge.x);
-        let ground = Self {
-            profile,
-            goal,
-            first_edge,
-        };
-        let (low, high) = ground.profile.extent();
-        if !(low..=high).contains(&ground.goal) {
-            let rule = format!("must lie on the terrain, from {low} to {high} m");
-            return Err(ScenarioError::new(format!("{path}.goal"), goal, rule));
-        }
-        Ok(ground)
-    }
-
-    /// Equal lanes are one ground under lumped tracks.
-    fn lanes(
-        path: &str,
-        left: &Terrain,
-        right: &Terrain,
-        middle: Option<&Terrain>,
-    ) -> Result<Self, ScenarioError> {
-        let ground = Self::at(&format!("{path}.left"), left)?;
-        for (name, lane) in [("right", Some(right)), ("middle", middle)] {
-            let Some(lane) = lane else { continue };
-            let path = format!("{path}.{name}");
-            Self::at(&path, lane)?;
-            if lane != left {
-                let value = serde_json::to_string(lane).unwrap_or_default();
-                return Err(ScenarioError::new(
-                    path,
-                    value,
-                    "must equal the left lane: both tracks are simulated as one",
-                ));
-            }
-        }
-        Ok(ground)
-    }
 }
 
 impl Profile {
@@ -292,7 +171,7 @@ impl Profile {
     }
 
     /// Facets that a range of x touches.
-    fn facets(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+    pub(crate) fn facets(&self, low: f64, high: f64) -> std::ops::Range<usize> {
         let first = self.points.partition_point(|p| p.x < low).saturating_sub(1);
         let last = self
             .points
@@ -301,12 +180,30 @@ impl Profile {
         first..last
     }
 
+    /// Where along the profile a point on a facet lies, as the facet's index plus a share of it, and
+    /// the facet's length [m].
+    pub(crate) fn place_on(&self, facet: usize, point: Vector) -> (f64, f64) {
+        let (a, b) = (self.points[facet], self.points[facet + 1]);
+        let (way, length) = (b - a, (b - a).length());
+        let share = (point - a).dot(way) / (length * length);
+        (facet as f64 + share.clamp(0.0, 1.0), length)
+    }
+
     /// [rad] Angle of the ground at x; of the right-hand facet at a corner.
     pub fn angle_at(&self, x: f64) -> f64 {
         let last = self.points.len() - 2;
         let facet = self.points.partition_point(|p| p.x <= x).clamp(1, last + 1) - 1;
         let d = self.points[facet + 1] - self.points[facet];
         libm::atan2(d.y, d.x)
+    }
+
+    /// Whether a disc lies above all the ground beside and below it.
+    pub(crate) fn is_clear_of(&self, center: Vector, radius: f64) -> bool {
+        let under = self.facets(center.x - radius, center.x + radius);
+        let below = center.y - radius;
+        self.points[under.start..(under.end + 1).min(self.points.len())]
+            .iter()
+            .all(|p| p.y < below)
     }
 
     /// [m] Lowest height of the centre of a disc above `x` at which it only touches the ground.

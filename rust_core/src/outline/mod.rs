@@ -1,8 +1,18 @@
 //! Pure geometry of the track's outline and of the wheels that stand for it.
 
+pub(crate) mod cut;
+mod envelope;
+mod gear;
+mod layout;
+
 use rapier2d_f64::math::Vector;
 
-use crate::scenario::{LineOfWheels, Robot, Track, TrackOutline};
+pub(crate) use envelope::{Envelope, maximise};
+pub use gear::Gear;
+pub(crate) use layout::wheels;
+
+use crate::error::ScenarioError;
+use crate::scenario::{Robot, TrackOutline};
 
 /// A disc in the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,32 +38,21 @@ pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
     ]
 }
 
-/// The wheels of a line, rear first, evenly spaced; radii linear between unequal ends.
-pub(crate) fn line_of_wheels(outline: &TrackOutline, line: &LineOfWheels) -> Vec<Disc> {
-    let [rear, front] = end_discs(outline);
-    let last = f64::from(line.count - 1);
-    (0..line.count)
-        .map(|i| {
-            let share = f64::from(i) / last;
-            let radius = rear.radius + share * (front.radius - rear.radius);
-            Disc {
-                center: rear.center + (front.center - rear.center) * share,
-                radius: line.wheel_radius.unwrap_or(radius),
-            }
-        })
-        .collect()
-}
-
 /// [m] Smallest radius that turns on the ground.
-pub(crate) fn smallest_radius(robot: &Robot) -> f64 {
-    let discs = match &robot.track {
-        Track::Line(line) => line_of_wheels(&robot.outline, line),
-        Track::Belt(_) | Track::Force(_) => end_discs(&robot.outline).to_vec(),
+///
+/// # Errors
+/// Wheels that do not fit the outline.
+pub(crate) fn smallest_radius(robot: &Robot) -> Result<f64, ScenarioError> {
+    let wheels = wheels(robot)?;
+    let discs = if wheels.is_empty() {
+        end_discs(&robot.outline).to_vec()
+    } else {
+        wheels
     };
-    discs
+    Ok(discs
         .iter()
         .map(|disc| disc.radius)
-        .fold(f64::INFINITY, f64::min)
+        .fold(f64::INFINITY, f64::min))
 }
 
 /// The lower outer tangent of two discs as a segment from the left disc to the right one.

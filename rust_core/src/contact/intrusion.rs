@@ -1,0 +1,231 @@
+//! What of the ground is inside the track: its connected pieces within the taut belt round the
+//! robot's own bodies.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::LoadedContact;
+use crate::outline::cut::{self, Piece};
+use crate::outline::{Disc, Envelope};
+use crate::robot::Part;
+use crate::terrain::Profile;
+
+/// [m] A contact this close to a piece of the ground bears on it.
+const BEARS: f64 = 5e-4;
+
+/// The taut belts round a track's bodies, in the chassis frame.
+#[derive(Clone, Debug)]
+pub(crate) struct TrackEnvelope {
+    /// Circumscribed circles.
+    discs: Vec<Disc>,
+    /// Part that each disc belongs to.
+    parts: Vec<usize>,
+    /// Round the circumscribed circles.
+    tips: Belt,
+    /// Round the root circles.
+    roots: Belt,
+}
+
+/// A taut belt and the point farthest inside it.
+#[derive(Clone, Debug)]
+struct Belt {
+    hull: Envelope,
+    middle: Vector,
+}
+
+impl Belt {
+    fn new(discs: &[Disc]) -> Self {
+        let hull = Envelope::new(discs);
+        let middle = hull.deepest();
+        Self { hull, middle }
+    }
+}
+
+/// A connected piece of the ground inside the envelope of the track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Intrusion {
+    /// Edges inside the envelope, from the left.
+    pub edges: Vec<i32>,
+    /// Of those that stand out, the one that reaches deepest, or -1.
+    pub edge: i32,
+    /// Bodies on either side of the deepest point, first the one that the belt passes before it.
+    pub bodies: [usize; 2],
+    /// [m] Deepest reach below the belt round the circumscribed circles.
+    pub depth: f64,
+    /// [m] Deepest reach below the belt round the root circles, 0 if it does not get there.
+    pub root_depth: f64,
+    /// [m] The deepest point.
+    pub x: f64,
+    /// [m] The deepest point.
+    pub y: f64,
+    /// [m^2] Area of the piece.
+    pub area: f64,
+    /// Stretches of the profile that bound it, as facet plus share of the facet.
+    stretches: Vec<(f64, f64)>,
+}
+
+impl TrackEnvelope {
+    /// The envelope of the parts that belong to the track.
+    pub(crate) fn new(parts: &[Part]) -> Self {
+        let of_track: Vec<(usize, Disc, Disc)> = parts
+            .iter()
+            .enumerate()
+            .flat_map(|(i, part)| part.discs().map(move |(tip, root)| (i, tip, root)))
+            .collect();
+        let discs: Vec<Disc> = of_track.iter().map(|(_, tip, _)| *tip).collect();
+        let roots: Vec<Disc> = of_track.iter().map(|(_, _, root)| *root).collect();
+        Self {
+            parts: of_track.iter().map(|(part, ..)| *part).collect(),
+            tips: Belt::new(&discs),
+            roots: Belt::new(&roots),
+            discs,
+        }
+    }
+
+    /// [m] How deep the edges that stand out reach inside; negative if none does.
+    pub(crate) fn edge_depth(&self, profile: &Profile, pose: Pose) -> f64 {
+        let stands_out = |i: &usize| {
+            let edge = profile.edge_of_point[*i];
+            edge >= 0 && profile.edges[edge as usize].angle > 0.0
+        };
+        self.points_under(profile, pose)
+            .filter(stands_out)
+            .map(|i| {
+                self.tips
+                    .hull
+                    .depth(pose.inverse_transform_point(profile.points[i]))
+            })
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Every piece of the ground inside the envelope, from the left.
+    pub(crate) fn intrusions(&self, profile: &Profile, pose: Pose) -> Vec<Intrusion> {
+        let under = self.points_under(profile, pose);
+        let polyline: Vec<Vector> = under
+            .clone()
+            .map(|i| pose.inverse_transform_point(profile.points[i]))
+            .collect();
+        let chords = cut::chords(&self.tips.hull, &polyline, under.start);
+        if chords.is_empty() {
+            let buried = below_ground(profile, pose, self.tips.middle);
+            return buried.then(|| self.buried(pose)).into_iter().collect();
+        }
+        cut::pieces(&self.tips.hull, &chords)
+            .iter()
+            .map(|piece| self.intrusion(profile, pose, piece))
+            .collect()
+    }
+
+    /// Points of the profile that bound every facet under the envelope.
+    fn points_under(&self, profile: &Profile, pose: Pose) -> std::ops::Range<usize> {
+        let sides = |disc: &Disc| {
+            let x = pose.transform_point(disc.center).x;
+            (x - disc.radius, x + disc.radius)
+        };
+        let (low, high) = self
+            .discs
+            .iter()
+            .map(sides)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
+                (low.min(a), high.max(b))
+            });
+        let facets = profile.facets(low, high);
+        facets.start..(facets.end + 1).min(profile.points.len())
+    }
+
+    /// Whether a point inside the envelope lies in a piece.
+    fn holds(&self, profile: &Profile, pose: Pose, piece: &Piece, point: Vector) -> bool {
+        // Straight down from a point in the ground all is ground, so the rim there is the piece's.
+        let down = pose.rotation.inverse() * -Vector::Y;
+        let far = point + down * self.tips.hull.length();
+        let (_, share) = self.tips.hull.clip(point, far).unwrap_or_default();
+        let below = self.tips.hull.way_of(point + (far - point) * share);
+        below_ground(profile, pose, point) && piece.reaches(&self.tips.hull, below)
+    }
+
+    /// The point of a piece that lies deepest below a belt.
+    fn deepest(&self, profile: &Profile, pose: Pose, piece: &Piece, belt: &Belt) -> Vector {
+        if self.holds(profile, pose, piece, belt.middle) {
+            belt.middle
+        } else {
+            piece.deepest_on_chords(&belt.hull)
+        }
+    }
+
+    fn intrusion(&self, profile: &Profile, pose: Pose, piece: &Piece) -> Intrusion {
+        let deepest = self.deepest(profile, pose, piece, &self.tips);
+        let root = self.deepest(profile, pose, piece, &self.roots);
+        let mut edges: Vec<i32> = Vec::new();
+        let mut edge = (f64::NEG_INFINITY, -1);
+        for i in piece.chords().flat_map(|c| c.vertices.clone()) {
+            let id = profile.edge_of_point[i];
+            if id < 0 {
+                continue;
+            }
+            if edges.last() != Some(&id) {
+                edges.push(id);
+            }
+            let depth = self
+                .tips
+                .hull
+                .depth(pose.inverse_transform_point(profile.points[i]));
+            if profile.edges[id as usize].angle > 0.0 && depth > edge.0 {
+                edge = (depth, id);
+            }
+        }
+        Intrusion {
+            edges,
+            edge: edge.1,
+            area: piece.area(&self.tips.hull),
+            stretches: piece.chords().map(|c| c.span).collect(),
+            ..self.at(pose, deepest, root)
+        }
+    }
+
+    /// The whole envelope inside the ground.
+    fn buried(&self, pose: Pose) -> Intrusion {
+        let hull = &self.tips.hull;
+        Intrusion {
+            area: -0.5 * hull.swept(0.0, hull.length()),
+            ..self.at(pose, self.tips.middle, self.roots.middle)
+        }
+    }
+
+    /// What the deepest points below both belts say.
+    fn at(&self, pose: Pose, deepest: Vector, deepest_below_roots: Vector) -> Intrusion {
+        let hull = &self.tips.hull;
+        let nearest = hull.nearest(deepest);
+        let place = pose.transform_point(deepest);
+        Intrusion {
+            edges: Vec::new(),
+            edge: -1,
+            bodies: hull
+                .neighbours(deepest, nearest, &self.discs)
+                .map(|disc| self.parts[disc]),
+            depth: nearest.depth,
+            root_depth: self.roots.hull.depth(deepest_below_roots).max(0.0),
+            x: place.x,
+            y: place.y,
+            area: 0.0,
+            stretches: Vec::new(),
+        }
+    }
+}
+
+/// Whether a point of the chassis frame lies in the ground.
+fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
+    let point = pose.transform_point(point);
+    profile.height_under_disc(point.x, 0.0) > point.y
+}
+
+impl Intrusion {
+    /// [N] Normal force that the robot puts on it.
+    pub(crate) fn force(&self, profile: &Profile, loaded: &[LoadedContact]) -> f64 {
+        let bears = |l: &&LoadedContact| {
+            let (place, length) = profile.place_on(l.contact.facet, l.contact.point);
+            let margin = BEARS / length;
+            let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
+            self.stretches.iter().any(near)
+        };
+        loaded.iter().filter(bears).map(|l| l.normal_force).sum()
+    }
+}

@@ -1,0 +1,185 @@
+//! One contact as the solver sees it: levers on the body and its drive, gap, impulses.
+
+use rapier2d_f64::math::{Rotation, Vector};
+
+use super::law::Admittance;
+use super::state::State;
+use super::{cross, right_of};
+use crate::contact::{Contact, LoadedContact};
+use crate::robot::{Model, Part, Shape};
+
+/// One contact's constraint in one step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub normal: Direction,
+    pub tangent: Direction,
+    pub drive: Option<usize>,
+    pub friction: f64,
+    /// What an impulse does to the velocities of the contact: with the drive free, ...
+    pub free: Admittance,
+    /// ... and while the motor holds it at its set-point.
+    pub held: Admittance,
+    pub normal_impulse: f64,
+    pub friction_impulse: f64,
+    pub normal_total: f64,
+    pub friction_total: f64,
+    /// [m] Gap now.
+    pub gap: f64,
+    start: Place,
+}
+
+/// A direction at a contact, and how the velocities of body and drive add up along it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Direction {
+    pub unit: Vector,
+    /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
+    pub lever: f64,
+    /// [m] Lever of the drive's spin.
+    pub drive_lever: f64,
+}
+
+/// The touching point of the robot at the start of the step.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// [m] Gap.
+    gap: f64,
+    /// [m] From the centre of mass to the contact, or to the axle of a wheel that turns under it.
+    arm: Vector,
+    /// [m] From that axle to the contact.
+    spoke: Vector,
+    /// [1/m] Turn of that wheel for each metre of its drive.
+    turn: f64,
+    /// [m] Position of the drive.
+    drive_position: f64,
+}
+
+impl Direction {
+    /// `arm` leads from the centre of mass to the contact; `motion` is the velocity of the surface over
+    /// the chassis for a surface speed of 1.
+    fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
+        // The surface speed is the drive radius times the spin over the chassis, clockwise.
+        let drive_lever = -model.drive_radius * unit.dot(motion);
+        Self {
+            unit,
+            lever: cross(arm, unit) - drive_lever,
+            drive_lever,
+        }
+    }
+
+    /// [m/s] Velocity of the robot's surface over the ground.
+    pub(super) fn speed(&self, state: &State, drive: Option<usize>) -> f64 {
+        let of_drive = drive.map_or(0.0, |k| self.drive_lever * state.drives[k].spin);
+        self.unit.dot(state.velocity) + self.lever * state.angular_velocity + of_drive
+    }
+}
+
+impl Row {
+    /// The row of a contact that was found at `middle`, the centre of mass and angle of the middle of
+    /// the step; `last` is the same contact of the last step.
+    pub(super) fn new(
+        contact: &Contact,
+        last: Option<LoadedContact>,
+        state: &State,
+        model: &Model,
+        (middle, time): ((Vector, f64), f64),
+    ) -> Self {
+        let part = &model.parts[contact.part];
+        let (center, angle) = middle;
+        let arm = contact.point - center;
+        let axle = axle_of(part).map(|axle| Rotation::new(angle) * (axle - model.center_of_mass));
+        let spoke = axle.map_or(Vector::ZERO, |axle| arm - axle);
+        let motion = part.surface_motion(contact.normal, spoke);
+        let normal = Direction::new(contact.normal, arm, motion, model);
+        let tangent = Direction::new(right_of(contact.normal), arm, motion, model);
+        let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
+        let turn = turn_of(part);
+        let back = Rotation::new(state.angle - angle);
+        let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
+        let mut start = Place {
+            gap: contact.distance,
+            arm: back * (arm - spoke),
+            spoke: Rotation::new(turn * advance) * (back * spoke),
+            turn,
+            drive_position,
+        };
+        // The gap was found in the middle of the step; the touching point was here at its start.
+        let then = state.center + start.arm + start.spoke;
+        start.gap -= contact.normal.dot(contact.point - then);
+        Self {
+            normal,
+            tangent,
+            drive: part.drive,
+            friction: part.friction_limit,
+            free: free(normal, tangent, model),
+            held: held(normal.unit, tangent.unit, arm, model),
+            normal_impulse: last.map_or(0.0, |l| l.normal_impulse),
+            friction_impulse: last.map_or(0.0, |l| l.friction_impulse),
+            normal_total: 0.0,
+            friction_total: 0.0,
+            gap: start.gap,
+            start,
+        }
+    }
+
+    /// [m/s] Speed at which the gap opens.
+    pub(super) fn opening_speed(&self, state: &State) -> f64 {
+        self.normal.speed(state, self.drive)
+    }
+
+    /// [m/s] Velocity of the robot's surface over the ground along the tangent.
+    pub(super) fn slip(&self, state: &State) -> f64 {
+        self.tangent.speed(state, self.drive)
+    }
+
+    /// Updates the gap for the motion since the start of the step, at `center` and `angle`.
+    pub(super) fn follow(&mut self, state: &State, (center, angle): (Vector, f64)) {
+        let s = &self.start;
+        let turned = Rotation::new(state.angle - angle);
+        let mut spoke = turned * s.spoke;
+        if let Some(k) = self.drive.filter(|_| s.turn != 0.0) {
+            let advance = state.drives[k].position - s.drive_position;
+            spoke = Rotation::new(-s.turn * advance) * spoke;
+        }
+        let moved = state.center - center + turned * s.arm + spoke - s.arm - s.spoke;
+        self.gap = s.gap + self.normal.unit.dot(moved);
+    }
+}
+
+/// Centre of a wheel whose shape turns, in the chassis frame.
+fn axle_of(part: &Part) -> Option<Vector> {
+    match &part.shape {
+        Shape::Gear { center, .. } if part.drive.is_some() => Some(*center),
+        _ => None,
+    }
+}
+
+/// [1/m] Turn of such a wheel for each metre of its drive.
+fn turn_of(part: &Part) -> f64 {
+    match &part.shape {
+        Shape::Gear { gear, .. } if part.drive.is_some() => 1.0 / gear.radius,
+        _ => 0.0,
+    }
+}
+
+fn free(normal: Direction, tangent: Direction, m: &Model) -> Admittance {
+    let drive_inertia = m.drive_mass * m.drive_radius * m.drive_radius;
+    let through = |a: Direction, b: Direction| {
+        a.lever * b.lever / m.moment_of_inertia + a.drive_lever * b.drive_lever / drive_inertia
+    };
+    Admittance {
+        normal: 1.0 / m.mass + through(normal, normal),
+        tangent: 1.0 / m.mass + through(tangent, tangent),
+        cross: through(normal, tangent),
+    }
+}
+
+/// The drive turns with the body.
+fn held(normal: Vector, tangent: Vector, arm: Vector, m: &Model) -> Admittance {
+    let (n, t) = (cross(arm, normal), cross(arm, tangent));
+    let inverse_inertia = 1.0 / m.locked_inertia();
+    Admittance {
+        normal: 1.0 / m.mass + n * n * inverse_inertia,
+        tangent: 1.0 / m.mass + t * t * inverse_inertia,
+        cross: n * t * inverse_inertia,
+    }
+}

@@ -1,0 +1,146 @@
+//! What happened during a run, with a beginning and an end: stops, and edges inside the track.
+
+use crate::contact::Intrusion;
+
+/// What an event is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// A span without progress, though commanded.
+    Stop,
+    /// A span in which an edge was inside the envelope of the track.
+    Intrusion,
+}
+
+impl EventKind {
+    /// Name as in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stop => "stop",
+            Self::Intrusion => "intrusion",
+        }
+    }
+}
+
+/// One event; a stop carries the most loaded of the intrusions that were there at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// What it is.
+    pub kind: EventKind,
+    /// [s] When it began.
+    pub start: f64,
+    /// [s] When it ended; the end of the run if it lasted.
+    pub end: f64,
+    /// Edge inside the envelope, or -1.
+    pub edge: i32,
+    /// Bodies on either side of it, first the one that the belt passes before it; none without an edge.
+    pub bodies: Option<[usize; 2]>,
+    /// [m] Deepest reach below the belt round the circumscribed circles.
+    pub depth: f64,
+    /// [m] Deepest reach below the belt round the root circles.
+    pub root_depth: f64,
+    /// [N] Normal force that the robot put on the piece, the mean over the event.
+    pub force: f64,
+}
+
+impl Event {
+    /// A stop with what was inside the track.
+    pub(crate) fn stop(start: f64, end: f64, inside: Option<&Self>) -> Self {
+        Self {
+            kind: EventKind::Stop,
+            start,
+            end,
+            edge: inside.map_or(-1, |e| e.edge),
+            bodies: inside.and_then(|e| e.bodies),
+            depth: inside.map_or(0.0, |e| e.depth),
+            root_depth: inside.map_or(0.0, |e| e.root_depth),
+            force: inside.map_or(0.0, |e| e.force),
+        }
+    }
+}
+
+/// Follows intrusions from look to look.
+#[derive(Default)]
+pub(crate) struct IntrusionWatch {
+    present: Vec<Present>,
+    past: Vec<Event>,
+}
+
+/// An intrusion that goes on.
+struct Present {
+    event: Event,
+    looks: f64,
+    seen: bool,
+}
+
+impl IntrusionWatch {
+    /// Takes in what is inside the track at `time`, each with the force [N] on it.
+    pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
+        for (intrusion, force) in inside {
+            let same = |p: &&mut Present| {
+                p.event.edge == intrusion.edge && p.event.bodies == Some(intrusion.bodies)
+            };
+            if let Some(known) = self.present.iter_mut().find(same) {
+                known.add(&intrusion, force);
+            } else {
+                let mut new = Present::new(time, &intrusion);
+                new.add(&intrusion, force);
+                self.present.push(new);
+            }
+        }
+        for i in (0..self.present.len()).rev() {
+            let known = &mut self.present[i];
+            known.event.end = time;
+            if !std::mem::take(&mut known.seen) {
+                self.past.push(self.present.remove(i).event);
+            }
+        }
+    }
+
+    /// The most loaded of those that go on.
+    pub(crate) fn most_loaded(&self) -> Option<&Event> {
+        let present = self.present.iter().map(|p| &p.event);
+        present.reduce(|most, other| {
+            if other.force > most.force {
+                other
+            } else {
+                most
+            }
+        })
+    }
+
+    /// All so far.
+    pub(crate) fn events(&self) -> impl Iterator<Item = &Event> {
+        self.past
+            .iter()
+            .chain(self.present.iter().map(|p| &p.event))
+    }
+}
+
+impl Present {
+    fn new(time: f64, intrusion: &Intrusion) -> Self {
+        let event = Event {
+            kind: EventKind::Intrusion,
+            start: time,
+            end: time,
+            edge: intrusion.edge,
+            bodies: Some(intrusion.bodies),
+            depth: 0.0,
+            root_depth: 0.0,
+            force: 0.0,
+        };
+        Self {
+            event,
+            looks: 0.0,
+            seen: false,
+        }
+    }
+
+    fn add(&mut self, intrusion: &Intrusion, force: f64) {
+        self.looks += 1.0;
+        self.seen = true;
+        let e = &mut self.event;
+        e.depth = e.depth.max(intrusion.depth);
+        e.root_depth = e.root_depth.max(intrusion.root_depth);
+        e.force += (force - e.force) / self.looks;
+    }
+}
