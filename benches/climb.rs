@@ -1,4 +1,4 @@
-//! One step in the middle of a climb, and one whole climb; the bare engine's loop of the same scene beside.
+//! Steps in the middle of a climb, and whole runs; the bare engine's loop of the same scene beside.
 
 use std::hint::black_box;
 
@@ -6,14 +6,12 @@ use crawler2d_benches::{SCENES, Scene};
 use crawler2d_core::{Record, Simulation, simulate};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 
-/// [s] Every scene is on its edge by then.
-const IN_THE_CLIMB: f64 = 1.5;
 /// Steps of one measurement; a single one is shorter than the clock is fine.
 const STEPS: u64 = 200;
 
 fn simulation(scene: &Scene) -> Simulation {
     let mut simulation = Simulation::new(&scene.scenario()).expect("a valid scene");
-    while simulation.time() < IN_THE_CLIMB {
+    while simulation.time() < scene.in_the_climb() {
         simulation.step().expect("a finite state");
     }
     simulation
@@ -34,14 +32,13 @@ fn steps(criterion: &mut Criterion) {
                 BatchSize::LargeInput,
             );
         });
-        if let Some(engine) = scene.engine() {
-            drop(engine);
+        if scene.engine().is_some() {
             group.bench_function("bare engine", |bencher| {
                 bencher.iter_batched_ref(
                     || {
                         let mut engine = scene.engine().expect("a scene of wheels");
                         let dt = scene.scenario().solver.time_step;
-                        (0..(IN_THE_CLIMB / dt) as u64).for_each(|_| engine.step());
+                        (0..(scene.in_the_climb() / dt) as u64).for_each(|_| engine.step());
                         engine
                     },
                     |engine| (0..STEPS).for_each(|_| engine.step()),
@@ -53,13 +50,13 @@ fn steps(criterion: &mut Criterion) {
     }
 }
 
-fn climbs(criterion: &mut Criterion) {
+fn runs(criterion: &mut Criterion) {
     for scene in &SCENES {
         let scenario = scene.scenario();
         let run = simulate(&scenario, Record::default()).expect("a valid scene");
         let steps = (run.metrics.time / scenario.solver.time_step).round() as u64;
-        let mut group = criterion.benchmark_group(format!("{}/climb", scene.name));
-        group.sample_size(20);
+        let mut group = criterion.benchmark_group(format!("{}/run", scene.name));
+        group.sample_size(10);
         group.throughput(Throughput::Elements(steps));
         group.bench_function("crawler2d", |bencher| {
             bencher.iter(|| simulate(black_box(&scenario), Record::default()));
@@ -67,7 +64,7 @@ fn climbs(criterion: &mut Criterion) {
         group.bench_function("crawler2d, summary", |bencher| {
             bencher.iter(|| simulate(black_box(&scenario), Record::summary()));
         });
-        if scene.wheels.is_some() {
+        if scene.engine().is_some() {
             group.bench_function("bare engine", |bencher| {
                 bencher.iter(|| {
                     let mut engine = scene.engine().expect("a scene of wheels");
@@ -80,5 +77,5 @@ fn climbs(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, steps, climbs);
+criterion_group!(benches, steps, runs);
 criterion_main!(benches);

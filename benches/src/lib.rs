@@ -1,74 +1,69 @@
-//! The scenes that the benchmarks time; tests and benchmarks share them.
+//! The scenes that the benchmarks time, from scenario files that tests and benchmarks share.
 
-use crawler2d_core::{LineOfWheels, Scenario, Terrain, TorqueSharing, Track, Wheel};
+use crawler2d_core::{Scenario, TorqueSharing};
 
 #[path = "../../rust_core/tests/facts/engine_world.rs"]
 mod engine_world;
 
 pub use engine_world::{EngineSettings, EngineWorld};
 
-/// A robot before a step.
+/// A robot before an obstacle.
 pub struct Scene {
     /// Name in the report.
     pub name: &'static str,
-    /// Wheels, each with its own motor; none for a belt.
-    pub wheels: Option<u32>,
-    /// [m] Height of the step.
-    pub height: f64,
+    /// The scenario's JSON.
+    text: &'static str,
 }
 
-/// Both climb: three wheels over an easy step, nine over half a robot's length of them.
-pub const SCENES: [Scene; 3] = [
-    Scene {
-        name: "line_of_3/step_50mm",
-        wheels: Some(3),
-        height: 0.05,
-    },
-    Scene {
-        name: "line_of_9/step_75mm",
-        wheels: Some(9),
-        height: 0.075,
-    },
-    Scene {
-        name: "belt/step_75mm",
-        wheels: None,
-        height: 0.075,
-    },
+macro_rules! scene {
+    ($file:literal) => {
+        Scene {
+            name: $file,
+            text: include_str!(concat!("../../tests/scenarios/", $file, ".json")),
+        }
+    };
+}
+
+/// A robot of 20 kg on 5 wheels in line or 24 round the outline, round or with 12 or 10 grousers,
+/// before a step of 0.15 m or on a field of 20 blocks; and a belt.
+pub const SCENES: [Scene; 9] = [
+    scene!("peer_lwa5_round_step"),
+    scene!("peer_lwa5_gear_step"),
+    scene!("peer_cwa24_round_step"),
+    scene!("peer_cwa24_gear_step"),
+    scene!("peer_lwa5_round_field"),
+    scene!("peer_lwa5_gear_field"),
+    scene!("peer_cwa24_round_field"),
+    scene!("peer_cwa24_gear_field"),
+    scene!("engineer_belt_step"),
 ];
 
 impl Scene {
-    /// The scenario, from the file that the tests start from.
+    /// The scenario.
     ///
     /// # Panics
-    /// If the shared scenario is not valid.
+    /// If the shared file is not valid.
     pub fn scenario(&self) -> Scenario {
-        let text = include_str!("../../tests/scenarios/engineer_belt_step.json");
-        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-        if let Some(count) = self.wheels {
-            scenario.robot.track = Track::Line(LineOfWheels {
-                count,
-                wheel_radius: None,
-                wheel: Wheel::Round,
-            });
-            scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
-        }
-        scenario.robot.drivetrain.max_torque = 20.0;
-        scenario.terrain = Terrain::Step {
-            height: self.height,
-            edge_radius: 0.0,
-            friction: 0.9,
-        };
-        scenario
+        Scenario::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same in the bare engine, with as many steps and substeps.
+    /// The same in the bare engine, with as many steps and substeps; none without wheels that have
+    /// motors of their own.
     pub fn engine(&self) -> Option<EngineWorld> {
         let scenario = self.scenario();
         let settings = EngineSettings {
             time_step: scenario.solver.time_step,
             substeps: scenario.solver.substeps as usize,
         };
-        self.wheels
-            .map(|count| EngineWorld::new(&scenario, count, self.height, settings))
+        let own_motors = scenario.robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
+        own_motors.then(|| EngineWorld::new(&scenario, settings))
+    }
+
+    /// [s] An instant at which the robot is on its obstacle: a second, and the way to it and a third
+    /// of its length further at the commanded speed.
+    pub fn in_the_climb(&self) -> f64 {
+        let scenario = self.scenario();
+        let way = scenario.start.approach + scenario.robot.outline.axle_distance / 3.0;
+        1.0 + way / scenario.drive.speed
     }
 }

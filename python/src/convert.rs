@@ -297,7 +297,10 @@ fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
             .collect::<Vec<_>>()
             .into_pyarray(py)
     };
-    let body: Vec<u64> = wheels.iter().map(|w| w.part as u64).collect();
+    let body: Vec<i64> = wheels
+        .iter()
+        .filter_map(|w| i64::try_from(w.part).ok())
+        .collect();
     columns.set_item("body", body.into_pyarray(py))?;
     columns.set_item("x", column(|w| w.center.x))?;
     columns.set_item("y", column(|w| w.center.y))?;

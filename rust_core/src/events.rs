@@ -77,7 +77,7 @@ impl IntrusionWatch {
     pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
         for (intrusion, force) in inside {
             let same = |p: &&mut Present| {
-                p.event.edge == intrusion.edge && p.event.bodies == Some(intrusion.bodies)
+                p.event.bodies == Some(intrusion.bodies) && intrusion.edges.contains(&p.event.edge)
             };
             if let Some(known) = self.present.iter_mut().find(same) {
                 known.add(&intrusion, force);
@@ -108,11 +108,13 @@ impl IntrusionWatch {
         })
     }
 
-    /// All so far.
-    pub(crate) fn events(&self) -> impl Iterator<Item = &Event> {
-        self.past
-            .iter()
-            .chain(self.present.iter().map(|p| &p.event))
+    /// All so far; those that go on end at `now`.
+    pub(crate) fn events(&self, now: f64) -> impl Iterator<Item = Event> {
+        let present = self.present.iter().map(move |p| Event {
+            end: now,
+            ..p.event.clone()
+        });
+        self.past.iter().cloned().chain(present)
     }
 }
 
@@ -139,7 +141,9 @@ impl Present {
         self.looks += 1.0;
         self.seen = true;
         let e = &mut self.event;
-        e.depth = e.depth.max(intrusion.depth);
+        if intrusion.depth > e.depth {
+            (e.depth, e.edge) = (intrusion.depth, intrusion.edge);
+        }
         e.root_depth = e.root_depth.max(intrusion.root_depth);
         e.force += (force - e.force) / self.looks;
     }

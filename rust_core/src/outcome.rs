@@ -128,7 +128,7 @@ impl Monitor {
             last_time: 0.0,
             stop_since: None,
             stops: Vec::new(),
-            envelope: TrackEnvelope::new(&model.parts),
+            envelope: TrackEnvelope::new(&model.parts, scenario.criteria.intrusion_depth),
             intrusions: IntrusionWatch::default(),
             has_grousers: model
                 .parts
@@ -209,19 +209,16 @@ impl Monitor {
     /// Follows what is inside the track.
     fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact]) {
         let pose = Pose::new(now.position, now.chassis_angle);
-        let (profile, smallest) = (&self.profile, self.criteria.intrusion_depth);
-        let inside = if self.envelope.edge_depth(profile, pose) > smallest {
+        let profile = &self.profile;
+        let inside = if self.envelope.holds_edge(profile, pose) {
             self.envelope.intrusions(profile, pose)
         } else {
             Vec::new()
         };
-        let with_force = inside
-            .into_iter()
-            .filter(|i| i.edge >= 0 && i.depth > smallest)
-            .map(|i| {
-                let force = i.force(profile, loaded);
-                (i, force)
-            });
+        let with_force = inside.into_iter().filter(|i| i.edge >= 0).map(|i| {
+            let force = i.force(profile, loaded);
+            (i, force)
+        });
         self.intrusions.look(now.time, with_force);
     }
 
@@ -325,7 +322,7 @@ impl Monitor {
         let inside = self.intrusions.most_loaded();
         let open = self.stop_since.map(|start| Event::stop(start, now, inside));
         let stops = self.stops.iter().cloned().chain(open);
-        let mut events: Vec<Event> = stops.chain(self.intrusions.events().cloned()).collect();
+        let mut events: Vec<Event> = stops.chain(self.intrusions.events(now)).collect();
         events.sort_by(|a, b| a.start.total_cmp(&b.start));
         events
     }

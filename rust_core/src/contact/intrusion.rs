@@ -1,6 +1,9 @@
 //! What of the ground is inside the track: its connected pieces within the taut belt round the
 //! robot's own bodies.
 
+#[cfg(test)]
+mod tests;
+
 use rapier2d_f64::math::{Pose, Vector};
 
 use super::LoadedContact;
@@ -11,6 +14,9 @@ use crate::terrain::Profile;
 
 /// [m] A contact this close to a piece of the ground bears on it.
 const BEARS: f64 = 5e-4;
+
+/// [m] Of edges that lie so equally deep the left one counts, whatever rounding says.
+const SAME_DEPTH: f64 = 1e-6;
 
 /// The taut belts round a track's bodies, in the chassis frame.
 #[derive(Clone, Debug)]
@@ -23,6 +29,8 @@ pub(crate) struct TrackEnvelope {
     tips: Belt,
     /// Round the root circles.
     roots: Belt,
+    /// [m] How far inside the bodies' circles the belts run.
+    margin: f64,
 }
 
 /// A taut belt and the point farthest inside it.
@@ -65,36 +73,43 @@ pub struct Intrusion {
 
 impl TrackEnvelope {
     /// The envelope of the parts that belong to the track.
-    pub(crate) fn new(parts: &[Part]) -> Self {
+    ///
+    /// Wheels sink into the ground by micrometres, and a belt that ran along their lowest points would
+    /// join all the ground under the robot to one piece: `margin` [m] keeps it inside of that.
+    pub(crate) fn new(parts: &[Part], margin: f64) -> Self {
         let of_track: Vec<(usize, Disc, Disc)> = parts
             .iter()
             .enumerate()
             .flat_map(|(i, part)| part.discs().map(move |(tip, root)| (i, tip, root)))
             .collect();
-        let discs: Vec<Disc> = of_track.iter().map(|(_, tip, _)| *tip).collect();
-        let roots: Vec<Disc> = of_track.iter().map(|(_, _, root)| *root).collect();
+        let within = |disc: &Disc| Disc {
+            radius: (disc.radius - margin).max(0.0),
+            ..*disc
+        };
+        let discs: Vec<Disc> = of_track.iter().map(|(_, tip, _)| within(tip)).collect();
+        let roots: Vec<Disc> = of_track.iter().map(|(_, _, root)| within(root)).collect();
         Self {
             parts: of_track.iter().map(|(part, ..)| *part).collect(),
             tips: Belt::new(&discs),
             roots: Belt::new(&roots),
             discs,
+            margin,
         }
     }
 
-    /// [m] How deep the edges that stand out reach inside; negative if none does.
-    pub(crate) fn edge_depth(&self, profile: &Profile, pose: Pose) -> f64 {
+    /// Whether an edge that stands out is inside.
+    pub(crate) fn holds_edge(&self, profile: &Profile, pose: Pose) -> bool {
         let stands_out = |i: &usize| {
             let edge = profile.edge_of_point[*i];
             edge >= 0 && profile.edges[edge as usize].angle > 0.0
         };
+        let inside = |i: usize| {
+            let point = pose.inverse_transform_point(profile.points[i]);
+            self.tips.hull.depth(point) > 0.0
+        };
         self.points_under(profile, pose)
             .filter(stands_out)
-            .map(|i| {
-                self.tips
-                    .hull
-                    .depth(pose.inverse_transform_point(profile.points[i]))
-            })
-            .fold(f64::NEG_INFINITY, f64::max)
+            .any(inside)
     }
 
     /// Every piece of the ground inside the envelope, from the left.
@@ -168,14 +183,14 @@ impl TrackEnvelope {
                 .tips
                 .hull
                 .depth(pose.inverse_transform_point(profile.points[i]));
-            if profile.edges[id as usize].angle > 0.0 && depth > edge.0 {
+            if profile.edges[id as usize].angle > 0.0 && depth > edge.0 + SAME_DEPTH {
                 edge = (depth, id);
             }
         }
         Intrusion {
             edges,
             edge: edge.1,
-            area: piece.area(&self.tips.hull),
+            area: piece.area(&self.tips.hull).max(0.0),
             stretches: piece.chords().map(|c| c.span).collect(),
             ..self.at(pose, deepest, root)
         }
@@ -201,8 +216,8 @@ impl TrackEnvelope {
             bodies: hull
                 .neighbours(deepest, nearest, &self.discs)
                 .map(|disc| self.parts[disc]),
-            depth: nearest.depth,
-            root_depth: self.roots.hull.depth(deepest_below_roots).max(0.0),
+            depth: nearest.depth + self.margin,
+            root_depth: (self.roots.hull.depth(deepest_below_roots) + self.margin).max(0.0),
             x: place.x,
             y: place.y,
             area: 0.0,

@@ -178,23 +178,18 @@ fn solids_of(index: usize, part: &Part) -> Vec<Solid> {
                 radius: gear.radius,
                 drive,
             });
-            let (reach, half) = (gear.reach(), 0.5 * gear.thickness);
             let grousers = gear.directions().map(|direction| {
-                let turned = Rotation::new(direction);
-                let middle = turned * Vector::new(0.5 * reach, 0.0);
-                let shape = SharedShape::cuboid(0.5 * reach, half);
-                solid(shape, Pose::from_parts(middle, turned), wheel)
+                let corners = gear.corners(direction).to_vec();
+                solid(polygon(corners), Pose::identity(), wheel)
             });
             std::iter::once(root).chain(grousers).collect()
         }
-        Shape::Polygon { corners } => {
-            let polygon = SharedShape::convex_polyline(corners.clone());
-            on_chassis(
-                polygon.expect("the scenario holds a convex polygon"),
-                Pose::identity(),
-            )
-        }
+        Shape::Polygon { corners } => on_chassis(polygon(corners.clone()), Pose::identity()),
     }
+}
+
+fn polygon(corners: Vec<Vector>) -> SharedShape {
+    SharedShape::convex_polyline(corners).expect("the corners are those of a convex polygon")
 }
 
 /// The hull of two discs is the hull of a disc and a point, grown by the smaller radius all round.

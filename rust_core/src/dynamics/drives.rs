@@ -15,7 +15,8 @@ impl Dynamics {
         h: f64,
     ) -> f64 {
         let m = &self.model;
-        let admittance = 1.0 / m.drive_mass + m.drive_radius * m.drive_radius / m.moment_of_inertia;
+        let square = m.drive_radius * m.drive_radius;
+        let admittance = square * (self.inverse.drive + self.inverse.inertia);
         let limit = m.drive_force * h;
         let error = set_point - state.track_speed(m, k);
         let old = self.motor_impulses[k];
@@ -61,19 +62,19 @@ impl Dynamics {
 
     pub(super) fn push_motor(&self, state: &mut State, k: usize, impulse: f64) {
         self.spin_up(state, k, -impulse);
-        state.angular_velocity += self.model.drive_radius * impulse / self.model.moment_of_inertia;
+        state.angular_velocity += self.model.drive_radius * impulse * self.inverse.inertia;
     }
 
     pub(super) fn push_chassis(&self, state: &mut State, impulse: f64) {
         let (axis, lever) = self.push_axis(state);
-        state.velocity += axis * (impulse / self.model.mass);
-        state.angular_velocity += lever * impulse / self.model.moment_of_inertia;
+        state.velocity += axis * (impulse * self.inverse.mass);
+        state.angular_velocity += lever * impulse * self.inverse.inertia;
         self.spin_up(state, 0, impulse);
     }
 
     /// An impulse at the drive's radius; its inertia is `drive_mass x drive_radius^2`.
     pub(super) fn spin_up(&self, state: &mut State, k: usize, impulse: f64) {
-        state.drives[k].spin += impulse / (self.model.drive_mass * self.model.drive_radius);
+        state.drives[k].spin += impulse * self.model.drive_radius * self.inverse.drive;
     }
 
     /// Direction and lever of a force along the chassis at axle height.

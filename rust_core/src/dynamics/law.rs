@@ -19,11 +19,6 @@ pub(super) struct Softness {
 }
 
 impl Softness {
-    pub(super) const RIGID: Self = Self {
-        push_rate: 0.0,
-        compliance: 0.0,
-    };
-
     pub(super) fn new(frequency: f64, damping_ratio: f64, h: f64) -> Self {
         let omega = std::f64::consts::TAU * frequency;
         let a1 = 2.0 * damping_ratio + h * omega;

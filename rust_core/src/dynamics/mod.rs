@@ -19,7 +19,7 @@ use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
 use law::{Softness, coulomb};
-use row::{Direction, Row};
+use row::Row;
 pub(crate) use state::{DriveState, State};
 
 /// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a substep of
@@ -42,6 +42,7 @@ const CARRIED_OVER: f64 = 5e-3;
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
     model: Model,
+    inverse: Inverse,
     friction: f64,
     gravity: f64,
     solver: Solver,
@@ -51,10 +52,32 @@ pub(crate) struct Dynamics {
     loaded: Vec<LoadedContact>,
 }
 
+/// What a unit impulse does.
+#[derive(Clone, Copy)]
+struct Inverse {
+    /// [1/kg] To the velocity.
+    mass: f64,
+    /// [1/(kg m^2)] To the angular velocity.
+    inertia: f64,
+    /// [1/(kg m^2)] To the spin of a drive.
+    drive: f64,
+}
+
+impl Inverse {
+    fn of(m: &Model) -> Self {
+        Self {
+            mass: 1.0 / m.mass,
+            inertia: 1.0 / m.moment_of_inertia,
+            drive: 1.0 / (m.drive_mass * m.drive_radius * m.drive_radius),
+        }
+    }
+}
+
 impl Dynamics {
     pub(crate) fn new(model: Model, friction: f64, gravity: f64, solver: Solver) -> Self {
         let motor_impulses = vec![0.0; model.motors];
         Self {
+            inverse: Inverse::of(&model),
             model,
             friction,
             gravity,
@@ -87,40 +110,27 @@ impl Dynamics {
     ) -> Result<(), SimulationError> {
         let dt = self.solver.time_step;
         self.prepare(state, contacts);
-        let substeps = if self.collides(state) {
-            self.solver
-                .substeps
-                .max((dt / COLLISION_SUBSTEP).ceil() as u32)
-        } else {
-            self.solver.substeps
-        };
-        let h = dt / f64::from(substeps);
-        self.scale_impulses(h);
-        let soft = Softness::new(
-            self.solver.contact_frequency,
-            self.solver.contact_damping_ratio,
-            h,
-        );
         for drive in &mut state.drives {
             (drive.force, drive.traction) = (0.0, 0.0);
         }
         let start = (state.center, state.angle);
-        for _ in 0..substeps {
-            state.velocity.y -= self.gravity * h;
-            self.apply_last_impulses(state);
-            self.solve(state, set_point, h, Some(soft));
-            state.center += state.velocity * h;
-            state.angle += state.angular_velocity * h;
-            for k in 0..state.drives.len() {
-                state.drives[k].position += state.track_speed(&self.model, k) * h;
+        let substep = dt / f64::from(self.solver.substeps);
+        // Between steps the last substep is kept as forces, for the next one may be shorter.
+        let mut last = 1.0;
+        for _ in 0..self.solver.substeps {
+            let cuts = if self.collides(state, substep) {
+                (substep / COLLISION_SUBSTEP).ceil()
+            } else {
+                1.0
+            };
+            let h = substep / cuts;
+            self.scale_impulses(h / last);
+            last = h;
+            for _ in 0..cuts as u32 {
+                self.substep(state, start, set_point, h);
             }
-            for row in &mut self.rows {
-                row.follow(state, start);
-            }
-            self.solve(state, set_point, h, None);
-            self.collect(state, dt);
         }
-        self.scale_impulses(1.0 / h);
+        self.scale_impulses(1.0 / last);
         self.report(state, contacts, dt);
         if state.is_finite() {
             Ok(())
@@ -130,6 +140,28 @@ impl Dynamics {
                 body: "the robot".to_owned(),
             })
         }
+    }
+
+    /// Advances by a substep of `h` [s]; the step began at `start`.
+    fn substep(&mut self, state: &mut State, start: (Vector, f64), set_point: f64, h: f64) {
+        let soft = Softness::new(
+            self.solver.contact_frequency,
+            self.solver.contact_damping_ratio,
+            h,
+        );
+        state.velocity.y -= self.gravity * h;
+        self.apply_last_impulses(state);
+        self.solve(state, set_point, h, Some(soft));
+        state.center += state.velocity * h;
+        state.angle += state.angular_velocity * h;
+        for k in 0..state.drives.len() {
+            state.drives[k].position += state.track_speed(&self.model, k) * h;
+        }
+        for row in &mut self.rows {
+            row.follow(state, start);
+        }
+        self.solve(state, set_point, h, None);
+        self.collect(state, self.solver.time_step);
     }
 
     /// Turns contacts into rows, each with the impulses of the last step's nearest one.
@@ -147,16 +179,14 @@ impl Dynamics {
         }
     }
 
-    /// A gap will close in this step, and not gently.
-    fn collides(&self, state: &State) -> bool {
-        let dt = self.solver.time_step;
+    /// A gap will close within a time [s], and not gently.
+    fn collides(&self, state: &State, time: f64) -> bool {
         self.rows.iter().any(|row| {
             let speed = row.opening_speed(state);
-            speed < -COLLISION_SPEED && row.gap + speed * dt <= 0.0
+            speed < -COLLISION_SPEED && row.gap + speed * time <= 0.0
         })
     }
 
-    /// Between steps the last substep is kept as forces, for the next one may be shorter.
     fn scale_impulses(&mut self, factor: f64) {
         for row in &mut self.rows {
             row.normal_impulse *= factor;
@@ -171,8 +201,7 @@ impl Dynamics {
     /// Starts a substep from the impulses of the last one.
     fn apply_last_impulses(&self, state: &mut State) {
         for row in &self.rows {
-            self.push_normal(state, row, row.normal_impulse);
-            self.push_tangent(state, row, row.friction_impulse);
+            self.push(state, row, row.normal_impulse, row.friction_impulse);
         }
         for (k, impulse) in self.motor_impulses.iter().enumerate() {
             self.push_motor(state, k, *impulse);
@@ -211,57 +240,54 @@ impl Dynamics {
         h: f64,
         softness: Option<Softness>,
     ) -> f64 {
-        let row = self.rows[i];
+        let row = &self.rows[i];
+        let bias = match softness {
+            // Before the motion an open gap may just close, and a penetration is pushed out softly.
+            Some(_) if row.gap > 0.0 => row.gap / h,
+            Some(soft) => (soft.push_rate * row.gap).max(-self.solver.max_push_speed),
+            // After it, surfaces that touch may not approach; the others are left alone.
+            None if row.gap > TOUCHING => f64::INFINITY,
+            None => 0.0,
+        };
+        let approach = row.opening_speed(state) + bias;
+        if approach >= 0.0 && row.normal_impulse == 0.0 {
+            return 0.0;
+        }
         let held = row.drive.filter(|k| self.holds(*k, h));
         let a = if held.is_some() { row.held } else { row.free };
-        let (bias, softness) = match softness {
-            // Before the motion an open gap may just close, and a penetration is pushed out softly.
-            Some(_) if row.gap > 0.0 => (row.gap / h, Softness::RIGID),
-            Some(soft) => (
-                (soft.push_rate * row.gap).max(-self.solver.max_push_speed),
-                soft,
-            ),
-            // After it, surfaces that touch may not approach; the others are left alone.
-            None if row.gap > TOUCHING => (f64::INFINITY, Softness::RIGID),
-            None => (0.0, Softness::RIGID),
+        let compliance = match softness {
+            Some(soft) if row.gap <= 0.0 => soft.compliance * a.normal,
+            _ => 0.0,
         };
-        let compliance = softness.compliance * a.normal;
-        let approach = row.opening_speed(state) + bias;
-        let slip = row.slip(state);
         // Velocities that the contact would have without its impulses.
         let free_approach =
             approach - a.normal * row.normal_impulse - a.cross * row.friction_impulse;
-        let free_slip = slip - a.cross * row.normal_impulse - a.tangent * row.friction_impulse;
+        let free_slip =
+            row.slip(state) - a.cross * row.normal_impulse - a.tangent * row.friction_impulse;
         let (normal, friction) = coulomb(free_approach, free_slip, a, compliance, row.friction);
-        self.rows[i].normal_impulse = normal;
-        self.rows[i].friction_impulse = friction;
         let (more_normal, more_friction) =
             (normal - row.normal_impulse, friction - row.friction_impulse);
-        self.push_normal(state, &row, more_normal);
-        self.push_tangent(state, &row, more_friction);
+        self.push(state, row, more_normal, more_friction);
+        let row = &mut self.rows[i];
+        (row.normal_impulse, row.friction_impulse) = (normal, friction);
         if let Some(k) = held {
             self.solve_motor(state, k, set_point, h);
         }
         (more_normal.abs() * a.normal).max(more_friction.abs() * a.tangent)
     }
 
-    fn push_normal(&self, state: &mut State, row: &Row, impulse: f64) {
-        self.push_along(state, &row.normal, row.drive, impulse);
-    }
-
-    fn push_tangent(&self, state: &mut State, row: &Row, impulse: f64) {
-        self.push_along(state, &row.tangent, row.drive, impulse);
-    }
-
-    fn push_along(&self, state: &mut State, along: &Direction, drive: Option<usize>, impulse: f64) {
-        state.velocity += along.unit * (impulse / self.model.mass);
-        state.angular_velocity += along.lever * impulse / self.model.moment_of_inertia;
-        if let Some(k) = drive {
-            self.spin_up(
-                state,
-                k,
-                along.drive_lever / self.model.drive_radius * impulse,
-            );
+    /// Applies impulses along normal and tangent.
+    fn push(&self, state: &mut State, row: &Row, normal: f64, tangent: f64) {
+        let (n, t) = (&row.normal, &row.tangent);
+        let Inverse {
+            mass,
+            inertia,
+            drive,
+        } = self.inverse;
+        state.velocity += (n.unit * normal + t.unit * tangent) * mass;
+        state.angular_velocity += (n.lever * normal + t.lever * tangent) * inertia;
+        if let Some(k) = row.drive {
+            state.drives[k].spin += (n.drive_lever * normal + t.drive_lever * tangent) * drive;
         }
     }
 

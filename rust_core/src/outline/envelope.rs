@@ -33,13 +33,15 @@ struct Piece {
 
 #[derive(Clone, Copy, Debug)]
 enum Form {
-    /// An arc of disc `disc`, clockwise from the outward direction `from` [rad].
+    /// An arc of disc `disc`, clockwise from the outward direction `from` [rad]; `ends` are its
+    /// first and last outward directions.
     Arc {
         disc: usize,
         center: Vector,
         radius: f64,
         from: f64,
         sweep: f64,
+        ends: [Vector; 2],
     },
     /// A straight run from `begin` along `along`.
     Run {
@@ -85,6 +87,7 @@ impl Envelope {
             radius,
             from: arc.from,
             sweep: arc.sweep,
+            ends: [direction(arc.from), direction(arc.from - arc.sweep)],
         };
         self.push(radius * arc.sweep, shape);
     }
@@ -324,13 +327,12 @@ impl Piece {
             Form::Arc {
                 center,
                 radius,
-                from,
                 sweep,
+                ends,
                 ..
             } => {
                 let spoke = point - center;
-                let turn = (from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
-                (turn <= sweep).then(|| radius - spoke.length())
+                is_on_arc(spoke, ends, sweep, 0.0).then(|| radius - spoke.length())
             }
         }
     }
@@ -355,8 +357,8 @@ impl Piece {
             Form::Arc {
                 center,
                 radius,
-                from,
                 sweep,
+                ends,
                 ..
             } => {
                 let (offset, square) = (a - center, way.length_squared());
@@ -367,9 +369,7 @@ impl Piece {
                 }
                 for t in [-half - rest.sqrt(), -half + rest.sqrt()] {
                     let spoke = offset + way * t;
-                    let turn = (from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
-                    let on_arc = turn <= sweep + JOINT || turn >= TAU - JOINT;
-                    if (0.0..=1.0).contains(&t) && on_arc {
+                    if (0.0..=1.0).contains(&t) && is_on_arc(spoke, ends, sweep, JOINT * radius) {
                         cut(t);
                     }
                 }
@@ -447,6 +447,16 @@ fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     }
 }
 
+/// Whether a way from the centre points through a clockwise arc, with a margin at its ends.
+fn is_on_arc(spoke: Vector, [first, last]: [Vector; 2], sweep: f64, margin: f64) -> bool {
+    let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
+    if sweep > 0.5 * TAU {
+        after_first >= -margin || before_last >= -margin
+    } else {
+        after_first >= -margin && before_last >= -margin
+    }
+}
+
 /// [rad] How far the outward direction turns clockwise on `disc` until `other` reaches as far out.
 fn turn_to(disc: &Disc, other: &Disc, outward: f64) -> Option<f64> {
     let way = other.center - disc.center;
@@ -474,8 +484,8 @@ pub(crate) fn maximise(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f
     const SHARE: f64 = 0.618_033_988_749_894_9;
     let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
     let (mut at_a, mut at_b) = (f(a), f(b));
-    // The bracket shrinks to 1e-17 of its start: below rounding.
-    for _ in 0..82 {
+    // The bracket shrinks to 1e-11 of its start.
+    for _ in 0..52 {
         if at_a < at_b {
             (low, a, at_a) = (a, b, at_b);
             b = low + SHARE * (high - low);
@@ -487,4 +497,86 @@ pub(crate) fn maximise(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f
         }
     }
     0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(x: f64, y: f64, radius: f64) -> Disc {
+        Disc {
+            center: Vector::new(x, y),
+            radius,
+        }
+    }
+
+    fn stadium() -> Envelope {
+        Envelope::new(&[
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.0, 0.1),
+            disc(0.3, 0.0, 0.1),
+        ])
+    }
+
+    #[test]
+    fn length_and_area_are_those_of_a_stadium() {
+        let belt = stadium();
+        assert!((belt.length() - (1.0 + TAU * 0.1)).abs() < 1e-12);
+        let area = -0.5 * belt.swept(0.0, belt.length());
+        assert!((area - (0.1 + 0.5 * TAU * 0.01)).abs() < 1e-12, "{area}");
+    }
+
+    #[test]
+    fn walk_starts_at_the_rear_of_the_lower_run_and_follows_the_belt() {
+        let belt = stadium();
+        let arc = 0.05 * TAU;
+        for (way, x, y) in [
+            (0.0, -0.2, -0.1),
+            (0.5 * arc, -0.3, 0.0),
+            (arc, -0.2, 0.1),
+            (arc + 0.5, 0.3, 0.1),
+            (1.5 * arc + 0.5, 0.4, 0.0),
+            (2.0 * arc + 0.6, 0.2, -0.1),
+        ] {
+            let point = belt.point_at(way);
+            assert!(
+                (point - Vector::new(x, y)).length() < 1e-12,
+                "{way}: {point}"
+            );
+            assert!((belt.way_of(point) - way).abs() < 1e-9, "{way}");
+        }
+    }
+
+    #[test]
+    fn one_disc_is_its_own_envelope() {
+        let belt = Envelope::new(&[disc(1.0, 2.0, 0.5)]);
+        assert!((belt.length() - 0.5 * TAU).abs() < 1e-12);
+        assert!((belt.depth(Vector::new(1.0, 2.2)) - 0.3).abs() < 1e-12);
+        assert!((-0.5 * belt.swept(0.0, belt.length()) - 0.125 * TAU).abs() < 1e-12);
+    }
+
+    #[test]
+    fn discs_inside_the_hull_leave_no_trace() {
+        let belt = Envelope::new(&[
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.02, 0.05),
+            disc(0.3, 0.0, 0.1),
+        ]);
+        assert!((belt.length() - stadium().length()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn distances_along_the_belt_come_back_as_distances() {
+        let belt = Envelope::new(&[disc(-0.2, 0.0, 0.1), disc(0.3, 0.05, 0.04)]);
+        for i in 0..100 {
+            let way = 0.017 * f64::from(i);
+            for distance in [0.01, 0.05, 0.07] {
+                let next = belt.way_to_distance(way, distance);
+                let apart = (belt.point_at(next) - belt.point_at(way)).length();
+                assert!((apart - distance).abs() < 1e-9, "{way} {distance} {apart}");
+                // No arc within a half circle is longer than pi / 2 of its chord.
+                assert!(next > way && next - way < 0.26 * TAU * distance);
+            }
+        }
+    }
 }

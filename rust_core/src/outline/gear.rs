@@ -1,4 +1,4 @@
-//! The exact outline of a gear wheel: a root circle and rectangular grousers.
+//! The exact outline of a gear wheel: a root circle and grousers with straight flanks.
 
 use rapier2d_f64::math::Vector;
 
@@ -7,18 +7,20 @@ use crate::scenario::{GearWheel, TrackOutline};
 
 /// A wheel with grousers, resolved for one place on a robot.
 ///
-/// The grousers reach from the centre to the circumscribed circle, on which the two corners of each
-/// tip lie; what stands out of the root circle is the grouser.
+/// A grouser stands on a chord of the root circle; the two corners of its tip lie on the
+/// circumscribed circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gear {
-    /// [m] Radius of the circumscribed circle, through the corners of the tips.
+    /// [m] Radius of the circumscribed circle.
     pub radius: f64,
     /// [m] Radius of the root circle.
     pub root_radius: f64,
     /// Grousers round the wheel.
     pub grousers: u32,
-    /// [m] Thickness of a grouser.
-    pub thickness: f64,
+    /// [m] Thickness of a grouser at its tip.
+    pub tip_thickness: f64,
+    /// [m] Thickness of a grouser at the root circle.
+    pub base_thickness: f64,
     /// [rad] Direction of the first grouser at the start, from the chassis axis.
     pub phase: f64,
 }
@@ -67,87 +69,124 @@ impl Gear {
         } else {
             1.0
         };
-        let thickness = wheel
+        let tip_thickness = wheel
             .tip_thickness
             .unwrap_or(outline.grouser_thickness * shrunk.min(1.0));
-        if thickness <= 0.0 {
+        if tip_thickness <= 0.0 {
             let rule = "must be given and > 0 m: the outline's grousers have no thickness";
-            return error("tip_thickness", thickness, rule.to_owned());
+            return error("tip_thickness", tip_thickness, rule.to_owned());
+        }
+        let base_thickness = wheel.base_thickness.unwrap_or(tip_thickness);
+        if base_thickness < tip_thickness {
+            let rule = format!("must not be below the thickness of the tip, {tip_thickness} m");
+            return error("base_thickness", base_thickness, rule);
         }
         let angle = std::f64::consts::TAU / f64::from(grousers);
         let room = 2.0 * root_radius * libm::sin(0.5 * angle);
-        if thickness >= room {
+        if base_thickness >= room {
+            let given = wheel
+                .base_thickness
+                .map_or("tip_thickness", |_| "base_thickness");
             let rule = format!(
                 "must be below {room} m, the room of {grousers} grousers on the root circle of wheel {index}: they would overlap"
             );
-            return error("tip_thickness", thickness, rule);
+            return error(given, base_thickness, rule);
         }
         let ahead = wheel.phase_fraction * (index + 1) as f64;
         Ok(Self {
             radius,
             root_radius,
             grousers,
-            thickness,
+            tip_thickness,
+            base_thickness,
             phase: ahead * angle,
         })
     }
 
-    /// [m] Distance of a tip's face from the centre.
-    pub fn reach(&self) -> f64 {
-        (self.radius * self.radius - 0.25 * self.thickness * self.thickness).sqrt()
-    }
-
     /// [rad] Directions of the grousers at the start.
     pub fn directions(&self) -> impl Iterator<Item = f64> {
-        let (phase, step) = (self.phase, std::f64::consts::TAU / f64::from(self.grousers));
+        let (phase, step) = (self.phase, self.angle());
         (0..self.grousers).map(move |i| phase + f64::from(i) * step)
     }
 
-    /// [m] Corners of one grouser in the wheel's frame, counter-clockwise: its base first.
-    pub fn corners(&self, direction: f64) -> [Vector; 4] {
-        let (sine, cosine) = libm::sincos(direction);
-        let (along, across) = (Vector::new(cosine, sine), Vector::new(-sine, cosine));
-        let (tip, half) = (along * self.reach(), across * (0.5 * self.thickness));
-        // The base is the centre: the root circle hides it.
-        [-half, tip - half, tip + half, half]
+    /// [rad] Angle between two grousers: the theta of eq. (1).
+    pub fn angle(&self) -> f64 {
+        std::f64::consts::TAU / f64::from(self.grousers)
     }
 
-    /// [m] The outline at the start, about the centre: each root arc in `points` points, then a grouser.
+    /// [rad] Half the angle that a grouser takes on the circumscribed circle, and on the root circle.
+    fn half_angles(&self) -> (f64, f64) {
+        (
+            libm::asin(0.5 * self.tip_thickness / self.radius),
+            libm::asin(0.5 * self.base_thickness / self.root_radius),
+        )
+    }
+
+    /// [m] Corners of one grouser about the wheel's centre, counter-clockwise from its base.
+    pub fn corners(&self, direction: f64) -> [Vector; 4] {
+        let (tip, base) = self.half_angles();
+        [
+            polar(self.root_radius, direction - base),
+            polar(self.radius, direction - tip),
+            polar(self.radius, direction + tip),
+            polar(self.root_radius, direction + base),
+        ]
+    }
+
+    /// [m] The outline at the start, about the centre: each root arc in `points` points, then a tip.
     pub fn outline(&self, points: usize) -> Vec<Vector> {
-        let half = libm::asin(0.5 * self.thickness / self.root_radius);
-        let step = std::f64::consts::TAU / f64::from(self.grousers);
+        let (_, base) = self.half_angles();
+        let room = self.angle() - 2.0 * base;
         let of_grouser = |direction: f64| {
-            let corners = self.corners(direction);
             let arc = (0..points).map(move |i| {
                 let share = i as f64 / points.saturating_sub(1).max(1) as f64;
-                let angle = direction - step + half + share * (step - 2.0 * half);
-                let (sine, cosine) = libm::sincos(angle);
-                Vector::new(cosine, sine) * self.root_radius
+                let angle = direction - base - (1.0 - share) * room;
+                polar(self.root_radius, angle)
             });
-            arc.chain([corners[1], corners[2]])
+            let [_, tip, other, _] = self.corners(direction);
+            arc.chain([tip, other])
         };
         self.directions().flat_map(of_grouser).collect()
     }
 
     /// [m^2] Area of the outline.
     pub fn area(&self) -> f64 {
-        let (h, x, root) = (0.5 * self.thickness, self.reach(), self.root_radius);
-        let beta = libm::asin(h / root);
-        let hidden = root * root * beta + root * libm::cos(beta) * h;
-        std::f64::consts::PI * root * root + f64::from(self.grousers) * (2.0 * h * x - hidden)
+        let root = self.root_radius;
+        let arc = 0.5 * root * root * self.arc();
+        let sides: f64 = self.sides().map(|[a, b]| 0.5 * cross(a, b)).sum();
+        f64::from(self.grousers) * (arc + sides)
     }
 
     /// [m^4] Polar moment of the area about the centre.
     pub fn polar_moment(&self) -> f64 {
-        let (h, x, root) = (0.5 * self.thickness, self.reach(), self.root_radius);
-        let beta = libm::asin(h / root);
-        let b = root * libm::cos(beta);
-        // A grouser's half-strip out of the centre: a rectangle; what the root circle hides of it:
-        // a sector and two triangles.
-        let strip = 2.0 / 3.0 * (h * x.powi(3) + h.powi(3) * x);
-        let hidden = 0.5 * root.powi(4) * beta + h * b.powi(3) / 6.0 + 0.5 * b * h.powi(3);
-        0.5 * std::f64::consts::PI * root.powi(4) + f64::from(self.grousers) * (strip - hidden)
+        let square = self.root_radius * self.root_radius;
+        let arc = 0.25 * square * square * self.arc();
+        let sides: f64 = self
+            .sides()
+            .map(|[a, b]| cross(a, b) * (a.dot(a) + a.dot(b) + b.dot(b)) / 12.0)
+            .sum();
+        f64::from(self.grousers) * (arc + sides)
     }
+
+    /// [rad] Angle of a root arc between two grousers.
+    fn arc(&self) -> f64 {
+        self.angle() - 2.0 * self.half_angles().1
+    }
+
+    /// Flank, tip and flank of one grouser.
+    fn sides(&self) -> impl Iterator<Item = [Vector; 2]> {
+        let [a, b, c, d] = self.corners(0.0);
+        [[a, b], [b, c], [c, d]].into_iter()
+    }
+}
+
+fn polar(radius: f64, angle: f64) -> Vector {
+    let (sine, cosine) = libm::sincos(angle);
+    Vector::new(cosine, sine) * radius
+}
+
+fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
 }
 
 /// Grousers at the robot's own pitch where that makes at least 6, else at least 8.
@@ -164,23 +203,40 @@ fn default_count(root_radius: f64, pitch: f64) -> u32 {
 mod tests {
     use super::*;
 
+    fn gear(radius: f64, height: f64, grousers: u32, tip: f64, base: f64) -> Gear {
+        Gear {
+            radius,
+            root_radius: radius - height,
+            grousers,
+            tip_thickness: tip,
+            base_thickness: base,
+            phase: 0.1,
+        }
+    }
+
     /// The outline as a fine polygon, from the distance of its points alone.
     fn polygon(gear: &Gear, points: usize) -> Vec<Vector> {
+        // A flank runs from (x0, y0) on the root circle to (x1, y1) on the circumscribed one.
+        let (y0, y1) = (0.5 * gear.base_thickness, 0.5 * gear.tip_thickness);
+        let x0 = (gear.root_radius * gear.root_radius - y0 * y0).sqrt();
+        let x1 = (gear.radius * gear.radius - y1 * y1).sqrt();
         (0..points)
             .map(|i| {
                 let angle = std::f64::consts::TAU * i as f64 / points as f64;
-                let (s, c) = libm::sincos(angle);
                 let in_grouser = |direction: f64| {
                     let (sine, cosine) = libm::sincos(angle - direction);
-                    let across = 0.5 * gear.thickness / sine.abs();
-                    let along = gear.reach() / cosine;
-                    if cosine > 0.0 { along.min(across) } else { 0.0 }
+                    let flank = (x1 * y0 - x0 * y1) / ((x1 - x0) * sine.abs() + (y0 - y1) * cosine);
+                    if cosine > 0.5 {
+                        (x1 / cosine).min(flank)
+                    } else {
+                        0.0
+                    }
                 };
                 let distance = gear
                     .directions()
                     .map(in_grouser)
                     .fold(gear.root_radius, f64::max);
-                Vector::new(c, s) * distance
+                polar(distance, angle)
             })
             .collect()
     }
@@ -199,21 +255,14 @@ mod tests {
 
     #[test]
     fn area_and_polar_moment_are_those_of_the_outline() {
-        for (radius, height, grousers, thickness) in [
-            (0.064, 0.012, 7, 0.006),
-            (0.02, 0.005, 8, 0.0025),
-            (0.1, 0.015, 12, 0.02),
-            (0.05, 0.02, 3, 0.03),
+        for gear in [
+            gear(0.064, 0.012, 7, 0.006, 0.006),
+            gear(0.02, 0.005, 8, 0.0025, 0.0025),
+            gear(0.1, 0.015, 12, 0.016, 0.024),
+            gear(0.05, 0.02, 3, 0.02, 0.03),
         ] {
-            let gear = Gear {
-                radius,
-                root_radius: radius - height,
-                grousers,
-                thickness,
-                phase: 0.1,
-            };
             let (area, polar) = moments(&polygon(&gear, 4_000_000));
-            // A flank is 1e-6 of the circumference away from a point of this polygon.
+            // A corner is at most a millionth of the circumference away from a point of this polygon.
             assert!((gear.area() / area - 1.0).abs() < 1e-6, "{gear:?}");
             assert!((gear.polar_moment() / polar - 1.0).abs() < 1e-6, "{gear:?}");
         }
@@ -221,17 +270,12 @@ mod tests {
 
     #[test]
     fn corners_of_the_tips_lie_on_the_circumscribed_circle() {
-        let gear = Gear {
-            radius: 0.064,
-            root_radius: 0.052,
-            grousers: 7,
-            thickness: 0.006,
-            phase: 0.3,
-        };
+        let gear = gear(0.064, 0.012, 7, 0.006, 0.009);
         for direction in gear.directions() {
-            for corner in &gear.corners(direction)[1..3] {
-                assert!((corner.length() - gear.radius).abs() < 1e-16);
-            }
+            let [base, tip, other, _] = gear.corners(direction);
+            assert!((tip.length() - gear.radius).abs() < 1e-16);
+            assert!(((tip - other).length() - gear.tip_thickness).abs() < 1e-16);
+            assert!((base.length() - gear.root_radius).abs() < 1e-16);
         }
     }
 }

@@ -58,68 +58,56 @@ fn circumferential(
     wheels: &CircumferentialWheels,
 ) -> Result<Vec<Disc>, ScenarioError> {
     let smallest = outline.front_radius.min(outline.rear_radius);
-    let ring = |radius: f64| Ring::new(outline, radius, wheels.count);
-    let radius = match wheels.wheel_radius {
-        Some(radius) if radius < smallest => radius,
+    let (radius, centers) = match wheels.wheel_radius {
+        Some(radius) if radius < smallest => {
+            let path = path_of_centers(outline, radius);
+            let spacing = path.length() / f64::from(wheels.count);
+            let center = |i: u32| path.point_at(f64::from(i) * spacing);
+            (radius, (0..wheels.count).map(center).collect())
+        }
         Some(radius) => {
             let rule = format!("must be below the smaller radius of the outline, {smallest} m");
             return Err(ScenarioError::new("robot.track.wheel_radius", radius, rule));
         }
-        None => {
-            // Larger wheels leave a shorter way for their centres and need more of it.
-            let overlap = |radius: f64| ring(radius).overshoot(2.0 * radius);
-            let largest = smallest * (1.0 - 1e-9);
-            if overlap(largest) <= 0.0 {
-                let rule = format!(
-                    "must be larger: so few wheels would have to exceed the outline's {smallest} m to touch; give wheel_radius for spaced ones"
-                );
-                return Err(ScenarioError::new("robot.track.count", wheels.count, rule));
-            }
-            bisect(0.0, largest, overlap)
-        }
+        None => tight(outline, wheels.count)?,
     };
     let disc = |center| Disc { center, radius };
-    Ok(ring(radius).even().into_iter().map(disc).collect())
+    Ok(centers.into_iter().map(disc).collect())
 }
 
-/// The way of the wheels' centres.
-struct Ring {
-    path: Envelope,
-    count: u32,
+/// Radius and centres of wheels that touch their neighbours all the way round.
+fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), ScenarioError> {
+    // Larger wheels would meet those on the other side of the track before their neighbours.
+    let largest = 0.5 * outline.front_radius.min(outline.rear_radius);
+    // Larger wheels leave a shorter way for their centres and need more of it.
+    let overlap = |radius: f64| {
+        let path = path_of_centers(outline, radius);
+        let next = |at, _| path.way_to_distance(at, 2.0 * radius);
+        (0..count).fold(0.0, next) - path.length()
+    };
+    if overlap(largest) < 0.0 {
+        let rule = format!(
+            "must be larger: so few wheels would have to exceed {largest} m, half the outline's radius, to touch; give wheel_radius for spaced ones"
+        );
+        return Err(ScenarioError::new("robot.track.count", count, rule));
+    }
+    let radius = bisect(0.0, largest, overlap);
+    let path = path_of_centers(outline, radius);
+    let mut at = 0.0;
+    let centers = (0..count).map(|_| {
+        let center = path.point_at(at);
+        at = path.way_to_distance(at, 2.0 * radius);
+        center
+    });
+    Ok((radius, centers.collect()))
 }
 
-impl Ring {
-    fn new(outline: &TrackOutline, radius: f64, count: u32) -> Self {
-        let discs = end_discs(outline).map(|end| Disc {
-            radius: end.radius - radius,
-            ..end
-        });
-        Self {
-            path: Envelope::new(&discs),
-            count,
-        }
-    }
-
-    /// [m] How far beyond the start as many straight distances end as there are wheels.
-    fn overshoot(&self, distance: f64) -> f64 {
-        let end = (0..self.count).fold(0.0, |at, _| self.path.way_to_distance(at, distance));
-        end - self.path.length()
-    }
-
-    /// Centres at equal straight distances, also from the last to the first.
-    fn even(&self) -> Vec<Vector> {
-        // A straight distance is never longer than the way it cuts short.
-        let longest = self.path.length() / f64::from(self.count);
-        let distance = bisect(0.0, longest, |distance| self.overshoot(distance));
-        let mut at = 0.0;
-        (0..self.count)
-            .map(|_| {
-                let center = self.path.point_at(at);
-                at = self.path.way_to_distance(at, distance);
-                center
-            })
-            .collect()
-    }
+/// The way of the centres of wheels that touch the outline from inside.
+fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
+    Envelope::new(&end_discs(outline).map(|end| Disc {
+        radius: end.radius - radius,
+        ..end
+    }))
 }
 
 /// The zero of an increasing function, to the last bit.

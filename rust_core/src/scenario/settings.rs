@@ -126,7 +126,7 @@ impl SeizureCriteria {
             clear_time: f.number("clear_time", Range::between(0.0, 1e4, "s"))?,
             clear_angle: f.number("clear_angle", Range::above(0.0, 3.15, "rad"))?,
             tip_over_angle: f.number("tip_over_angle", Range::above(0.0, 3.15, "rad"))?,
-            intrusion_depth: f.number("intrusion_depth", Range::above(0.0, 1.0, "m"))?,
+            intrusion_depth: f.number("intrusion_depth", Range::between(0.0, 0.1, "m"))?,
         };
         f.finish()?;
         Ok(criteria)

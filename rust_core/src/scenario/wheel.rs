@@ -25,8 +25,10 @@ pub struct GearWheel {
     pub grouser_count: Option<u32>,
     /// [m] Radial height: the wheel's radius less that of its root circle.
     pub grouser_height: Option<f64>,
-    /// [m] Thickness of a grouser along the circumference; its flanks are parallel.
+    /// [m] Thickness of a grouser at its tip.
     pub tip_thickness: Option<f64>,
+    /// [m] Thickness of a grouser at the root circle; none is that of the tip, with parallel flanks.
+    pub base_thickness: Option<f64>,
     /// Share of the angle between two grousers by which each wheel starts ahead of the one before it.
     pub phase_fraction: f64,
 }
@@ -40,6 +42,7 @@ impl Wheel {
                 grouser_count: f.optional_integer("grouser_count", 3, MAX_GROUSERS)?,
                 grouser_height: f.optional_number("grouser_height", SIZE)?,
                 tip_thickness: f.optional_number("tip_thickness", SIZE)?,
+                base_thickness: f.optional_number("base_thickness", SIZE)?,
                 phase_fraction: f.number("phase_fraction", Range::between(0.0, 1.0, ""))?,
             }),
             other => return Err(f.error("kind", other, one_of(Some(other), &["round", "gear"]))),

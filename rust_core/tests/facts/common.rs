@@ -44,6 +44,7 @@ pub(crate) fn gear(phase_fraction: f64) -> Wheel {
         grouser_count: None,
         grouser_height: None,
         tip_thickness: None,
+        base_thickness: None,
         phase_fraction,
     })
 }

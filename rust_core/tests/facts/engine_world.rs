@@ -3,18 +3,17 @@
 //! The engine shares nothing with this project's equations of motion but the contact geometry: its
 //! wheels are bodies on revolute joints, each with its own velocity motor.
 
-use crawler2d_core::Scenario;
+use crawler2d_core::{Ground, Model, Scenario, Shape, Simulation};
 use rapier2d_f64::prelude::*;
 
-/// A line of wheels with motors of their own before a step, in the engine.
+/// A robot on wheels with motors of their own, in the engine.
 pub struct EngineWorld {
     world: PhysicsWorld,
     chassis: RigidBodyHandle,
-    motors: Vec<ImpulseJointHandle>,
+    motors: Vec<(ImpulseJointHandle, f64)>,
     set_point: f64,
     command: f64,
     acceleration: f64,
-    radius: f64,
 }
 
 /// How finely the engine steps.
@@ -27,9 +26,16 @@ pub struct EngineSettings {
 }
 
 impl EngineWorld {
-    /// The scenario's robot on `count` wheels before a step of `height` [m].
-    pub fn new(scenario: &Scenario, count: u32, height: f64, settings: EngineSettings) -> Self {
+    /// The scenario in bodies; its robot must have wheels with motors of their own.
+    ///
+    /// # Panics
+    /// If the scenario is not valid.
+    pub fn new(scenario: &Scenario, settings: EngineSettings) -> Self {
         let robot = &scenario.robot;
+        let model = Model::new(robot).expect("the scenario is valid");
+        let ground = Ground::new(&scenario.terrain).expect("the scenario is valid");
+        let start = Simulation::new(scenario).expect("the scenario is valid");
+        let start = start.reading().position;
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -scenario.gravity);
         let p = &mut world.integration_parameters;
@@ -44,85 +50,72 @@ impl EngineWorld {
         };
         p.static_contact_softness = p.contact_softness;
 
-        let ground = vec![
-            Vector::new(10.0, height),
-            Vector::new(0.0, height),
-            Vector::new(0.0, 0.0),
-            Vector::new(-10.0, 0.0),
-        ];
         let friction = |c: ColliderBuilder| {
-            c.friction(0.9)
+            c.friction(ground.profile.friction)
                 .friction_combine_rule(CoefficientCombineRule::Min)
         };
-        world.insert_collider(
-            friction(ColliderBuilder::oriented_polyline(ground, None)),
-            None,
-        );
+        let groups =
+            |own: Group, other: Group| InteractionGroups::new(own, other, InteractionTestMode::And);
+        let (of_ground, of_robot) = (Group::GROUP_1, Group::GROUP_2);
+        let points: Vec<Vector> = ground.profile.points.iter().rev().copied().collect();
+        let profile = friction(ColliderBuilder::oriented_polyline(points, None));
+        world.insert_collider(profile.collision_groups(groups(of_ground, of_robot)), None);
+        let on_robot = |c: ColliderBuilder| {
+            friction(c.density(0.0)).collision_groups(groups(of_robot, of_ground))
+        };
 
         // The chassis takes what the wheels leave of mass, centre of mass and inertia.
-        let (radius, half) = (robot.outline.rear_radius, 0.5 * robot.outline.axle_distance);
-        let wheel_mass = robot.track_mass / f64::from(count);
-        let wheel_inertia = wheel_mass * radius * radius;
-        let axle = |i: u32| -half + f64::from(i) * 2.0 * half / f64::from(count - 1);
-        let mass = robot.mass - robot.track_mass;
-        let com = Vector::from(robot.center_of_mass) * (robot.mass / mass);
-        let mut inertia = robot.moment_of_inertia - robot.track_mass * radius * radius;
-        let total = Vector::from(robot.center_of_mass);
-        inertia -= mass * (com - total).length_squared();
-        for i in 0..count {
-            inertia -= wheel_mass * (Vector::new(axle(i), 0.0) - total).length_squared();
-        }
-        let x = -scenario.start.approach - half - radius;
+        let (body, wheels) = model.bodies();
         let chassis = world.insert_body(
             RigidBodyBuilder::dynamic()
-                .translation(Vector::new(x, radius))
+                .translation(start)
                 .can_sleep(false)
-                .additional_mass_properties(MassProperties::new(com, mass, inertia)),
+                .additional_mass_properties(MassProperties::new(
+                    body.center_of_mass,
+                    body.mass,
+                    body.moment_of_inertia,
+                )),
         );
-        let belly: Vec<Vector> = robot
-            .belly
-            .iter()
-            .flatten()
-            .map(|c| Vector::new(c[0], c[1]))
-            .collect();
-        if let Some(collider) = ColliderBuilder::convex_polyline(belly) {
-            let groups =
-                InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
-            let belly =
-                friction(collider.density(0.0)).collision_groups(groups.with_filter(Group::ALL));
-            world.insert_collider(belly, Some(chassis));
+        for part in &model.parts {
+            if let Shape::Polygon { corners } = &part.shape {
+                let belly = ColliderBuilder::convex_polyline(corners.clone());
+                world.insert_collider(on_robot(belly.expect("convex")), Some(chassis));
+            }
         }
-        let force = robot.drivetrain.max_force(&robot.outline) / f64::from(count);
-        for i in 0..count {
-            let center = Vector::new(axle(i), 0.0);
-            let wheel = world.insert_body(
+        let mut motors = Vec::new();
+        for wheel in &wheels {
+            let handle = world.insert_body(
                 RigidBodyBuilder::dynamic()
-                    .translation(Vector::new(x, radius) + center)
+                    .translation(start + wheel.center)
                     .can_sleep(false)
                     .additional_mass_properties(MassProperties::new(
                         Vector::ZERO,
-                        wheel_mass,
-                        wheel_inertia,
+                        wheel.mass,
+                        wheel.moment_of_inertia,
                     )),
             );
-            let groups =
-                InteractionGroups::new(Group::GROUP_2, Group::GROUP_3, InteractionTestMode::And);
-            let ball = friction(ColliderBuilder::ball(radius).density(0.0));
-            world.insert_collider(
-                ball.collision_groups(
-                    groups.with_filter(Group::ALL ^ Group::GROUP_2 ^ Group::GROUP_1),
-                ),
-                Some(wheel),
-            );
+            let collider = match &model.parts[wheel.part].shape {
+                Shape::Gear { gear, .. } => {
+                    let ball = (Pose::IDENTITY, SharedShape::ball(gear.root_radius));
+                    let grousers = gear.directions().map(|direction| {
+                        let corners = gear.corners(direction).to_vec();
+                        let grouser = SharedShape::convex_polyline(corners);
+                        (Pose::IDENTITY, grouser.expect("convex"))
+                    });
+                    ColliderBuilder::compound(std::iter::once(ball).chain(grousers).collect())
+                }
+                _ => ColliderBuilder::ball(wheel.radius),
+            };
+            world.insert_collider(on_robot(collider), Some(handle));
             let joint = RevoluteJointBuilder::new()
-                .local_anchor1(center)
+                .local_anchor1(wheel.center)
                 .contacts_enabled(false)
                 .motor_model(MotorModel::ForceBased)
                 .motor_velocity(0.0, 1e4)
-                .motor_max_force(force * radius);
-            world.insert_impulse_joint(chassis, wheel, joint);
+                .motor_max_force(model.drive_force * wheel.radius);
+            let joint = world.insert_impulse_joint(chassis, handle, joint);
+            motors.push((joint, wheel.radius));
         }
-        let motors = world.impulse_joints().map(|(handle, _)| handle).collect();
         Self {
             world,
             chassis,
@@ -130,7 +123,6 @@ impl EngineWorld {
             set_point: 0.0,
             command: scenario.drive.speed,
             acceleration: robot.drivetrain.max_acceleration,
-            radius,
         }
     }
 
@@ -138,11 +130,11 @@ impl EngineWorld {
     pub fn step(&mut self) {
         let dt = self.world.integration_parameters.dt;
         self.set_point = (self.set_point + self.acceleration * dt).min(self.command);
-        for handle in &self.motors {
+        for (handle, radius) in &self.motors {
             if let Some(joint) = self.world.impulse_joints.get_mut(*handle, false) {
                 joint
                     .data
-                    .set_motor_velocity(JointAxis::AngX, -self.set_point / self.radius, 1e4);
+                    .set_motor_velocity(JointAxis::AngX, -self.set_point / radius, 1e4);
             }
         }
         self.world.step();

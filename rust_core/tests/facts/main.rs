@@ -15,6 +15,7 @@ mod basics;
 mod belt;
 mod climbing;
 mod drive;
+mod gears;
 mod ghosts;
 mod repeat;
 mod robustness;

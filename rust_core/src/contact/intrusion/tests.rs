@@ -1,0 +1,321 @@
+//! Intrusions against a judge that shares no code with them: support functions and slices.
+//!
+//! The ground below a profile is a heap of vertical slices and the envelope is convex, so a piece of
+//! the ground inside it is a range of x over which the profile lies above the envelope's lower side.
+//! The depth of a point is the least room to any tangent of the envelope; the tangents that can be
+//! the nearest are those that touch two discs and those square to the way from a disc's centre.
+
+#![allow(clippy::print_stdout)] // a figure is part of what a test tells
+
+mod judge;
+
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+
+use super::*;
+use crate::robot::Model;
+use crate::scenario::{
+    CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Terrain, Track, Wheel,
+};
+use crate::terrain::Ground;
+use judge::{Judge, Range, SLICES, ranges};
+
+const POSES: usize = 10_000;
+/// splitmix64
+struct Draw(u64);
+
+impl Draw {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+fn wheels() -> [Wheel; 2] {
+    let gear = GearWheel {
+        grouser_count: None,
+        grouser_height: None,
+        tip_thickness: None,
+        base_thickness: None,
+        phase_fraction: 1.0 / 3.0,
+    };
+    [Wheel::Round, Wheel::Gear(gear)]
+}
+
+fn model(track: Track) -> Model {
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    let mut robot = Scenario::from_json(text)
+        .expect("the shared scenario is valid")
+        .robot;
+    robot.track = track;
+    Model::new(&robot).expect("it can be built")
+}
+
+fn tracks() -> Vec<Track> {
+    let mut tracks = Vec::new();
+    for wheel in wheels() {
+        for (count, wheel_radius) in [(3, None), (4, Some(0.0608)), (5, None), (9, None)] {
+            tracks.push(Track::Line(LineOfWheels {
+                count,
+                wheel_radius,
+                wheel: wheel.clone(),
+            }));
+        }
+        for (count, wheel_radius) in [(24, None), (14, Some(0.02))] {
+            tracks.push(Track::Circumferential(CircumferentialWheels {
+                count,
+                wheel_radius,
+                wheel: wheel.clone(),
+            }));
+        }
+        let placements = vec![
+            [-0.18, 0.0, 0.064],
+            [-0.07, -0.03, 0.03],
+            [0.0, -0.025, 0.03],
+            [0.06, -0.034, 0.03],
+            [0.19, 0.01, 0.05],
+        ];
+        tracks.push(Track::Hybrid(HybridWheels { placements, wheel }));
+    }
+    tracks
+}
+
+fn terrain(kind: usize, draw: &mut Draw) -> Terrain {
+    let (height, edge_radius, friction) = (draw.between(0.02, 0.12), 0.0, 0.9);
+    match kind {
+        0 => Terrain::Step {
+            height,
+            edge_radius,
+            friction,
+        },
+        1 => Terrain::Barrier {
+            height,
+            thickness: draw.between(0.005, 0.2),
+            edge_radius,
+            friction,
+        },
+        2 => Terrain::Ridge {
+            height,
+            edge_angle: draw.between(0.3, 2.5),
+            edge_radius,
+            friction,
+        },
+        3 => Terrain::Gap {
+            width: draw.between(0.05, 0.3),
+            depth: height,
+            edge_radius,
+            friction,
+        },
+        4 => Terrain::Step {
+            height,
+            edge_radius: draw.between(0.002, 0.015),
+            friction,
+        },
+        _ => {
+            let mut x = -1.0;
+            let points = (0..48)
+                .map(|_| {
+                    x += draw.between(0.0, 0.1);
+                    [x, draw.between(-0.05, 0.06)]
+                })
+                .collect();
+            Terrain::Points {
+                points,
+                goal: 0.0,
+                edge_radius,
+                friction,
+            }
+        }
+    }
+}
+
+/// [m] Range of x of the profile in a piece.
+fn extent(intrusion: &Intrusion, profile: &Profile) -> (f64, f64) {
+    let x = |place: f64| {
+        let facet = (place as usize).min(profile.points.len() - 2);
+        let (a, b) = (profile.points[facet], profile.points[facet + 1]);
+        a.x + (b.x - a.x) * (place - facet as f64)
+    };
+    let ends = intrusion
+        .stretches
+        .iter()
+        .flat_map(|(from, to)| [x(*from), x(*to)]);
+    ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        (low.min(x), high.max(x))
+    })
+}
+
+#[test]
+fn post_in_a_slot_counts_by_its_height_and_thickness() {
+    let placements = vec![[-0.186, 0.0, 0.08], [0.0, 0.0, 0.08], [0.186, 0.0, 0.08]];
+    let wheel = Wheel::Round;
+    let model = model(Track::Hybrid(HybridWheels { placements, wheel }));
+    let envelope = TrackEnvelope::new(&model.parts, 0.0);
+    let terrain = Terrain::Barrier {
+        height: 0.03,
+        thickness: 0.02,
+        edge_radius: 0.0,
+        friction: 0.9,
+    };
+    let profile = Ground::new(&terrain).expect("a ground").profile;
+    // The post stands in the middle between the rear and the middle wheel.
+    let pose = Pose::from_translation(Vector::new(0.103, 0.081));
+    let found = envelope.intrusions(&profile, pose);
+    assert_eq!(found.len(), 1);
+    let post = &found[0];
+    // The belt runs a millimetre above the ground.
+    assert!((post.depth - 0.029).abs() < 1e-12 && (post.root_depth - 0.029).abs() < 1e-12);
+    assert!((post.area - 0.02 * 0.029).abs() < 1e-12, "{}", post.area);
+    assert_eq!(
+        (post.edges.as_slice(), post.bodies),
+        ([1, 2].as_slice(), [1, 0])
+    );
+}
+
+/// A pose of one model above one ground, with the judges of both its belts.
+struct Case<'a> {
+    name: String,
+    profile: &'a Profile,
+    tips: Judge,
+    roots: Judge,
+    /// Deepest places of both.
+    middles: [(f64, Vector); 2],
+    /// [m] What a few slices are wide.
+    narrow: f64,
+}
+
+impl Case<'_> {
+    /// Too close to call: pieces or gaps of a few slices, or a mere touch.
+    fn is_unclear(&self, found: &[Intrusion], expected: &[Range]) -> bool {
+        let extents: Vec<(f64, f64)> = found.iter().map(|i| extent(i, self.profile)).collect();
+        let ranges: Vec<(f64, f64)> = expected.iter().map(|r| (r.left, r.right)).collect();
+        let is_wide = |ranges: &[(f64, f64)]| {
+            ranges.iter().all(|r| r.1 - r.0 > self.narrow)
+                && ranges.windows(2).all(|w| w[1].0 - w[0].1 > self.narrow)
+        };
+        !is_wide(&extents) || !is_wide(&ranges) || found.iter().any(|i| i.depth < 1e-5)
+    }
+
+    /// Depth and place of the deepest point of a piece, and whether it is the envelope's own deepest.
+    fn deepest(&self, judge: &Judge, middle: (f64, Vector), range: &Range) -> (f64, Vector, bool) {
+        let inside = |x: f64| (range.left - self.narrow..=range.right + self.narrow).contains(&x);
+        let on_profile = self
+            .profile
+            .points
+            .windows(2)
+            .filter(|p| p[1].x >= range.left - self.narrow && p[0].x <= range.right + self.narrow)
+            .map(|p| judge.deepest_on(p[0], p[1]))
+            .filter(|(_, p)| inside(p.x))
+            .fold((f64::NEG_INFINITY, Vector::ZERO), |a, b| {
+                if b.0 > a.0 { b } else { a }
+            });
+        let (depth, place) = middle;
+        if inside(place.x) && self.profile.height_under_disc(place.x, 0.0) > place.y {
+            (depth.max(on_profile.0), place, true)
+        } else {
+            (on_profile.0, on_profile.1, false)
+        }
+    }
+
+    /// Edges inside a range.
+    fn edges(&self, range: &Range) -> Vec<i32> {
+        let inside = range.left - self.narrow..=range.right + self.narrow;
+        let points = self.profile.points.iter().zip(&self.profile.edge_of_point);
+        let mut edges: Vec<i32> = points
+            .filter(|(p, edge)| {
+                **edge >= 0 && inside.contains(&p.x) && self.tips.depth(**p).0 > 1e-9
+            })
+            .map(|(_, edge)| *edge)
+            .collect();
+        edges.dedup();
+        edges
+    }
+
+    /// Whether the bodies of a piece could be judged.
+    fn check(&self, intrusion: &Intrusion, range: &Range) -> bool {
+        let context = format!("{}: {intrusion:?}", self.name);
+        let inside = range.left - self.narrow..=range.right + self.narrow;
+        assert!(inside.contains(&intrusion.x), "{context}");
+        // A slice is half in and half out at either end of a piece.
+        let off = (intrusion.area - range.area).abs();
+        assert!(
+            off < 3e-3 * range.area + 8e-5,
+            "{context}, not {}",
+            range.area
+        );
+        let (depth, place, is_middle) = self.deepest(&self.tips, self.middles[0], range);
+        assert!(
+            (intrusion.depth - depth).abs() < 1e-9,
+            "{context}, not {depth}"
+        );
+        let root = self.deepest(&self.roots, self.middles[1], range).0.max(0.0);
+        assert!(
+            (intrusion.root_depth - root).abs() < 1e-9,
+            "{context}, not {root}"
+        );
+        assert_eq!(intrusion.edges, self.edges(range), "{context}");
+        let bodies = self.tips.bodies(place).filter(|_| !is_middle);
+        if let Some(bodies) = bodies {
+            assert_eq!(intrusion.bodies, bodies, "{context}");
+        }
+        bodies.is_some()
+    }
+}
+
+/// Circles of a model in a pose.
+fn discs(model: &Model, pose: Pose, roots: bool) -> Vec<Disc> {
+    let of_part = model.parts.iter().flat_map(Part::discs);
+    let chosen = of_part.map(|(tip, root)| if roots { root } else { tip });
+    let posed = |d: Disc| Disc {
+        center: pose.transform_point(d.center),
+        ..d
+    };
+    chosen.map(posed).collect()
+}
+
+#[test]
+fn every_piece_is_found_with_its_depth_and_its_bodies() {
+    const SEED: u64 = 20_261_121;
+    let mut draw = Draw(SEED);
+    let models: Vec<Model> = tracks().into_iter().map(model).collect();
+    let judge = |model, pose, roots| Judge::new(discs(model, pose, roots));
+    let middles: Vec<[(f64, Vector); 2]> = models
+        .iter()
+        .map(|m| [false, true].map(|roots| judge(m, Pose::IDENTITY, roots).deepest()))
+        .collect();
+    let (mut judged, mut pieces, mut pairs) = (0, 0, 0);
+    for number in 0..POSES {
+        let model = &models[number % models.len()];
+        let ground = Ground::new(&terrain(number % 6, &mut draw)).expect("a ground");
+        let x = draw.between(-0.3, 0.5);
+        // From buried to clear, most of them astride what stands below.
+        let y = ground.profile.height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);
+        let angle = Rotation::new(draw.between(-0.7, 0.7));
+        let pose = Pose::from_parts(Vector::new(x, y), angle);
+        let [tips, roots] = [false, true].map(|roots| judge(model, pose, roots));
+        let case = Case {
+            name: format!("seed {SEED}, pose {number}"),
+            profile: &ground.profile,
+            narrow: 4.0 * (tips.support(Vector::X) + tips.support(-Vector::X)) / SLICES as f64,
+            tips,
+            roots,
+            middles: middles[number % models.len()]
+                .map(|(depth, place)| (depth, pose.transform_point(place))),
+        };
+        let found = TrackEnvelope::new(&model.parts, 0.0).intrusions(&ground.profile, pose);
+        let expected = ranges(&case.tips, &ground.profile);
+        if case.is_unclear(&found, &expected) {
+            continue;
+        }
+        judged += 1;
+        assert_eq!(found.len(), expected.len(), "{}", case.name);
+        for (intrusion, range) in found.iter().zip(&expected) {
+            pieces += 1;
+            pairs += usize::from(case.check(intrusion, range));
+        }
+    }
+    println!("seed {SEED}: {judged} poses judged, {pieces} pieces, {pairs} with their bodies");
+    assert!(judged > POSES * 9 / 10 && pairs > pieces / 2);
+}
