@@ -24,6 +24,7 @@ mod error;
 mod events;
 mod outcome;
 mod outline;
+mod plane;
 mod reading;
 mod robot;
 mod run;

@@ -4,6 +4,7 @@ use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Gear};
+use crate::plane::{left_of, right_of};
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::{Ground, Profile};
 use crate::track;
@@ -200,10 +201,8 @@ impl Part {
         match &self.shape {
             _ if self.drive.is_none() => Vector::ZERO,
             // Turning does not change the shape: the surface moves along itself.
-            Shape::Disc { .. } | Shape::Hull { .. } | Shape::Polygon { .. } => {
-                Vector::new(-normal.y, normal.x)
-            }
-            Shape::Gear { gear, .. } => Vector::new(spoke.y, -spoke.x) / gear.radius,
+            Shape::Disc { .. } | Shape::Hull { .. } | Shape::Polygon { .. } => left_of(normal),
+            Shape::Gear { gear, .. } => right_of(spoke) / gear.radius,
         }
     }
 }

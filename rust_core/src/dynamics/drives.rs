@@ -2,8 +2,9 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
+use super::Dynamics;
 use super::state::State;
-use super::{Dynamics, cross};
+use crate::plane::cross;
 
 impl Dynamics {
     /// The motor holds the surface at the set-point within its force limit.

@@ -346,15 +346,3 @@ fn take_nearest(loaded: &mut [LoadedContact], contact: &Contact) -> Option<Loade
     last.carried_over = true;
     Some(*last)
 }
-
-fn cross(a: Vector, b: Vector) -> f64 {
-    a.x * b.y - a.y * b.x
-}
-
-fn left_of(v: Vector) -> Vector {
-    Vector::new(-v.y, v.x)
-}
-
-fn right_of(v: Vector) -> Vector {
-    Vector::new(v.y, -v.x)
-}

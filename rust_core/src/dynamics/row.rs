@@ -4,8 +4,8 @@ use rapier2d_f64::math::{Rotation, Vector};
 
 use super::law::Admittance;
 use super::state::State;
-use super::{cross, right_of};
 use crate::contact::{Contact, LoadedContact};
+use crate::plane::{cross, right_of};
 use crate::robot::{Model, Part, Shape};
 
 /// One contact's constraint in one step.

@@ -2,7 +2,7 @@
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
-use super::left_of;
+use crate::plane::left_of;
 use crate::robot::Model;
 
 /// The moving state.

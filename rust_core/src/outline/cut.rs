@@ -2,7 +2,9 @@
 
 use rapier2d_f64::math::Vector;
 
-use super::{Envelope, maximise};
+use super::Envelope;
+use super::search::maximise;
+use crate::plane::cross;
 
 /// [m] Shorter chords only touch the envelope.
 const TOUCHES: f64 = 1e-9;
@@ -117,11 +119,10 @@ impl Piece<'_> {
 
     /// [m^2] Its area.
     pub(crate) fn area(&self, belt: &Envelope) -> f64 {
-        let cross = |p: &[Vector]| p[0].x * p[1].y - p[0].y * p[1].x;
         let along_chords: f64 = self
             .chords()
             .flat_map(|c| c.points.windows(2))
-            .map(cross)
+            .map(|p| cross(p[0], p[1]))
             .sum();
         let along_rim: f64 = self
             .rim()

@@ -3,6 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
+use crate::plane::{cross, direction};
 use crate::scenario::{GearWheel, TrackOutline};
 
 /// A wheel with grousers, resolved for one place on a robot.
@@ -122,14 +123,14 @@ impl Gear {
         )
     }
 
-    /// [m] Corners of one grouser about the wheel's centre, counter-clockwise from its base.
-    pub fn corners(&self, direction: f64) -> [Vector; 4] {
+    /// [m] Corners of the grouser at an angle [rad] about the wheel's centre, counter-clockwise from its base.
+    pub fn corners(&self, angle: f64) -> [Vector; 4] {
         let (tip, base) = self.half_angles();
         [
-            polar(self.root_radius, direction - base),
-            polar(self.radius, direction - tip),
-            polar(self.radius, direction + tip),
-            polar(self.root_radius, direction + base),
+            direction(angle - base) * self.root_radius,
+            direction(angle - tip) * self.radius,
+            direction(angle + tip) * self.radius,
+            direction(angle + base) * self.root_radius,
         ]
     }
 
@@ -137,13 +138,12 @@ impl Gear {
     pub fn outline(&self, points: usize) -> Vec<Vector> {
         let (_, base) = self.half_angles();
         let room = self.angle() - 2.0 * base;
-        let of_grouser = |direction: f64| {
+        let of_grouser = |angle: f64| {
             let arc = (0..points).map(move |i| {
                 let share = i as f64 / points.saturating_sub(1).max(1) as f64;
-                let angle = direction - base - (1.0 - share) * room;
-                polar(self.root_radius, angle)
+                direction(angle - base - (1.0 - share) * room) * self.root_radius
             });
-            let [_, tip, other, _] = self.corners(direction);
+            let [_, tip, other, _] = self.corners(angle);
             arc.chain([tip, other])
         };
         self.directions().flat_map(of_grouser).collect()
@@ -178,15 +178,6 @@ impl Gear {
         let [a, b, c, d] = self.corners(0.0);
         [[a, b], [b, c], [c, d]].into_iter()
     }
-}
-
-fn polar(radius: f64, angle: f64) -> Vector {
-    let (sine, cosine) = libm::sincos(angle);
-    Vector::new(cosine, sine) * radius
-}
-
-fn cross(a: Vector, b: Vector) -> f64 {
-    a.x * b.y - a.y * b.x
 }
 
 /// Grousers at the robot's own pitch where that makes at least 6, else at least 8.
@@ -236,7 +227,7 @@ mod tests {
                     .directions()
                     .map(in_grouser)
                     .fold(gear.root_radius, f64::max);
-                polar(distance, angle)
+                direction(angle) * distance
             })
             .collect()
     }

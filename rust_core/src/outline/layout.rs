@@ -2,6 +2,7 @@
 
 use rapier2d_f64::math::Vector;
 
+use super::search::bisect;
 use super::{Disc, Envelope, end_discs};
 use crate::error::ScenarioError;
 use crate::scenario::{
@@ -108,17 +109,4 @@ fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
         radius: end.radius - radius,
         ..end
     }))
-}
-
-/// The zero of an increasing function, to the last bit.
-fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if f(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }

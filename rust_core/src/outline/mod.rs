@@ -3,11 +3,14 @@
 pub(crate) mod cut;
 mod envelope;
 mod gear;
+mod hull;
 mod layout;
+mod search;
+mod stretch;
 
 use rapier2d_f64::math::Vector;
 
-pub(crate) use envelope::{Envelope, maximise};
+pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub(crate) use layout::wheels;
 
