@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from typing import Any
 
 import hypothesis
 import pytest
@@ -18,6 +19,14 @@ hypothesis.settings.load_profile("soak" if SOAK else "test")
 
 ROBOT = c2d.robots.engineer()
 POINTS = [[-3.0, 0.0], [0.0, 0.0], [0.0, 0.05], [3.0, 0.05]]
+PLACEMENTS: Any = [[-0.1875, 0.0, 0.0625], [0.0, -0.03125, 0.03125], [0.1875, 0.0, 0.0625]]
+GEAR = c2d.GearWheel(
+    grouser_count=9,
+    grouser_height=0.005,
+    tip_thickness=0.003,
+    base_thickness=0.005,
+    phase_fraction=0.5,
+)
 
 VARIANTS = {
     "belt-step": Scenario(ROBOT, c2d.terrains.step(0.05, edge_radius=0.01)),
@@ -31,6 +40,25 @@ VARIANTS = {
         c2d.terrains.lanes(
             c2d.terrains.step(0.05), c2d.terrains.step(0.05), middle=c2d.terrains.step(0.05)
         ),
+    ),
+    "line-barrier": Scenario(
+        ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
+        c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),
+    ),
+    "circumferential-ridge": Scenario(
+        ROBOT.with_track(c2d.CircumferentialWheels(24, wheel_radius=0.015)),
+        c2d.terrains.ridge(0.05, 1.0, edge_radius=0.005),
+    ),
+    "circumferential-half-round": Scenario(
+        ROBOT.with_track(c2d.CircumferentialWheels(24, wheel=c2d.GearWheel())),
+        c2d.terrains.half_round(0.05),
+    ),
+    "hybrid-gap": Scenario(
+        ROBOT.with_track(c2d.HybridWheels(PLACEMENTS)), c2d.terrains.gap(0.1, edge_radius=0.005)
+    ),
+    "force-stairs": Scenario(
+        ROBOT.with_track(c2d.ForceTrack(support="wheels")),
+        c2d.terrains.stairs(rise=0.05, edge_radius=0.005),
     ),
 }
 """One scenario for every kind of track and terrain."""

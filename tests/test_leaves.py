@@ -22,6 +22,7 @@ SIGNED = (
     "start.angle",
     "goal",
     "terrain.goal",
+    *(f"robot.track.placements[{wheel}][{axis}]" for wheel in range(3) for axis in range(2)),
 )
 
 
@@ -72,8 +73,8 @@ def changed(name: str, keys: tuple[str | int, ...], value: Any) -> Any:
 
 
 def test_there_are_leaves_to_test() -> None:
-    assert len(PLACES) > 200
-    assert len(NUMBERS) > 150
+    assert len(PLACES) > 500
+    assert len(NUMBERS) > 350
 
 
 @pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", "12", True, [], {}])
@@ -123,20 +124,74 @@ def test_a_missing_key_is_refused_in_every_object() -> None:
 
 
 def test_a_misspelt_choice_lists_the_names_and_the_nearest() -> None:
-    for keys, value, nearest in [
-        (("robot", "track", "kind"), "Belt", "belt"),
-        (("terrain", "kind"), "stp", "step"),
-        (("robot", "drivetrain", "torque_sharing"), "wheels", "wheel"),
+    for name, path, value, nearest in [
+        ("belt-step", "robot.track.kind", "Belt", "belt"),
+        ("belt-step", "terrain.kind", "stp", "step"),
+        ("belt-step", "robot.drivetrain.torque_sharing", "wheels", "wheel"),
+        ("circumferential-ridge", "robot.track.kind", "circumferental", "circumferential"),
+        ("hybrid-gap", "robot.track.kind", "Hybrid", "hybrid"),
+        ("line-barrier", "robot.track.wheel.kind", "gears", "gear"),
+        ("line-flat", "robot.track.wheel.kind", "Round", "round"),
+        ("force-stairs", "robot.track.support", "wheel", "wheels"),
+        ("line-barrier", "terrain.kind", "barier", "barrier"),
+        ("circumferential-half-round", "terrain.kind", "half-round", "half_round"),
+        ("force-stairs", "terrain.kind", "STAIRS", "stairs"),
     ]:
-        error = refusal(changed("belt-step", keys, value))
-        assert error.path == dotted(keys)
+        error = refusal(changed(name, tuple(path.split(".")), value))
+        assert error.path == path
         assert f"did you mean {nearest}?" in error.rule
 
 
 def test_a_misspelt_key_names_the_nearest() -> None:
-    error = refusal(changed("belt-step", ("robot", "mas"), 1))
-    assert error.path == "robot.mas"
-    assert "did you mean mass?" in error.rule
+    for name, path, nearest in [
+        ("belt-step", "robot.mas", "mass"),
+        ("line-barrier", "robot.track.wheel.grouser_hight", "grouser_height"),
+        ("circumferential-ridge", "robot.track.Count", "count"),
+        ("circumferential-ridge", "terrain.edge_angel", "edge_angle"),
+        ("hybrid-gap", "robot.track.placement", "placements"),
+        ("force-stairs", "terrain.riser", "rise"),
+    ]:
+        error = refusal(changed(name, tuple(path.split(".")), 1))
+        assert error.path == path
+        assert f"did you mean {nearest}?" in error.rule
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "value", "rule"),
+    [
+        ("line-barrier", "robot.track.count", 1, "must be an integer from 2 to 200"),
+        ("line-barrier", "robot.track.wheel_radius", 1e-9, "must be >= 0.001 m and <= 100 m"),
+        ("line-barrier", "robot.track.wheel.grouser_count", 2, "must be an integer from 3 to 200"),
+        ("line-barrier", "robot.track.wheel.grouser_height", 0, "must be > 0 m and <= 100 m"),
+        ("line-barrier", "robot.track.wheel.tip_thickness", 0, "must be > 0 m and <= 100 m"),
+        ("line-barrier", "robot.track.wheel.base_thickness", 0, "must be > 0 m and <= 100 m"),
+        ("line-barrier", "robot.track.wheel.phase_fraction", 1.01, "must be >= 0 and <= 1"),
+        ("circumferential-ridge", "robot.track.count", 2, "must be an integer from 3 to 200"),
+        ("hybrid-gap", "robot.track.placements[2][0]", 101, "must be >= -100 m and <= 100 m"),
+        ("hybrid-gap", "robot.track.placements[0][2]", 0, "must be >= 0.001 m and <= 100 m"),
+        ("force-stairs", "robot.track.wheel_count", 1, "must be an integer from 2 to 200"),
+        ("line-barrier", "terrain.thickness", 0, "must be >= 0.001 m and <= 10000 m"),
+        ("circumferential-ridge", "terrain.height", 0, "must be > 0 m and <= 100 m"),
+        (
+            "circumferential-ridge",
+            "terrain.edge_angle",
+            3.14,
+            "must be >= 0.01 rad and <= 3.13 rad",
+        ),
+        ("hybrid-gap", "terrain.width", 0, "must be >= 0.001 m and <= 10000 m"),
+        ("hybrid-gap", "terrain.depth", 0, "must be > 0 m and <= 100 m"),
+        ("force-stairs", "terrain.count", 0, "must be an integer from 1 to 1000"),
+        ("force-stairs", "terrain.rise", 0, "must be > 0 m and <= 100 m"),
+        ("force-stairs", "terrain.run", 0, "must be >= 0.001 m and <= 10000 m"),
+        ("circumferential-half-round", "terrain.radius", 0, "must be >= 0.001 m and <= 100 m"),
+        ("belt-step", "criteria.intrusion_depth", -1e-9, "must be >= 0 m and <= 0.1 m"),
+        ("belt-step", "criteria.intrusion_depth", 0.11, "must be >= 0 m and <= 0.1 m"),
+    ],
+)
+def test_a_rule_says_what_is_allowed(name: str, path: str, value: float, rule: str) -> None:
+    keys = next(keys for keys in walk(PLAIN[name]) if dotted(keys) == path)
+    error = refusal(changed(name, keys, value))
+    assert (error.path, error.rule) == (path, rule)
 
 
 @pytest.mark.parametrize(

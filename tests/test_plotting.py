@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from conftest import POINTS, ROBOT
+from conftest import GEAR, PLACEMENTS, POINTS, ROBOT
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -64,12 +64,57 @@ def test_another_number_of_axes_is_refused(run: c2d.Run) -> None:
         (c2d.BeltTrack(), c2d.terrains.ramp(0.3, edge_radius=0.02)),
         (c2d.ForceTrack(), c2d.terrains.step(0.1)),
         (c2d.LineOfWheels(5), c2d.terrains.from_points(POINTS, goal=0.0)),
+        (c2d.HybridWheels(PLACEMENTS, wheel=GEAR), c2d.terrains.half_round(0.03)),
+        (c2d.ForceTrack(support="wheels"), c2d.terrains.gap(0.1)),
     ],
-    ids=["belt", "skids that stop", "wheels"],
+    ids=["belt", "skids that stop", "wheels", "gears", "free wheels"],
 )
 def test_every_kind_of_robot_and_ground_is_drawn(track: Any, terrain: Any) -> None:
     side = c2d.simulate(ROBOT.with_track(track), terrain).plot()[0]
     side.figure.canvas.draw()
+
+
+def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:
+    track = c2d.CircumferentialWheels(24, wheel=c2d.GearWheel(grouser_count=8))
+    run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.06), duration=3.0)
+    assert run.outcome is c2d.Outcome.STOPPED  # so that its last contacts are those of its pose
+    _, ax = plt.subplots()
+    run.plot(run.time[-1], axes=ax)
+    drawn = [np.array(line.get_xydata()) for line in ax.get_lines()]
+    gears = [outline for outline in drawn if len(outline) == 8 * 14 + 1]
+    assert len(gears) == 24
+    last = run.contacts["time"] == run.time[-1]
+    places = np.column_stack([run.contacts["x"], run.contacts["y"]])[last]
+    assert len(places) >= 2
+    # A gear turned wrongly would miss its contacts by up to 5 mm, the height of its grousers.
+    for place in places:
+        assert min(distance(place, outline) for outline in gears) < 5e-5
+
+
+def distance(place: Any, outline: Any) -> float:
+    """[m] From a point to a polygon."""
+    a, way = outline[:-1], np.diff(outline, axis=0)
+    share = (((place - a) * way).sum(axis=1) / (way * way).sum(axis=1)).clip(0.0, 1.0)
+    return float(np.linalg.norm(a + share[:, None] * way - place, axis=1).min())
+
+
+def test_an_edge_inside_the_track_is_marked_and_named() -> None:
+    track = c2d.LineOfWheels(4, wheel_radius=0.0608)
+    run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.1), duration=4.0)
+    side, *strips = run.plot()
+    (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
+    assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.1]]
+    depth = 1e3 * run.metrics["intrusion_depth"]
+    assert mark.get_label() == f"edge inside the track: {depth:.1f} mm between wheels 2 and 1"
+    shaded = [len(strip.patches) for strip in strips]
+    assert shaded == [np.count_nonzero(run.events["kind"] == "stop")] * 3 == [1] * 3
+
+
+def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) -> None:
+    side, *strips = run.plot()
+    assert not [line for line in side.get_lines() if "inside" in str(line.get_label())]
+    assert "intrusion" in run.events["kind"]
+    assert not any(strip.patches for strip in strips)
 
 
 def test_a_run_of_one_sample_is_drawn() -> None:

@@ -1,6 +1,7 @@
 """A run: its arrays, tables and ways out."""
 
 import copy
+import math
 import pickle
 import sys
 
@@ -22,7 +23,8 @@ def test_the_arrays_share_their_samples(run: c2d.Run) -> None:
         assert getattr(run, name).dtype == np.float64
         assert np.isfinite(getattr(run, name)).all()
     assert run.position.shape == run.velocity.shape == (n, 2)
-    assert run.drive_speeds.shape == run.drive_forces.shape == (n, 1)
+    assert run.drive_speeds.shape == run.drive_positions.shape == run.drive_forces.shape == (n, 1)
+    assert run.drive_positions[:, 0].tolist() == run.track_position.tolist()
 
 
 def test_samples_lie_the_interval_apart_and_end_with_the_run(scenario: Scenario) -> None:
@@ -50,6 +52,51 @@ def test_wheels_of_their_own_servos_have_a_column_each() -> None:
     run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": "wheel"}))
     assert run.drive_forces.shape[1] == run.drive_speeds.shape[1] == 4
     assert run.drive_forces.sum(axis=1) == pytest.approx(run.drive_force)
+
+
+def test_free_wheels_have_a_column_each_after_the_motor() -> None:
+    robot = ROBOT.with_track(c2d.ForceTrack(support="wheels", wheel_count=3))
+    run = c2d.simulate(robot, c2d.terrains.flat(), duration=2.0)
+    assert run.drive_positions.shape == (run.time.size, 4)
+    rolled = run.drive_positions[-1] - run.drive_positions[0]
+    assert rolled == pytest.approx(run.metrics["distance"], rel=1e-3)
+    assert np.all(run.drive_forces[:, 1:] == 0.0)
+    assert run.drive_forces[:, 0].tolist() == run.drive_force.tolist()
+
+
+def test_a_drive_starts_at_the_phase_of_the_track() -> None:
+    scenario = Scenario(ROBOT, c2d.terrains.flat(), duration=0.5)
+    run = c2d.simulate(scenario.replace({"start.track_phase": 0.03}))
+    assert run.drive_positions[0].tolist() == [0.03]
+    travelled = run.drive_positions[-1, 0] - 0.03
+    assert run.metrics["track_distance"] == pytest.approx(travelled)
+
+
+def test_on_level_ground_a_belt_goes_as_far_as_its_path_and_does_not_shake() -> None:
+    metrics = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=2.0).metrics
+    assert metrics["path_length"] == pytest.approx(metrics["distance"], rel=1e-6)
+    assert metrics["track_distance"] == pytest.approx(metrics["path_length"], rel=1e-3)
+    assert metrics["vertical_acceleration"] < 0.01
+    assert metrics["angular_velocity"] < 0.01
+
+
+def test_up_a_ramp_the_path_is_longer_than_the_way_along_x() -> None:
+    angle = 0.3
+    scenario = Scenario(ROBOT, c2d.terrains.ramp(angle, length=5.0), duration=6.0, goal=4.0)
+    run = c2d.simulate(scenario)
+    on_slope = run.position[:, 0] > 0.3
+    x, y = np.ptp(run.position[on_slope], axis=0)
+    assert y / x == pytest.approx(math.tan(angle), rel=1e-3)
+    assert run.metrics["path_length"] > run.metrics["distance"] + 0.03
+    assert run.metrics["track_distance"] > run.metrics["path_length"]
+
+
+def test_the_angular_velocity_is_a_root_mean_square(run: c2d.Run) -> None:
+    mean = math.sqrt(np.mean(run.angular_velocity**2))
+    assert run.metrics["angular_velocity"] == pytest.approx(mean, rel=0.02)
+    acceleration = np.diff(run.velocity[:, 1]) / np.diff(run.time)
+    mean = math.sqrt(np.mean(acceleration**2))
+    assert run.metrics["vertical_acceleration"] == pytest.approx(mean, rel=0.1)
 
 
 @pytest.mark.parametrize("name", UNITS)
@@ -114,7 +161,17 @@ def test_the_contact_table_has_the_documented_columns(run: c2d.Run) -> None:
         "penetration",
     ]
     assert list(run.edges) == ["id", "lane", "x", "y", "angle", "radius"]
-    assert list(run.events)[:3] == ["kind", "start", "end"]
+    assert list(run.events) == [
+        "kind",
+        "start",
+        "end",
+        "lane",
+        "edge",
+        "bodies",
+        "depth",
+        "root_depth",
+        "force",
+    ]
 
 
 def test_the_edges_are_those_of_the_step(run: c2d.Run) -> None:

@@ -13,6 +13,8 @@ Units are SI, angles radians, x forward, y up.
 from crawler2d import robots, terrains
 from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
+from crawler2d.compare import compare
+from crawler2d.draws import scaled, uniform
 from crawler2d.errors import (
     BatchInterrupted,
     Crawler2dError,
@@ -21,11 +23,13 @@ from crawler2d.errors import (
     ScenarioError,
     SimulationDiverged,
 )
+from crawler2d.rates import rate
 from crawler2d.robot import Drivetrain, Robot, TrackOutline
 from crawler2d.run import Outcome, Run
 from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
 from crawler2d.simulation import Simulation
-from crawler2d.statistics import newcombe, wilson
+from crawler2d.statistics import newcombe, newcombe_paired, wilson
+from crawler2d.sweep import sweep
 from crawler2d.track import (
     BeltTrack,
     CircumferentialWheels,
@@ -62,11 +66,17 @@ __all__ = [
     "Start",
     "TrackOutline",
     "build_info",
+    "compare",
     "newcombe",
+    "newcombe_paired",
+    "rate",
     "robots",
+    "scaled",
     "simulate",
     "simulate_many",
+    "sweep",
     "terrains",
+    "uniform",
     "wilson",
 ]
 

@@ -27,6 +27,7 @@ UNITS = {
     "tractive_effort": "N",
     "drive_force": "N",
     "drive_speeds": "m/s",
+    "drive_positions": "m",
     "drive_forces": "N",
 }
 """Unit of every array of a run."""
@@ -35,6 +36,7 @@ _SECOND_DIMENSION = {
     "position": "axis",
     "velocity": "axis",
     "drive_speeds": "drive",
+    "drive_positions": "drive",
     "drive_forces": "drive",
 }
 

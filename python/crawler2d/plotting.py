@@ -22,7 +22,8 @@ __all__ = ["plot_run", "side_view", "time_strips"]
 _BLACK, _ORANGE, _BLUE, _RED, _GREEN = "#222222", "#E69F00", "#0072B2", "#D55E00", "#009E73"
 _GROUND = "#D9D2C5"
 
-# A contact force as large as the weight is drawn as long as this share of the axle distance.
+# A contact force as large as the weight is drawn as long as this share of the axle distance, and a
+# larger one of a robot that wedges itself in no longer.
 _FORCE_LENGTH = 0.6
 # Most drawings of the robot in one side view.
 _MOST_DRAWINGS = 7
@@ -52,7 +53,10 @@ def plot_run(
 
 
 def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
-    """Draw ground, robot at some instants, path of the chassis origin, and the last contact forces.
+    """Draw ground, robot at some instants, path of the chassis origin, and how it ends.
+
+    The end shows the contact forces of the last sample, and the edges inside the track: the taut
+    belt round the wheels is drawn with them.
 
     Parameters
     ----------
@@ -83,6 +87,7 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
         zorder=3,
     )
     _draw_forces(run, ax)
+    _draw_intrusions(run, geometry, ax)
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
@@ -110,12 +115,14 @@ def time_strips(run: Run, axes: tuple[Axes, ...]) -> None:
     speed.legend(loc="best", fontsize="small", ncols=3)
     force.plot(run.time, run.drive_force, color=_RED)
     force.set(ylabel="drive\nforce [N]", xlabel="time [s]")
+    stopped = run.events["kind"] == "stop"
+    stops = np.column_stack([run.events["start"], run.events["end"]])[stopped]
     for ax in axes:
         ax.grid(alpha=0.3)
         ax.margins(x=0.0)
-        for start, end in zip(run.events["start"], run.events["end"], strict=True):
+        for start, end in stops:
             ax.axvspan(start, end, color=_ORANGE, alpha=0.15, linewidth=0.0)
-    if run.events:
+    if len(stops):
         angle.set_title("shaded: stops", loc="right", fontsize="small")
 
 
@@ -145,23 +152,48 @@ def _extent(
 
 
 def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
-    position, angle = run.position[sample], run.chassis_angle[sample]
-    cosine, sine = np.cos(angle), np.sin(angle)
-    rotation = np.array([[cosine, -sine], [sine, cosine]])
-
     def draw(outline: NDArray[np.float64], color: str, *, filled: bool = False) -> None:
-        x, y = (outline @ rotation.T + position).T
+        x, y = _placed(run, sample, outline).T
         if filled:
             ax.fill(x, y, color=color, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
-        ax.plot(x, y, color=color, alpha=alpha, linewidth=1.2, zorder=2)
+        ax.plot(x, y, color=color, alpha=alpha, linewidth=1.0, zorder=2)
 
+    if len(geometry["belly"]):  # first: the wheels lie before it
+        draw(_closed(geometry["belly"]), _GREEN, filled=True)
     circles = geometry["circles"]
-    for outline in [_taut_belt(circles)] if geometry["hull"] else map(_taut_belt, circles[:, None]):
-        draw(outline, _BLACK)
-    if len(geometry["belly"]):
-        draw(np.vstack([geometry["belly"], geometry["belly"][:1]]), _GREEN, filled=True)
-    center = np.array([run.scenario.robot.center_of_mass]) @ rotation.T + position
+    if geometry["gears"]:
+        for gear in geometry["gears"]:
+            draw(_turned(gear, run.drive_positions[sample]), _BLACK)
+    elif geometry["hull"]:
+        draw(_taut_belt(circles), _BLACK)
+    else:
+        for circle in circles:
+            draw(_taut_belt(circle[None]), _BLACK)
+    center = _placed(run, sample, np.array([run.scenario.robot.center_of_mass]))
     ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
+
+
+def _placed(run: Run, sample: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Points of the chassis frame, shape (n, 2), where they are at a sample."""
+    placed: NDArray[np.float64] = points @ _rotation(run.chassis_angle[sample]).T
+    placed += run.position[sample]
+    return placed
+
+
+def _rotation(angle: float) -> NDArray[np.float64]:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _turned(gear: dict[str, Any], positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Outline of a gear in the chassis frame, turned as far as its drive has run."""
+    angle = 0.0 if gear["drive"] is None else -positions[gear["drive"]] / gear["radius"]
+    outline: NDArray[np.float64] = gear["outline"] @ _rotation(angle).T + gear["center"]
+    return _closed(outline)
+
+
+def _closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.vstack([polygon, polygon[:1]])
 
 
 def _taut_belt(circles: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -184,7 +216,8 @@ def _draw_forces(run: Run, ax: Axes) -> None:
     force = contacts["normal_force"][last, None] * normal
     force = force + contacts["friction_force"][last, None] * tangent
     robot = run.scenario.robot
-    scale = _FORCE_LENGTH * robot.outline.axle_distance / (robot.mass * run.scenario.gravity)
+    longest = max(robot.mass * run.scenario.gravity, float(np.hypot(*force.T).max()))
+    scale = _FORCE_LENGTH * robot.outline.axle_distance / longest
     ax.quiver(
         contacts["x"][last],
         contacts["y"][last],
@@ -196,4 +229,37 @@ def _draw_forces(run: Run, ax: Axes) -> None:
         width=0.004,
         label="contact forces at the end",
         zorder=4,
+    )
+
+
+def _draw_intrusions(run: Run, geometry: dict[str, Any], ax: Axes) -> None:
+    """Mark the edges that are inside the track at the end, and the belt that they are inside of."""
+    events = run.events
+    inside = np.flatnonzero((events["kind"] == "intrusion") & (events["end"] == run.time[-1]))
+    if not inside.size:
+        return
+    edges = events["edge"][inside]
+    most_loaded = inside[events["force"][inside].argmax()]
+    depth, (before, after) = events["depth"][most_loaded], events["bodies"][most_loaded]
+    label = f"edge inside the track: {1e3 * depth:.1f} mm"
+    if before != after:
+        label += f" between wheels {before} and {after}"
+    ax.plot(
+        *_placed(run, -1, _taut_belt(geometry["circles"])).T,
+        color=_RED,
+        linestyle=":",
+        linewidth=1.2,
+        label="taut belt round the wheels",
+        zorder=1.5,
+    )
+    ax.plot(
+        run.edges["x"][edges],
+        run.edges["y"][edges],
+        linestyle="none",
+        marker="D",
+        markersize=6,
+        markerfacecolor="white",
+        markeredgecolor=_RED,
+        label=label,
+        zorder=5,
     )

@@ -6,9 +6,11 @@ import math
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import ClassVar, Literal
 
+from crawler2d import _core
 from crawler2d._arrays import real_number
 from crawler2d._json import Parameters
 from crawler2d.errors import ScenarioError
+from crawler2d.table import Table
 from crawler2d.track import BeltTrack, Track
 
 __all__ = ["Drivetrain", "Robot", "TrackOutline"]
@@ -105,7 +107,7 @@ class Robot(Parameters):
         [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
     flippers : None
         Pivoting arms; only None for now.
-    track : LineOfWheels, BeltTrack or ForceTrack
+    track : Track
         The model of the track.
     """
 
@@ -129,7 +131,7 @@ class Robot(Parameters):
 
         Parameters
         ----------
-        track : LineOfWheels, BeltTrack or ForceTrack
+        track : Track
             The model.
 
         Returns
@@ -138,6 +140,39 @@ class Robot(Parameters):
             A copy; nothing else changes.
         """
         return replace(self, track=track)
+
+    def wheels(self) -> Table:
+        """List the wheels of the track model, those of both sides as one.
+
+        Returns
+        -------
+        Table
+            One row a wheel, in the order of eq. (1); empty for belts and skids. Columns: `body`
+            (as in the contacts), `x` and `y` [m] (axle in the chassis frame), `radius` [m] (of the
+            circumscribed circle), `area` [m^2] (of the true outline), `moment_of_inertia` [kg m^2]
+            (the wheel's share of the circulating track's) and `mass` [kg] (of the uniform wheel of
+            this outline that has this moment of inertia).
+
+        Raises
+        ------
+        ScenarioError
+            If the robot breaks a rule.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> wheels = c2d.robots.engineer(track=c2d.LineOfWheels(3)).wheels()
+        >>> wheels["x"].tolist(), wheels["mass"].tolist()
+        ([-0.1825, 0.0, 0.1825], [1.6, 1.6, 1.6])
+        """
+        from crawler2d.scenario import Drive, Scenario, Solver  # noqa: PLC0415 - it imports us
+        from crawler2d.terrain import Points  # noqa: PLC0415
+
+        ground = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
+        # At rest and in the shortest steps, the robot alone decides what is refused.
+        drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
+        scenario = Scenario(self, ground, drive=drive, solver=solver)
+        return Table(_core.geometry(scenario.to_json())["wheels"])
 
     @staticmethod
     def simple(
@@ -163,7 +198,7 @@ class Robot(Parameters):
             Name for tables and plots.
         max_speed : float
             [m/s] Largest track speed.
-        track : LineOfWheels, BeltTrack or ForceTrack, optional
+        track : Track, optional
             The model of the track; None is `Robot`'s default.
 
         Returns

@@ -49,15 +49,64 @@ class Run:
     outcome : Outcome or None
         How it ended; None where `error` says why there is no result.
     metrics : dict of str to float
-        Figures of the whole run, SI units: `time`, `time_to_clear` (inf if not cleared), `final_x`,
-        `final_y`, `final_angle`, `distance`, `track_distance`, `max_angle`, `min_angle`,
-        `max_penetration`, `drive_work`, `stopped_time`.
-    edges, events : Table
-        Corners of the ground; stops.
+        Figures of the whole run, see the notes.
+    edges : Table
+        Corners of the ground: `id`, `lane`, `x`, `y` [m], `angle` [rad] (convex > 0), `radius` [m].
+    events : Table
+        Stops, and edges inside the track, see the notes.
     wall_time : float
         [s] Computing time of one thread.
     error : Crawler2dError or None
         Why there is no result, in a batch with ``on_error="record"``.
+
+    Notes
+    -----
+    The metrics:
+
+    =======================  =====  ===============================================================
+    name                     unit   meaning
+    =======================  =====  ===============================================================
+    `time`                   s      simulated time
+    `time_to_clear`          s      when the goal was reached and from then on held; inf if not
+    `final_x`, `final_y`     m      last position of the chassis frame
+    `final_angle`            rad    last chassis angle
+    `distance`               m      final x less that of the start
+    `track_distance`         m      how far the track surface has run: what odometry with the
+                                    circumscribed radius reads
+    `path_length`            m      how far the chassis frame has truly gone, along its own axis
+    `max_angle`,             rad    of the chassis
+    `min_angle`
+    `max_penetration`        m      deepest overlap of any part with the ground
+    `drive_work`             J      work of the motors
+    `stopped_time`           s      spent in stops
+    `vertical_acceleration`  m/s^2  of the chassis frame, averaged over 10 ms; root mean square
+    `angular_velocity`       rad/s  rate of the chassis angle, root mean square
+    `intrusion_depth`        m      greatest depth of the most loaded of the intrusions that last to
+                                    the end, below the circumscribed circles; 0 if there is none
+    `intrusion_root_depth`   m      the same below the root circles
+    `intrusion_force`        N      its mean normal force
+    =======================  =====  ===============================================================
+
+    The track distance exceeds the path length by the slip; on gear wheels also because these roll
+    on less than their circumscribed circle.
+
+    The events, in order of their start. One of the kind "stop" is a span without progress although
+    commanded; one of the kind "intrusion" is a span in which an edge was deeper than
+    `criteria.intrusion_depth` within the taut belt round the track's own bodies. A stop carries the
+    most loaded of the intrusions present at its end. What lasts ends with the run.
+
+    ================  ====  =======================================================================
+    column            unit  meaning
+    ================  ====  =======================================================================
+    `kind`                  "stop" or "intrusion"
+    `start`, `end`    s     when
+    `lane`                  0: both tracks as one
+    `edge`                  id of the edge, -1 if none
+    `bodies`                bodies on either side of it, in order of belt travel; () if none
+    `depth`           m     deepest reach below the belt round the circumscribed circles
+    `root_depth`      m     deepest reach below the belt round the root circles
+    `force`           N     normal force on that piece of ground, mean over the event
+    ================  ====  =======================================================================
     """
 
     def __init__(
@@ -130,12 +179,17 @@ class Run:
 
     @property
     def drive_speeds(self) -> NDArray[np.float64]:
-        """[m/s] Surface speed of each of the k drives, shape (n, k)."""
+        """[m/s] Surface speed of each of the k drives, motors before free wheels, shape (n, k)."""
         return self._recorded("drive_speeds")
 
     @property
+    def drive_positions(self) -> NDArray[np.float64]:
+        """[m] How far the surface of each of the k drives has run, shape (n, k)."""
+        return self._recorded("drive_positions")
+
+    @property
     def drive_forces(self) -> NDArray[np.float64]:
-        """[N] Force of each of the k motors, mean over the interval, shape (n, k)."""
+        """[N] Force of the motor of each drive, 0 for free wheels, interval means, shape (n, k)."""
         return self._recorded("drive_forces")
 
     @property

@@ -113,8 +113,9 @@ class SeizureCriteria(Parameters):
     tip_over_angle : float
         [rad] Chassis angle at which the robot has tipped over.
     intrusion_depth : float
-        [m] An edge inside the envelope of the track is an intrusion from this depth; the default lies
-        well above the penetration of a resting robot (below 0.01 mm) and below every pocket.
+        [m] Ground inside the envelope of the track is an intrusion beyond this depth, 0 to 0.1. The
+        default lies above what round wheels and belts sink in when they strike an edge (0.2 mm).
+        With 0 the ground that the robot rests on joins the pieces under it.
     """
 
     place: ClassVar[str] = "criteria"
@@ -127,7 +128,7 @@ class SeizureCriteria(Parameters):
     clear_time: float = 0.5
     clear_angle: float = math.radians(5.0)
     tip_over_angle: float = math.pi / 2.0
-    intrusion_depth: float = 1e-4
+    intrusion_depth: float = 5e-4
 
 
 @dataclass(frozen=True, slots=True)

@@ -140,6 +140,37 @@ class Simulation:
         state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])
         return State(**state)
 
+    def intrusions(self) -> Table:
+        """Find what of the ground is inside the track now.
+
+        Returns
+        -------
+        Table
+            One row a connected piece of ground that lies deeper than `criteria.intrusion_depth`
+            within the taut belt round the track's own bodies, from the left. Shallower ground, such
+            as what a resting robot sinks into, neither counts nor joins two pieces. Columns: `edge`
+            (the edge that stands out and reaches deepest, the left of equally deep ones, -1 if none
+            stands out), `edges` (all in the piece), `bodies` (on either side of the deepest point,
+            in order of belt travel), `depth` and `root_depth` [m] (deepest reach below the belt
+            round the circumscribed and the root circles), `area` [m^2] (of what lies deeper than
+            the criterion), `x` and `y` [m] (the deepest point).
+
+        Examples
+        --------
+        A blade, 20 mm high and 10 mm thick, between two wheels:
+
+        >>> import crawler2d as c2d
+        >>> blade = [(-0.36, 0), (-0.36, 0.02), (-0.35, 0.02), (-0.35, 0)]
+        >>> points = [(-2, 0), *blade, (0, 0), (0, 0.1), (2, 0.1)]
+        >>> ground = c2d.terrains.from_points(points, goal=0.0)
+        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(2))
+        >>> sim = c2d.Simulation(c2d.Scenario(robot, ground))
+        >>> inside = sim.intrusions()
+        >>> inside["bodies"].tolist(), inside["depth"].tolist(), inside["edges"].tolist()
+        ([(1, 0)], [0.02], [(1, 2)])
+        """
+        return Table(self._core.intrusions())
+
     def __repr__(self) -> str:
         """Say what is simulated and how far it is."""
         return f"Simulation({self.scenario.robot.name} at {self.time:.3f} s)"

@@ -30,22 +30,25 @@ class RoundWheel(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearWheel(Parameters):
-    """A wheel with grousers: a root circle, and rectangles whose tips reach the wheel's radius.
+    """A wheel with grousers: a root circle, and trapezoids whose corners reach the wheel's radius.
 
-    What is None follows from the robot's outline. The paper gives the grousers of large wheels only;
-    the rules for small ones are ours.
+    What is None follows from the robot's outline. The paper gives the grousers of large wheels
+    only; the rules for small ones are ours.
 
     Parameters
     ----------
     grouser_count : int, optional
-        Grousers round the wheel, 3 to 200. None takes as many as fit at the robot's grouser pitch on
-        the root circle, or 8 where that is fewer than 6.
+        Grousers round the wheel, 3 to 200. None takes as many as fit at the robot's grouser pitch
+        on the root circle, or 8 where that is fewer than 6.
     grouser_height : float, optional
         [m] Radius of the wheel less that of its root circle. None takes the robot's, at most a
         quarter of the radius.
     tip_thickness : float, optional
-        [m] Thickness of a grouser; its flanks are parallel. None takes the robot's, reduced in
-        proportion where the height is.
+        [m] Thickness of a grouser at its tip. None takes the robot's, reduced in proportion where
+        the height is.
+    base_thickness : float, optional
+        [m] Thickness of a grouser at the root circle, at least that of the tip. None is that of the
+        tip: parallel flanks.
     phase_fraction : float
         [-] Wheel n, counted from 1 at the rear, starts turned by this share of n times the angle
         between two grousers: eq. (1) of the paper, where it is a third.
@@ -62,6 +65,7 @@ class GearWheel(Parameters):
     grouser_count: int | None = None
     grouser_height: float | None = None
     tip_thickness: float | None = None
+    base_thickness: float | None = None
     phase_fraction: float = 1.0 / 3.0
 
 
@@ -102,15 +106,19 @@ class LineOfWheels(Parameters):
 class CircumferentialWheels(Parameters):
     """Small driven wheels all round the outline, each touching it from inside (CWA, Figs. 6, 7).
 
-    Neighbours are equally far apart all the way round. The first wheel sits at the rear end of the
-    lower run, the others follow in the direction of belt travel: up round the rear, forwards on top.
+    The first wheel sits at the rear end of the lower run, the others follow in the direction of
+    belt travel: up round the rear, then forwards on top. Their centres move on a path of their own,
+    inside the outline by the radius. *Spaced* wheels, of a given radius, divide that path into
+    equal lengths, arcs included. *Tight* ones are as large as their count lets them be: each
+    touches both its neighbours, so that straight distances are exactly 2 radii.
 
     Parameters
     ----------
     count : int
-        Wheels a side, at least 3.
+        Wheels a side, at least 3. Tight wheels must not have to exceed half the smaller radius of
+        the outline, which takes 14 on the Servosila Engineer: fewer are refused.
     wheel_radius : float, optional
-        [m] Radius of every wheel. None packs them tightly: neighbours touch.
+        [m] Radius of every wheel, below the smaller radius of the outline. None packs them tightly.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 

@@ -3,9 +3,10 @@
 use serde_json::Value;
 
 use crate::error::ScenarioError;
+use crate::robot;
+use crate::robot::{Model, Part};
 use crate::scenario::Scenario;
 use crate::terrain::Ground;
-use crate::{outline, robot};
 
 impl Scenario {
     /// Reads and checks a scenario.
@@ -41,8 +42,15 @@ impl Scenario {
             let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
             return Err(ScenarioError::new("drive.speed", self.drive.speed, rule));
         }
+        let parts = Model::new(&self.robot)?.parts;
+        let (tip, root) = parts.iter().flat_map(Part::discs).fold(
+            (f64::INFINITY, f64::INFINITY),
+            |(tip, root), (circumscribed, inner)| {
+                (tip.min(circumscribed.radius), root.min(inner.radius))
+            },
+        );
         // A surface that turns further than this between two collision checks rolls over corners unseen.
-        let turn = limit * self.solver.time_step / outline::smallest_radius(&self.robot)?;
+        let turn = limit * self.solver.time_step / tip;
         if turn > 0.7 {
             let rule = format!(
                 "must keep max_speed x time_step / radius <= 0.7 rad a step, here {turn:.3}"
@@ -50,6 +58,14 @@ impl Scenario {
             return Err(ScenarioError::new(
                 "solver.time_step",
                 self.solver.time_step,
+                rule,
+            ));
+        }
+        if self.criteria.intrusion_depth >= root {
+            let rule = format!("must be below the smallest radius of the track model, {root} m");
+            return Err(ScenarioError::new(
+                "criteria.intrusion_depth",
+                self.criteria.intrusion_depth,
                 rule,
             ));
         }

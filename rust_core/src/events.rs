@@ -68,6 +68,8 @@ pub(crate) struct IntrusionWatch {
 /// An intrusion that goes on.
 struct Present {
     event: Event,
+    /// Edges inside when it was last seen.
+    edges: Vec<i32>,
     looks: f64,
     seen: bool,
 }
@@ -77,7 +79,8 @@ impl IntrusionWatch {
     pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
         for (intrusion, force) in inside {
             let same = |p: &&mut Present| {
-                p.event.bodies == Some(intrusion.bodies) && intrusion.edges.contains(&p.event.edge)
+                p.event.bodies == Some(intrusion.bodies)
+                    && p.edges.iter().any(|edge| intrusion.edges.contains(edge))
             };
             if let Some(known) = self.present.iter_mut().find(same) {
                 known.add(&intrusion, force);
@@ -132,6 +135,7 @@ impl Present {
         };
         Self {
             event,
+            edges: Vec::new(),
             looks: 0.0,
             seen: false,
         }
@@ -140,6 +144,7 @@ impl Present {
     fn add(&mut self, intrusion: &Intrusion, force: f64) {
         self.looks += 1.0;
         self.seen = true;
+        self.edges.clone_from(&intrusion.edges);
         let e = &mut self.event;
         if intrusion.depth > e.depth {
             (e.depth, e.edge) = (intrusion.depth, intrusion.edge);

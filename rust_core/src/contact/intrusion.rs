@@ -83,7 +83,7 @@ impl TrackEnvelope {
             .flat_map(|(i, part)| part.discs().map(move |(tip, root)| (i, tip, root)))
             .collect();
         let within = |disc: &Disc| Disc {
-            radius: (disc.radius - margin).max(0.0),
+            radius: disc.radius - margin,
             ..*disc
         };
         let discs: Vec<Disc> = of_track.iter().map(|(_, tip, _)| within(tip)).collect();

@@ -159,6 +159,8 @@ impl Dynamics {
         }
         for row in &mut self.rows {
             row.follow(state, start);
+            // What pressed before the motion has closed its gap, but for the curve of a turning grouser.
+            row.touches = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
         }
         self.solve(state, set_point, h, None);
         self.collect(state, self.solver.time_step);
@@ -246,8 +248,8 @@ impl Dynamics {
             Some(_) if row.gap > 0.0 => row.gap / h,
             Some(soft) => (soft.push_rate * row.gap).max(-self.solver.max_push_speed),
             // After it, surfaces that touch may not approach; the others are left alone.
-            None if row.gap > TOUCHING => f64::INFINITY,
-            None => 0.0,
+            None if row.touches => 0.0,
+            None => f64::INFINITY,
         };
         let approach = row.opening_speed(state) + bias;
         if approach >= 0.0 && row.normal_impulse == 0.0 {

@@ -25,6 +25,8 @@ pub(super) struct Row {
     pub friction_total: f64,
     /// [m] Gap now.
     pub gap: f64,
+    /// The surfaces touch after the motion of this substep.
+    pub touches: bool,
     start: Place,
 }
 
@@ -117,6 +119,7 @@ impl Row {
             normal_total: 0.0,
             friction_total: 0.0,
             gap: start.gap,
+            touches: false,
             start,
         }
     }

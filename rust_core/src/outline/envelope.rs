@@ -13,6 +13,9 @@ use super::search::maximise;
 use super::stretch::{Form, Stretch};
 use crate::plane::direction;
 
+/// [m] Stretches whose distances differ by less are as near, whatever rounding says.
+const AS_NEAR: f64 = 1e-8;
+
 /// The convex hull of discs, as arcs and straight runs.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
@@ -122,23 +125,19 @@ impl Envelope {
 
     /// [m] Depth of a point inside the hull; outside it is negative.
     pub(crate) fn depth(&self, point: Vector) -> f64 {
-        self.nearest(point).depth
+        let depths = self.stretches.iter().filter_map(|s| s.depth(point));
+        depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The nearest stretch of the hull.
+    /// The nearest stretch of the hull; of some that are as near the first.
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
-        let mut nearest = Nearest {
-            depth: f64::INFINITY,
-            stretch: 0,
-        };
-        for (i, stretch) in self.stretches.iter().enumerate() {
-            if let Some(depth) = stretch.depth(point)
-                && depth < nearest.depth
-            {
-                nearest = Nearest { depth, stretch: i };
-            }
+        let depths = || self.stretches.iter().map(|s| s.depth(point));
+        let depth = depths().flatten().fold(f64::INFINITY, f64::min);
+        let is_nearest = |d: Option<f64>| d.is_some_and(|d| d - depth < AS_NEAR);
+        Nearest {
+            depth,
+            stretch: depths().position(is_nearest).unwrap_or_default(),
         }
-        nearest
     }
 
     /// The discs on either side of a point, first the one that the belt passes before it.

@@ -14,8 +14,7 @@ pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub(crate) use layout::wheels;
 
-use crate::error::ScenarioError;
-use crate::scenario::{Robot, TrackOutline};
+use crate::scenario::TrackOutline;
 
 /// A disc in the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,23 +38,6 @@ pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
             radius: outline.front_radius,
         },
     ]
-}
-
-/// [m] Smallest radius that turns on the ground.
-///
-/// # Errors
-/// Wheels that do not fit the outline.
-pub(crate) fn smallest_radius(robot: &Robot) -> Result<f64, ScenarioError> {
-    let wheels = wheels(robot)?;
-    let discs = if wheels.is_empty() {
-        end_discs(&robot.outline).to_vec()
-    } else {
-        wheels
-    };
-    Ok(discs
-        .iter()
-        .map(|disc| disc.radius)
-        .fold(f64::INFINITY, f64::min))
 }
 
 /// The lower outer tangent of two discs as a segment from the left disc to the right one.

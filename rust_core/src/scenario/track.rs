@@ -6,7 +6,6 @@ use super::fields::{Fields, Range, one_of};
 use super::robot::{Robot, TorqueSharing};
 use super::wheel::Wheel;
 use crate::error::ScenarioError;
-use crate::outline;
 
 /// Most wheels of one side.
 const MAX_WHEELS: u32 = 200;
@@ -140,12 +139,6 @@ impl Track {
                 "wheel",
                 rule,
             ));
-        }
-        let discs = outline::wheels(robot)?;
-        if let Some(Wheel::Gear(wheel)) = self.wheel() {
-            for (index, disc) in discs.iter().enumerate() {
-                outline::Gear::new(wheel, &robot.outline, disc.radius, index)?;
-            }
         }
         Ok(())
     }

@@ -1,0 +1,75 @@
+"""From the design of a sweep to the scenario of every run."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from crawler2d._axes import Axis
+from crawler2d.draws import Variation, uniform_numbers
+from crawler2d.errors import ScenarioError
+from crawler2d.scenario import Scenario
+
+__all__ = ["Plan", "plan_runs"]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """One run before it runs."""
+
+    place: str
+    """Cell and repeat, for messages."""
+    scenario: Scenario
+    drawn: Mapping[str, float]
+    """By path."""
+    refused: ScenarioError | None
+
+
+def plan_runs(
+    base: Scenario, axes: Sequence[Axis], variation: Variation, *, repeats: int, seed: int
+) -> list[Plan]:
+    """Make the scenario of every run: cell by cell, the repeats of a cell in order.
+
+    Raises
+    ------
+    ScenarioError
+        If a cell lacks a path; a scenario that breaks a rule is planned as refused.
+    """
+    streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
+    plans = []
+    for points in itertools.product(*(axis.points() for axis in axes)):
+        name = ", ".join(point for point, _ in points)
+        with _named(f"cell[{name}]"):
+            cell = base.replace({path: v for _, values in points for path, v in values.items()})
+        refused = _refusal(cell, f"cell[{name}]")
+        for repeat in range(repeats):
+            place = f"cell[{name}, repeat={repeat}]"
+            if refused is not None:
+                plans.append(Plan(place, cell, {}, refused))
+                continue
+            with _named(place):
+                numbers = {path: float(stream[repeat]) for path, stream in streams.items()}
+                drawn = variation.draw(cell, numbers)
+                variant = cell.replace(drawn)
+            plans.append(Plan(place, variant, drawn, _refusal(variant, place)))
+    return plans
+
+
+@contextlib.contextmanager
+def _named(place: str) -> Iterator[None]:
+    """Let the path of an error begin with the place it is about."""
+    try:
+        yield
+    except ScenarioError as error:
+        raise ScenarioError(f"{place}.{error.path}", error.value, error.rule) from None
+
+
+def _refusal(scenario: Scenario, place: str) -> ScenarioError | None:
+    try:
+        with _named(place):
+            scenario.validate()
+    except ScenarioError as error:
+        return error
+    return None

@@ -1,0 +1,100 @@
+"""The runs of a sweep as an xarray data set, by cell and repeat."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d._axes import Axis, coordinates, field_attributes, short_names
+from crawler2d._extras import extra
+from crawler2d._plan import Plan
+from crawler2d._units import METRICS
+from crawler2d.draws import Distribution
+from crawler2d.errors import ScenarioError
+from crawler2d.run import Run
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["NO_RESULT", "to_table"]
+
+NO_RESULT = ("diverged", "refused")
+"""Outcomes of runs without a result: the state became non-finite, or a rule is broken."""
+
+# [m], [rad] Final poses closer than this are one pose.
+_DISTANCE = 1e-3
+_ANGLE = math.radians(0.1)
+
+_Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
+
+
+def to_table(
+    axes: Sequence[Axis],
+    distributions: Mapping[str, Distribution],
+    plans: Sequence[Plan],
+    runs: Sequence[Run],
+) -> xarray.Dataset:
+    """Arrange what is known of the runs, which are in the order of their plans; see `sweep`."""
+    xr = extra("xarray", "analysis")
+    cells = [axis.name for axis in axes]
+    sizes = [len(axis.values) for axis in axes]
+    repeats = len(runs) // math.prod(sizes)
+
+    def by_run(values: list[Any], kind: type, **attributes: str) -> _Variable:
+        return [*cells, "repeat"], np.array(values, kind).reshape(*sizes, repeats), attributes
+
+    def by_cell(count: Callable[[Sequence[Run]], int]) -> _Variable:
+        starts = range(0, len(runs), repeats)
+        counts = np.array([count(runs[start : start + repeats]) for start in starts])
+        return cells, counts.reshape(sizes), {"units": "1"}
+
+    variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
+    for name in next((run.metrics for run in runs if run.error is None), {}):
+        figures = [run.metrics.get(name, math.nan) for run in runs]
+        variables[name] = by_run(figures, float, units=METRICS.get(name, ""))
+    for path, name in short_names(list(distributions)).items():
+        drawn = [plan.drawn.get(path, math.nan) for plan in plans]
+        variables[f"drawn_{name}"] = by_run(drawn, float, **field_attributes([path]))
+    times = [run.wall_time if run.error is None else math.nan for run in runs]
+    variables["wall_time"] = by_run(times, float, units="s")
+    variables["distinct_outcomes"] = by_cell(_distinct_outcomes)
+    variables["distinct_poses"] = by_cell(_distinct_poses)
+    # Python's texts: in an array of texts each would take the room of the longest.
+    errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
+    variables["error"] = by_run([str(error) for error in errors], object)
+    valid = [None if plan.refused else plan.scenario for plan in plans]
+    variables["identity"] = by_run([s.identity if s else "" for s in valid], object)
+    variables["scenario"] = by_run([s.to_json() if s else "" for s in valid], object)
+    dataset: xarray.Dataset = xr.Dataset(
+        variables, coords={**coordinates(axes), "repeat": np.arange(repeats)}
+    )
+    for key, variable in dataset.variables.items():
+        variable.attrs.setdefault("long_name", str(key).replace("_", " "))
+    return dataset
+
+
+def _outcome(run: Run) -> str:
+    diverged, refused = NO_RESULT
+    if run.error is None:
+        return str(run.outcome)
+    return refused if isinstance(run.error, ScenarioError) else diverged
+
+
+def _distinct_outcomes(runs: Sequence[Run]) -> int:
+    return len({run.outcome for run in runs if run.error is None})
+
+
+def _distinct_poses(runs: Sequence[Run]) -> int:
+    return len({_rounded(run.metrics) for run in runs if run.error is None})
+
+
+def _rounded(metrics: Mapping[str, float]) -> tuple[int, int, int]:
+    return (
+        round(metrics["final_x"] / _DISTANCE),
+        round(metrics["final_y"] / _DISTANCE),
+        round(metrics["final_angle"] / _ANGLE),
+    )

@@ -1,0 +1,51 @@
+"""Units of what a sweep can vary and of what a run measures."""
+
+from __future__ import annotations
+
+__all__ = ["FIELDS", "METRICS"]
+
+_FIELDS_BY_UNIT = {
+    "m": (
+        "approach axle_distance base_thickness belly center_of_mass depth edge_radius front_radius"
+        " gauge goal grouser_height grouser_pitch grouser_thickness height intrusion_depth length"
+        " placements points prediction_distance radius rear_radius rise run stationary_distance"
+        " thickness tip_thickness track_phase wheel_radius width"
+    ),
+    "s": "clear_time duration stop_window time_step",
+    "rad": "angle clear_angle edge_angle tip_over_angle",
+    "kg": "mass track_mass",
+    "kg m^2": "moment_of_inertia",
+    "m/s": "max_push_speed max_speed speed",
+    "m/s^2": "gravity max_acceleration max_deceleration",
+    "N m": "max_torque",
+    "Hz": "contact_frequency",
+    "1": (
+        "contact_damping_ratio count friction grouser_count iterations phase_fraction skid_friction"
+        " stationary_windows stop_pitches stop_progress substeps wheel_count"
+    ),
+}
+
+FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in names.split()}
+"""Unit of every number of a scenario, by the name of its field."""
+
+METRICS = {
+    "time": "s",
+    "time_to_clear": "s",
+    "final_x": "m",
+    "final_y": "m",
+    "final_angle": "rad",
+    "distance": "m",
+    "track_distance": "m",
+    "path_length": "m",
+    "max_angle": "rad",
+    "min_angle": "rad",
+    "max_penetration": "m",
+    "drive_work": "J",
+    "stopped_time": "s",
+    "vertical_acceleration": "m/s^2",
+    "angular_velocity": "rad/s",
+    "intrusion_depth": "m",
+    "intrusion_root_depth": "m",
+    "intrusion_force": "N",
+}
+"""Unit of every metric of a run."""

@@ -1,0 +1,179 @@
+"""What repeats draw: the same for every cell, whatever else is drawn."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from conftest import ROBOT, VARIANTS
+from crawler2d.draws import Variation, scaled, uniform, uniform_numbers
+from crawler2d.scenario import Scenario
+
+DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.friction"]
+
+
+def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...] = ()) -> Any:
+    """The default draws of 200 repeats, shape (200,) by path."""
+    variation = Variation.of(base or cell, None, swept)
+    numbers = {path: uniform_numbers(path, 0, 200).tolist() for path in variation.distributions}
+    rows = [variation.draw(cell, {p: n[i] for p, n in numbers.items()}) for i in range(200)]
+    return {path: np.array([row[path] for row in rows]) for path in rows[0]}
+
+
+def test_a_uniform_value_lies_between_its_bounds_and_does_not_know_the_scenario() -> None:
+    assert uniform(0.05, 0.15).value(0.0, nominal=7.0) == 0.05
+    assert uniform(0.05, 0.15).value(0.25, nominal=None) == pytest.approx(0.075)
+    assert uniform(0.1, 0.1).value(0.7, nominal=None) == 0.1
+
+
+def test_a_scaled_value_is_a_share_of_the_scenarios_own() -> None:
+    assert scaled(0.98, 1.02).value(0.5, nominal=0.4) == pytest.approx(0.4)
+    assert scaled(0.98, 1.02).value(0.0, nominal=-0.4) == pytest.approx(-0.392)
+
+
+def test_no_value_lies_beyond_the_upper_bound() -> None:
+    almost_1 = math.nextafter(1.0, 0.0)
+    for low, high in np.random.default_rng(0).uniform(-1.0, 1.0, (1000, 2)):
+        distribution = uniform(min(low, high), max(low, high))
+        assert distribution.low <= distribution.value(almost_1, nominal=None) <= distribution.high
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "path"),
+    [
+        ("a", 1.0, "low"),
+        (None, 1.0, "low"),
+        (True, 1.0, "low"),
+        (0.0, [1.0], "high"),
+        (-math.inf, 1.0, "low"),
+        (0.0, math.nan, "high"),
+        (2.0, 1.0, "high"),
+    ],
+)
+def test_bounds_are_finite_numbers_in_order(low: Any, high: Any, path: str) -> None:
+    for distribution in (uniform, scaled):
+        with pytest.raises(c2d.ScenarioError) as caught:
+            distribution(low, high)
+        assert caught.value.path == path
+
+
+def test_bounds_may_be_whole_or_of_numpy() -> None:
+    whole: Any = np.int64(1)
+    assert uniform(0, whole) == uniform(0.0, 1.0)
+    assert repr(uniform(0, 1)) == "Uniform(low=0.0, high=1.0)"
+
+
+def test_the_numbers_of_a_repeat_depend_on_path_seed_and_repeat_alone() -> None:
+    numbers = uniform_numbers("drive.speed", 0, 1000)
+    assert numbers.tolist() == uniform_numbers("drive.speed", 0, 1000).tolist()
+    assert numbers[:20].tolist() == uniform_numbers("drive.speed", 0, 20).tolist()
+    for path, seed in [("drive.speed", 1), ("drive.speed", 2**64 - 1), ("start.approach", 0)]:
+        other = uniform_numbers(path, seed, 1000)
+        assert abs(np.corrcoef(numbers, other)[0, 1]) < 0.1  # three standard errors of 1000
+
+
+def test_the_numbers_fill_the_interval_evenly() -> None:
+    numbers = uniform_numbers("start.approach", 0, 10_000)
+    assert numbers.min() >= 0.0
+    assert numbers.max() < 1.0
+    counts, _ = np.histogram(numbers, bins=10, range=(0.0, 1.0))
+    assert np.abs(counts - 1000).max() < 120  # four standard deviations of a bin
+
+
+def test_the_default_varies_approach_phase_speed_and_friction_in_their_ranges() -> None:
+    found = drawn(Scenario(ROBOT, c2d.terrains.step(0.05)))
+    assert list(found) == DEFAULT_PATHS
+    bounds = [(0.1 - 0.365 / 8, 0.1 + 0.365 / 8), (0.0, 0.048), (0.392, 0.408), (0.882, 0.918)]
+    for (low, high), values in zip(bounds, found.values(), strict=True):
+        assert low <= values.min() < low + 0.1 * (high - low)
+        assert high - 0.1 * (high - low) < values.max() <= high
+
+
+def test_the_default_approach_is_never_below_0() -> None:
+    near = Scenario(ROBOT, c2d.terrains.step(0.05), start=c2d.Start(approach=0.01))
+    approach = drawn(near)["start.approach"]
+    assert approach.min() >= 0.0
+    assert np.ptp(approach) == pytest.approx(0.365 / 4, rel=0.05)
+
+
+def test_the_default_distances_are_those_of_the_base_in_every_cell() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    other = c2d.Robot.simple(5.0, axle_distance=0.2, radius=0.03, track=c2d.LineOfWheels(9))
+    here, there = drawn(base), drawn(base.replace({"robot": other}), base=base)
+    assert {path: v.tolist() for path, v in here.items()} == {
+        path: v.tolist() for path, v in there.items()
+    }
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_default_speed_never_exceeds_the_drivetrains(direction: float) -> None:
+    fastest = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=direction * 1.39))
+    speeds = direction * drawn(fastest)["drive.speed"]
+    assert speeds.max() == 1.39
+    assert speeds.min() < 1.37
+    assert (speeds < 1.39).sum() == pytest.approx(100, abs=30)  # only the faster half is cut
+
+
+def test_the_default_leaves_the_friction_of_lanes() -> None:
+    assert list(drawn(VARIANTS["belt-lanes"])) == DEFAULT_PATHS[:3]
+
+
+@pytest.mark.parametrize(
+    ("swept", "kept"),
+    [
+        ("start.approach", ["start.track_phase", "drive.speed", "terrain.friction"]),
+        ("start.track_phase", ["start.approach", "drive.speed", "terrain.friction"]),
+        ("start", ["drive.speed", "terrain.friction"]),
+        ("drive.speed", DEFAULT_PATHS),
+    ],
+)
+def test_the_default_does_not_undo_what_is_swept(swept: str, kept: list[str]) -> None:
+    found = drawn(Scenario(ROBOT, c2d.terrains.step(0.05)), swept=(swept,))
+    assert list(found) == kept
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
+    cell = VARIANTS[name]
+    found = drawn(cell)
+    for index in range(20):
+        cell.replace({path: float(values[index]) for path, values in found.items()}).validate()
+
+
+@pytest.mark.parametrize(
+    ("vary", "path"),
+    [
+        (["start.approach"], "vary"),
+        ({3: uniform(0.0, 1.0)}, "vary"),
+        ({"start.approach": 0.1}, "vary['start.approach']"),
+        ({"start.approach": (0.05, 0.15)}, "vary['start.approach']"),
+        ({"terrain.height": uniform(0.0, 0.1)}, "vary['terrain.height']"),
+    ],
+)
+def test_what_is_no_variation_is_refused_by_name(vary: Any, path: str) -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    with pytest.raises(c2d.ScenarioError) as caught:
+        Variation.of(base, vary, ["terrain.height"])
+    assert caught.value.path == path
+    assert caught.value.rule.startswith("must")
+
+
+@pytest.mark.parametrize(
+    ("path", "value"), [("goal", None), ("robot.name", "engineer"), ("robot", None)]
+)
+def test_only_a_number_is_scaled(path: str, value: Any) -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    variation = Variation.of(base, {path: scaled(0.9, 1.1)}, [])
+    with pytest.raises(c2d.ScenarioError, match="must be a number to be scaled") as caught:
+        variation.draw(base, {path: 0.5})
+    assert caught.value.path == path
+    assert value is None or caught.value.value == value
+
+
+def test_a_path_that_is_no_field_lists_the_fields() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    variation = Variation.of(base, {"terrain.hight": uniform(0.0, 0.1)}, [])
+    with pytest.raises(c2d.ScenarioError, match=r"did you mean height\?"):
+        variation.draw(base, {"terrain.hight": 0.5})

@@ -1,0 +1,83 @@
+"""Rates of outcomes: counted over a dimension, or of a plain list."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.rates import rate
+
+TABLE = xr.Dataset(
+    {
+        "outcome": (
+            ("height", "repeat"),
+            [
+                ["cleared", "cleared", "cleared", "stopped"],
+                ["tipped_over", "stopped", "diverged", "cleared"],
+                ["refused", "refused", "refused", "refused"],
+            ],
+        )
+    },
+    coords={"height": ("height", [0.03, 0.1, 9.0], {"units": "m"})},
+)
+
+
+def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
+    found = rate(TABLE)
+    assert found["count"].values.tolist() == [4, 3, 0]
+    for cell, (successes, count) in zip(
+        found.transpose("height").to_dataframe().itertuples(), [(3, 4), (1, 3), (0, 0)], strict=True
+    ):
+        expected = c2d.wilson(successes, count)
+        assert (cell.rate, cell.low, cell.high) == pytest.approx(tuple(expected), nan_ok=True)
+    assert found["height"].attrs == {"units": "m"}
+    assert found["rate"].attrs == {"units": "1", "long_name": "rate of cleared"}
+
+
+def test_any_outcome_can_be_counted() -> None:
+    assert rate(TABLE, "stopped")["rate"].values[:2] == pytest.approx([1 / 4, 1 / 3])
+    assert rate(TABLE, c2d.Outcome.TIPPED_OVER)["rate"].sel(height=0.1) == pytest.approx(1 / 3)
+    assert rate(TABLE, "seized")["rate"].values[:2].tolist() == [0.0, 0.0]
+
+
+def test_any_dimension_can_be_counted_over() -> None:
+    found = rate(TABLE, dim="height")
+    assert found.sizes == {"repeat": 4}
+    assert found["count"].values.tolist() == [2, 2, 1, 2]
+
+
+def test_a_list_of_outcomes_has_a_rate() -> None:
+    outcomes = [c2d.Outcome.CLEARED, "stopped", None, "cleared"]
+    found = rate(outcomes)
+    assert found["rate"].item() == pytest.approx(2 / 3)
+    assert found["count"].item() == 3
+    assert rate(iter(outcomes))["count"].item() == 3
+
+
+def test_no_outcomes_have_no_rate() -> None:
+    found = rate([])
+    assert np.isnan(found["rate"].item())
+    assert (found["low"].item(), found["high"].item(), found["count"].item()) == (0.0, 1.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "path", "hint"),
+    [
+        ((TABLE, "clear"), "outcome", "did you mean cleared?"),
+        ((TABLE, "diverged"), "outcome", "detracked, tipped_over"),
+        ((TABLE, None), "outcome", "detracked, tipped_over"),
+        ((TABLE, "cleared", "repeats"), "dim", "did you mean repeat?"),
+        ((xr.Dataset({"time": 1.0}),), "table", "must be one of time"),
+        ((["cleared", "stoped"],), "outcomes[1]", "did you mean stopped?"),
+        (("cleared",), "outcomes[0]", "must be one of"),
+    ],
+)
+def test_an_unknown_name_is_refused_with_the_nearest(
+    arguments: tuple[Any, ...], path: str, hint: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        rate(*arguments)
+    assert caught.value.path == path
+    assert hint in caught.value.rule

@@ -1,0 +1,301 @@
+"""Sweeps: every combination, the same draws in every cell, and a table that replays."""
+
+import itertools
+import os
+import signal
+import sys
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from conftest import ROBOT
+from crawler2d._units import METRICS
+from crawler2d.draws import scaled, uniform
+from crawler2d.scenario import Scenario
+from crawler2d.sweep import sweep
+
+BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=4.0)
+BRIEF = BASE.replace({"duration": 0.05})
+MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3)}
+
+
+def quiet(base: Scenario, over: Any, **options: Any) -> xr.Dataset:
+    """Sweep without a progress bar."""
+    return sweep(base, over, **{"repeats": 2, "progress": False, **options})
+
+
+def refusal(base: Any, over: Any, **options: Any) -> c2d.ScenarioError:
+    """Why a sweep is refused; nothing may run before that."""
+    calls: list[int] = []
+    with pytest.raises(c2d.ScenarioError) as caught:
+        sweep(base, over, **{"progress": lambda done, _: calls.append(done), **options})
+    assert calls == []
+    assert caught.value.rule.startswith("must")
+    return caught.value
+
+
+@pytest.fixture(scope="module")
+def table() -> xr.Dataset:
+    """Two heights, two models, three repeats."""
+    return quiet(BASE, {"terrain.height": [0.03, 0.1], "robot.track": MODELS}, repeats=3)
+
+
+def test_the_table_has_a_dimension_a_path_and_one_of_repeats(table: xr.Dataset) -> None:
+    assert dict(table["outcome"].sizes) == {"height": 2, "track": 2, "repeat": 3}
+    assert table["height"].values.tolist() == [0.03, 0.1]
+    assert table["track"].values.tolist() == ["belt", "line of 3"]
+    assert table["repeat"].values.tolist() == [0, 1, 2]
+    assert (table["outcome"].sel(height=0.03, track="belt") == "cleared").all()
+
+
+def test_the_table_has_units_paths_and_provenance(table: xr.Dataset) -> None:
+    assert table["height"].attrs == {
+        "path": "terrain.height",
+        "units": "m",
+        "long_name": "height",
+    }
+    assert table["track"].attrs == {"path": "robot.track", "long_name": "track"}
+    assert table["drawn_speed"].attrs["units"] == "m/s"
+    assert {name: table[name].attrs["units"] for name in METRICS} == METRICS
+    assert all("long_name" in variable.attrs for variable in table.variables.values())
+    assert Scenario.from_json(table.attrs["scenario"]) == BASE
+    assert (table.attrs["seed"], table.attrs["repeats"]) == (0, 3)
+    assert "'drive.speed': Scaled(low=0.98, high=1.02)" in table.attrs["vary"]
+    assert table.attrs["build_version"] == c2d.__version__
+
+
+def test_a_swept_run_replays_alone(table: xr.Dataset) -> None:
+    for height, model, repeat in itertools.product(
+        *(table[d].values for d in table["outcome"].dims)
+    ):
+        row = table.sel(height=height, track=model, repeat=repeat)
+        rebuilt = Scenario.from_json(row["scenario"].item())
+        assert rebuilt.identity == row["identity"].item()
+        assert (rebuilt.robot.track, rebuilt.terrain) == (
+            MODELS[model],
+            c2d.terrains.step(height, friction=row["drawn_friction"].item()),
+        )
+        run = c2d.simulate(rebuilt, record="summary")
+        assert run.outcome == row["outcome"].item()
+        assert run.metrics == {name: row[name].item() for name in run.metrics}
+
+
+def test_the_same_repeat_draws_the_same_numbers_in_every_cell(table: xr.Dataset) -> None:
+    for name in ("approach", "track_phase", "speed", "friction"):
+        drawn = table[f"drawn_{name}"]
+        assert (drawn == drawn.isel(height=0, track=0)).all()
+        assert len(set(drawn.isel(height=0, track=0).values.tolist())) == 3
+
+
+def test_a_scaled_draw_varies_about_the_cells_own_value() -> None:
+    found = quiet(BRIEF, {"drive.speed": [0.1, 0.3]})
+    factors = found["drawn_speed"] / found["speed"]
+    assert factors.sel(speed=0.1).values == pytest.approx(factors.sel(speed=0.3).values)
+    assert (abs(factors - 1.0) <= 0.02).all()
+
+
+def test_adding_a_varied_path_leaves_the_other_draws_alone() -> None:
+    vary = {"start.approach": uniform(0.05, 0.15)}
+    alone = quiet(BRIEF, {"terrain.height": [0.03]}, vary=vary)
+    more = {"robot.mass": scaled(0.9, 1.1), **vary, "gravity": uniform(9.0, 10.0)}
+    among = quiet(BRIEF, {"terrain.height": [0.03]}, vary=more)
+    assert alone["drawn_approach"].equals(among["drawn_approach"])
+    assert set(among.data_vars) - set(alone.data_vars) == {"drawn_mass", "drawn_gravity"}
+
+
+def test_more_repeats_and_more_cells_leave_the_draws_alone() -> None:
+    few = quiet(BRIEF, {"terrain.height": [0.03]}, repeats=2)
+    more = quiet(BRIEF, {"terrain.height": [0.02, 0.03]}, repeats=4)
+    again = more.sel(height=[0.03]).isel(repeat=slice(2))
+    assert (few["identity"] == again["identity"]).all()
+
+
+def test_another_seed_draws_other_numbers() -> None:
+    seeds: list[Any] = [0, 1, 2**64 - 1, np.int64(0)]
+    drawn = [quiet(BRIEF, {"duration": [0.0]}, seed=s)["drawn_approach"].values for s in seeds]
+    assert drawn[0].tolist() == drawn[3].tolist()
+    assert len({values.tobytes() for values in drawn}) == 3
+
+
+def test_nothing_varied_repeats_the_same_run() -> None:
+    found = quiet(BASE, {"terrain.height": [0.03, 0.05]}, repeats=3, vary={})
+    assert found["distinct_poses"].values.tolist() == [1, 1]
+    assert found["distinct_outcomes"].values.tolist() == [1, 1]
+    assert len(set(found["identity"].values.ravel().tolist())) == 2
+    assert not [name for name in found if str(name).startswith("drawn_")]
+    assert found.attrs["vary"] == "{}"
+
+
+def test_distinct_outcomes_and_poses_are_counted_in_each_cell(table: xr.Dataset) -> None:
+    for cell in itertools.product((0, 1), (0, 1)):
+        at = table.isel(dict(zip(("height", "track"), cell, strict=True)))
+        poses = {
+            (round(x / 1e-3), round(y / 1e-3), round(a / np.radians(0.1)))
+            for x, y, a in zip(
+                at["final_x"].values, at["final_y"].values, at["final_angle"].values, strict=True
+            )
+        }
+        assert at["distinct_poses"].item() == len(poses)
+        assert at["distinct_outcomes"].item() == len(set(at["outcome"].values.tolist()))
+
+
+def test_the_number_of_threads_does_not_change_the_table() -> None:
+    tables = [quiet(BASE, {"robot.track": MODELS}, threads=threads) for threads in (1, 2, 3)]
+    one, *others = (found.drop_vars("wall_time") for found in tables)
+    for other in others:
+        xr.testing.assert_identical(one, other)
+
+
+@pytest.mark.parametrize(
+    ("over", "path", "hint"),
+    [
+        ({"terrain.hight": [0.1]}, "cell[hight=0.1].terrain.hight", "did you mean height?"),
+        (
+            {"robot.track": MODELS, "robot.track.count": [3]},
+            "cell[track=belt, count=3].robot.track.count",
+            "a field of BeltTrack",
+        ),
+        ({"terrain.height": [0.1, -0.1]}, "cell[height=-0.1].terrain.height", "> 0 m"),
+        ({"terrain.height": [0.1, np.nan]}, "cell[height=nan].terrain.height", "must be"),
+        ({"terrain.height": ["high"]}, "cell[height=high].terrain.height", "a number"),
+        (
+            {"robot.track": MODELS, "drive.speed": [0.4, 2.0]},
+            "cell[track=belt, speed=2.0].drive.speed",
+            "max_speed = 1.39",
+        ),
+        ({"terrain": {"wall": "brick"}}, "cell[terrain=wall].terrain", "must be a Flat or"),
+        ({"robot": {"none": None}}, "cell[robot=none].robot", "must be a Robot"),
+    ],
+)
+def test_a_broken_cell_is_named_before_anything_runs(over: Any, path: str, hint: str) -> None:
+    error = refusal(BASE, over)
+    assert error.path == path
+    assert hint in error.rule
+
+
+def test_a_draw_that_breaks_a_rule_names_cell_and_repeat() -> None:
+    vary = {"drive.speed": scaled(4.0, 4.0)}
+    error = refusal(BASE, {"robot.track": MODELS}, vary=vary)
+    assert error.path == "cell[track=belt, repeat=0].drive.speed"
+    error = refusal(BASE, {"robot.track": MODELS}, vary={"robot.track.count": scaled(1.0, 1.0)})
+    assert error.path == "cell[track=belt, repeat=0].robot.track.count"
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "path"),
+    [
+        ("repeats", 0, "repeats"),
+        ("repeats", -1, "repeats"),
+        ("repeats", 10**6 + 1, "repeats"),
+        ("repeats", 2.0, "repeats"),
+        ("repeats", True, "repeats"),
+        ("repeats", None, "repeats"),
+        ("repeats", "20", "repeats"),
+        ("seed", -1, "seed"),
+        ("seed", 2**64, "seed"),
+        ("seed", 1.5, "seed"),
+        ("seed", None, "seed"),
+        ("seed", False, "seed"),
+        ("seed", np.float64(1.0), "seed"),
+        ("seed", [1], "seed"),
+        ("vary", "start.approach", "vary"),
+        ("vary", {"terrain.height": uniform(0.0, 0.1)}, "vary['terrain.height']"),
+        ("vary", {"start.approach": 0.1}, "vary['start.approach']"),
+        ("on_error", "ignore", "on_error"),
+        ("progress", "yes", "progress"),
+    ],
+)
+def test_a_wrong_argument_is_refused_by_name(argument: str, value: Any, path: str) -> None:
+    assert refusal(BASE, {"terrain.height": [0.1]}, **{argument: value}).path == path
+
+
+def test_what_is_no_valid_scenario_is_refused() -> None:
+    assert refusal(ROBOT, {"terrain.height": [0.1]}).path == "scenario"
+    broken = BASE.replace({"robot.mass": -1.0})
+    assert refusal(broken, {"terrain.height": [0.1]}).path == "robot.mass"
+    with pytest.raises(c2d.LimitError):
+        quiet(BASE, {"terrain.height": [0.1]}, threads=0)
+
+
+def test_a_refused_cell_can_be_recorded_and_the_others_do_not_notice() -> None:
+    over = {"terrain.height": [0.03, -0.1]}
+    found = quiet(BASE, over, on_error="record")
+    alone = quiet(BASE, {"terrain.height": [0.03]})
+    good = found.sel(height=[0.03])
+    for name in alone.data_vars:
+        if name != "wall_time":
+            assert good[name].equals(alone[name]), name
+    bad = found.sel(height=-0.1)
+    assert bad["outcome"].values.tolist() == ["refused"] * 2
+    assert bad["error"].values[1].startswith("cell[height=-0.1].terrain.height must be > 0 m")
+    assert bad["scenario"].values.tolist() == bad["identity"].values.tolist() == [""] * 2
+    for name in [*METRICS, "wall_time", "drawn_speed"]:
+        assert bad[name].isnull().all()
+    assert bad["distinct_poses"].item() == bad["distinct_outcomes"].item() == 0
+
+
+def test_a_sweep_of_refused_cells_alone_has_no_metrics() -> None:
+    found = quiet(BASE, {"terrain.height": [-0.1]}, on_error="record")
+    assert found["outcome"].values.tolist() == [["refused"] * 2]
+    assert "final_x" not in found
+
+
+def diverging(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
+    """Let one run of every batch diverge."""
+
+    def simulate_many(scenarios: Any, **options: Any) -> list[c2d.Run]:
+        runs = c2d.simulate_many(scenarios, **options)
+        error = c2d.SimulationDiverged("chassis is not finite", step=7, body="chassis")
+        runs[index] = c2d.Run(runs[index].scenario, {}, error)
+        return runs
+
+    # By the table of modules: the package may have a function of that name.
+    monkeypatch.setattr(sys.modules["crawler2d.sweep"], "simulate_many", simulate_many)
+
+
+def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    diverging(monkeypatch, 3)
+    found = quiet(BRIEF, {"robot.track": MODELS}, on_error="record")
+    assert found["outcome"].values.tolist() == [["timed_out"] * 2, ["timed_out", "diverged"]]
+    assert found["error"].values.tolist() == [["", ""], ["", "chassis is not finite"]]
+    assert np.isnan(found["final_x"].values).tolist() == [[False, False], [False, True]]
+    assert found["distinct_outcomes"].values.tolist() == [1, 1]
+    Scenario.from_json(found["scenario"].values[1, 1]).validate()
+
+
+def test_a_run_that_diverged_is_named_in_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    diverging(monkeypatch, 3)
+    with pytest.raises(c2d.SimulationDiverged, match="not finite") as caught:
+        quiet(BRIEF, {"robot.track": MODELS})
+    assert caught.value.__notes__ == ["in cell[track=line of 3, repeat=1]"]
+
+
+def test_progress_is_shown_unless_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    sweep(BRIEF, {"terrain.height": [0.02, 0.03]}, repeats=2)
+    assert "4/4" in capsys.readouterr().err
+    quiet(BRIEF, {"terrain.height": [0.02, 0.03]})
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to itself")
+def test_ctrl_c_keeps_the_finished_runs() -> None:
+    long = Scenario(ROBOT, c2d.terrains.flat(length=900.0), goal=800.0)
+    over = {"duration": [0.1, 10_000.0]}
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(c2d.BatchInterrupted) as caught:
+            quiet(long, over, threads=2)
+    finally:
+        timer.cancel()
+    assert [run is not None for run in caught.value.runs] == [True, True, False, False]
+
+
+def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+        quiet(BRIEF, {"terrain.height": [0.1]})

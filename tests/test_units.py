@@ -1,0 +1,24 @@
+"""Units of tables: none is missing, none contradicts the documentation."""
+
+import inspect
+import re
+
+import crawler2d as c2d
+from crawler2d import robot, scenario, terrain, track
+from crawler2d._json import Parameters
+from crawler2d._units import FIELDS, METRICS
+
+
+def test_every_metric_has_a_unit(run: c2d.Run) -> None:
+    assert set(run.metrics) == set(METRICS)
+
+
+def test_units_are_those_of_the_docstrings() -> None:
+    documented: dict[str, str] = {}
+    for module in (scenario, robot, terrain, track):
+        for kind in vars(module).values():
+            if inspect.isclass(kind) and issubclass(kind, Parameters):
+                text = inspect.getdoc(kind) or ""
+                for names, unit in re.findall(r"^([\w, ]+) : .*\n +\[([^\]]+)\]", text, re.M):
+                    documented |= dict.fromkeys(names.split(", "), unit.replace("-", "1"))
+    assert {name: FIELDS.get(name) for name in documented} == documented
