@@ -1,32 +1,38 @@
-"""The picture of the study: success rate against step height, one panel a model."""
+"""The pictures of the seizure study: success against height, shaking against phase, the post."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from crawler2d._extras import extra
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
-    from crawler2d.experiments import Cell
+    from crawler2d.run import Run
+    from crawler2d.study_tables import Cell, Phase
 
-__all__ = ["plot_rates"]
+__all__ = ["plot_phases", "plot_posts", "plot_rates"]
 
 # Okabe and Ito's palette: told apart by colour-blind readers.
-_COLORS = ("#0072B2", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#56B4E9")
-_COLUMNS = 3
+_BLUE, _ORANGE, _GREEN = "#0072B2", "#E69F00", "#009E73"
+_COLORS = (_BLUE, _ORANGE, _GREEN)
+_MARKERS = ("o", "s", "^")
+# Wide below narrow: lines that coincide stay visible.
+_WIDTHS = (3.2, 2.0, 0.9)
+_COLUMNS = 5
+_EQUATION_1 = 1.0 / 3.0
 
 
 def plot_rates(cells: Sequence[Cell]) -> Figure:
-    """Draw the rates with their intervals, each model on the grey lines of the others.
+    """Draw the rates of one robot with their intervals, one panel a model.
 
     Parameters
     ----------
     cells : sequence of Cell
-        Of one study; heights ascending within a model.
+        Heights ascending within a model and an obstacle; up to three obstacles.
 
     Returns
     -------
@@ -39,48 +45,117 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
         If matplotlib is missing; the message names the extra to install.
     """
     figures = extra("matplotlib.figure", "plot")
-    names = list(dict.fromkeys(cell.model for cell in cells))
-    rows = -(-len(names) // _COLUMNS)
-    figure: Figure = figures.Figure(
-        figsize=(3.4 * _COLUMNS, 2.6 * rows + 0.8), layout="constrained"
-    )
-    axes = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)
+    models = list(dict.fromkeys(cell.model for cell in cells))
+    obstacles = list(dict.fromkeys(cell.obstacle for cell in cells))
+    columns = min(_COLUMNS, len(models))
+    rows = -(-len(models) // columns)
+    size = (2.2 * columns, 1.9 * rows + 0.9)
+    styles: list[dict[str, Any]] = [
+        {"color": color, "marker": marker, "linewidth": width, "markersize": 2.0 + width}
+        for color, marker, width in zip(_COLORS, _MARKERS, _WIDTHS, strict=True)
+    ]
+    figure: Figure = figures.Figure(figsize=size, layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for index, ax in enumerate(axes.flat):
-        if index >= len(names):
+        if index >= len(models):
             ax.set_visible(False)
             continue
-        name, color = names[index], _COLORS[index % len(_COLORS)]
-        for other in names:
-            heights, rates, lows, highs = _curve(cells, other)
-            if other != name:
-                ax.plot(heights, rates, color="#BBBBBB", linewidth=0.8, zorder=1)
-                continue
-            ax.fill_between(heights, lows, highs, color=color, alpha=0.25, linewidth=0.0, zorder=2)
-            ax.plot(heights, rates, color=color, marker="o", markersize=4, linewidth=1.8, zorder=3)
-        ax.set_title(name, color="#222222", fontsize="medium", fontweight="bold")
-        ax.set_ylim(-4.0, 104.0)
+        for obstacle, style in zip(obstacles, styles, strict=False):
+            own = [c for c in cells if (c.model, c.obstacle) == (models[index], obstacle)]
+            heights = [1e3 * cell.height for cell in own]
+            lows, highs = ([1e2 * bound for bound in bounds] for bounds in _bounds(own))
+            ax.fill_between(heights, lows, highs, color=style["color"], alpha=0.15, linewidth=0.0)
+            ax.plot(heights, [1e2 * cell.rate for cell in own], label=obstacle, **style)
+        ax.set_title(models[index], fontsize="medium")
+        ax.set_ylim(-5.0, 105.0)
         ax.grid(alpha=0.25)
-        if index % _COLUMNS == 0:
+        if index % columns == 0:
             ax.set_ylabel("cleared [%]")
-        if index // _COLUMNS == rows - 1:
-            ax.set_xlabel("step height [mm]")
+        if index + columns >= len(models):
+            ax.set_xlabel("height [mm]")
+            ax.tick_params(labelbottom=True)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
     count = max(cell.count for cell in cells)
-    figure.suptitle(
-        f"Engineer over a step: success rate of {count} runs, 95 % Wilson interval\n"
-        "(grey: the other models)",
-        fontsize="medium",
-    )
+    figure.suptitle(f"Engineer without flippers: {count} runs a point, 95 % Wilson interval")
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure
 
 
-def _curve(
-    cells: Sequence[Cell], model: str
-) -> tuple[list[float], list[float], list[float], list[float]]:
-    """[mm] heights, and [%] rates, lower and upper bounds of one model."""
-    own = [cell for cell in cells if cell.model == model]
-    return (
-        [1000.0 * cell.height for cell in own],
-        [100.0 * cell.rate.rate for cell in own],
-        [100.0 * cell.rate.low for cell in own],
-        [100.0 * cell.rate.high for cell in own],
-    )
+def plot_phases(phases: Sequence[Phase]) -> Figure:
+    """Draw the shaking of lines of gear wheels on flat ground against their phases.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+        Phase fractions ascending within a count; up to three counts.
+
+    Returns
+    -------
+    Figure
+        Not shown and not saved.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is missing; the message names the extra to install.
+    """
+    figures = extra("matplotlib.figure", "plot")
+    figure: Figure = figures.Figure(figsize=(8.0, 3.6), layout="constrained")
+    vertical, angular = figure.subplots(1, 2, sharex=True)
+    counts = dict.fromkeys(phase.count for phase in phases)
+    for count, color, marker in zip(counts, _COLORS, _MARKERS, strict=False):
+        own = [phase for phase in phases if phase.count == count]
+        fractions = [phase.phase_fraction for phase in own]
+        for ax, heights in (
+            (vertical, [phase.vertical_acceleration for phase in own]),
+            (angular, [phase.angular_velocity for phase in own]),
+        ):
+            label = f"{count} gear wheels"
+            ax.plot(fractions, heights, color=color, marker=marker, markersize=4, label=label)
+    for ax in (vertical, angular):
+        ax.axvline(_EQUATION_1, color="#222222", linestyle=":", label="eq. (1)")
+        ax.set(xlabel="phase fraction", ylim=(0.0, None))
+        ax.grid(alpha=0.25)
+    vertical.set_ylabel("vertical acceleration, rms [m/s²]")
+    angular.set_ylabel("rate of the chassis angle, rms [rad/s]")
+    handles, labels = vertical.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
+    return figure
+
+
+def plot_posts(runs: Mapping[tuple[float, bool], Run]) -> Figure:
+    """Draw where the public wheel model stopped at a post, one panel a run.
+
+    Parameters
+    ----------
+    runs : mapping of (float, bool) to Run
+        What `public_wheel_model` returned; those that cleared are left out.
+
+    Returns
+    -------
+    Figure
+        Not shown and not saved.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is missing; the message names the extra to install.
+    """
+    figures = extra("matplotlib.figure", "plot")
+    stuck = {place: run for place, run in runs.items() if run.outcome != "cleared"}
+    rows = -(-len(stuck) // 2)
+    figure: Figure = figures.Figure(figsize=(8.0, 2.2 * rows), layout="constrained")
+    axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+    for ax, ((height, belly), run) in zip(axes.flat, stuck.items(), strict=False):
+        run.plot(run.time[-1], axes=ax)
+        built = "belly" if belly else "no belly"
+        title = f"post of {1e3 * height:.0f} mm, {built}: {run.outcome}"
+        ax.set_title(title, loc="left", fontsize="medium")
+        ax.set(xlim=(-0.42, 0.22), ylim=(-0.03, 0.23))
+        ax.label_outer()
+        ax.get_legend().remove()
+    return figure
+
+
+def _bounds(cells: Sequence[Cell]) -> tuple[list[float], list[float]]:
+    return [cell.low for cell in cells], [cell.high for cell in cells]

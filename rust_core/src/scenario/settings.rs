@@ -27,7 +27,7 @@ pub struct Start {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// The engine's narrow phase on one oriented polyline a lane.
+    /// The engine's geometric queries on one oriented polyline a lane.
     Reference,
 }
 
