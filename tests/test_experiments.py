@@ -1,72 +1,245 @@
 """The study: what it draws, counts and writes, on a few runs."""
 
 import csv
+import itertools
+import math
+from dataclasses import fields, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d import experiments
+from crawler2d import experiments, study_plot, study_report, study_tables
+from crawler2d.public_model import posts, public_wheel_model
+from crawler2d.robot import Robot
 from crawler2d.scenario import Scenario
+from crawler2d.study_models import study_models
+from crawler2d.study_sweeps import QUICK, Design, Study, robots_of_the_study
+
+MODELS = study_models(ROBOT.outline.axle_distance)
+FEW = {name: MODELS[name] for name in ("belt", "line of 3", "line of 3 gears")}
+TINY = Design(
+    heights={"step": (0.06,), "barrier": (0.04,), "knife edge": (0.02,)},
+    repeats=1,
+    robot_heights=(0.09,),
+    robot_repeats=1,
+    ride_repeats=1,
+    phase_fractions=(0.0, 1.0 / 3.0),
+)
 
 
-def test_repeats_are_drawn_by_seed_and_index_only() -> None:
-    low = Scenario(ROBOT, c2d.terrains.step(0.02))
-    high = Scenario(ROBOT.with_track(c2d.LineOfWheels(3)), c2d.terrains.step(0.1))
-    first, second = experiments.repeat(low, 3, 0), experiments.repeat(high, 3, 0)
-    assert first.start == second.start
-    assert first.drive == second.drive
-    assert first == experiments.repeat(low, 3, 0)
-    assert first != experiments.repeat(low, 4, 0)
-    assert first != experiments.repeat(low, 3, 1)
+def study(design: Design = TINY) -> Study:
+    return Study(design=design, models=FEW, progress=False)
 
 
-def test_repeats_stay_in_their_ranges() -> None:
-    base = Scenario(ROBOT, c2d.terrains.step(0.05))
-    for index in range(200):
-        drawn = experiments.repeat(base, index, 0)
-        assert 0.05 <= drawn.start.approach < 0.15
-        assert 0.0 <= drawn.start.track_phase < 0.048
-        assert drawn.drive.speed == pytest.approx(0.4, rel=0.02)
-        assert getattr(drawn.terrain, "friction", 0.0) == pytest.approx(0.9, rel=0.02)
+@pytest.fixture(scope="module")
+def table() -> xr.Dataset:
+    """Two models on four heights, ten runs a cell, with outcomes that are made up."""
+    outcomes = np.full((2, 4, 10), "cleared", dtype=object)
+    outcomes[0, 1, :6] = "stopped"  # a gap below a height that is cleared
+    outcomes[0, 3, :] = "tipped_over"
+    outcomes[1, :, :] = "stopped"
+    outcomes[1, 0, 0] = "diverged"
+    dims = ("track", "height", "repeat")
+    zero = np.zeros(outcomes.shape)
+    stopped = outcomes == "stopped"
+    weight = ROBOT.mass * 9.81
+    figures = {
+        "time": zero + 10.0,
+        "wall_time": zero + 0.1,
+        "max_penetration": zero + np.array([[[1e-4]], [[3e-4]]]),
+        "intrusion_force": np.where(stopped & (np.arange(10) % 2 == 0), 0.03 * weight, 0.0),
+        "intrusion_depth": zero + np.arange(10) * 1e-3,
+        "intrusion_root_depth": zero + np.arange(10) * 0.5e-3,
+        "stopped_time": np.where(stopped, 5.0, 0.0),
+        "path_length": zero + 1.0,
+        # The first model's track went on turning where it stopped, the second's did not.
+        "track_distance": np.where(stopped, [[[3.0]], [[1.1]]], 1.0),
+    }
+    return xr.Dataset(
+        {
+            "outcome": (dims, outcomes.astype(str)),
+            **{name: (dims, values) for name, values in figures.items()},
+            "distinct_poses": (dims[:2], np.full((2, 4), 3)),
+        },
+        coords={"track": ["first", "second"], "height": [0.02, 0.04, 0.06, 0.08]},
+        attrs={"scenario": Scenario(ROBOT, c2d.terrains.step(0.05)).to_json()},
+    )
+
+
+def test_every_model_makes_a_valid_robot() -> None:
+    for name, model in MODELS.items():
+        Scenario(ROBOT.with_track(model.track), c2d.terrains.step(0.05)).validate()
+        assert model.source == "ours" or any(c.isdigit() for c in model.source), name
 
 
 def test_wheels_of_a_sixth_of_the_axle_distance_touch_in_a_line_of_four() -> None:
-    track = experiments.models(0.365)["line of 4, touching"]
+    track = MODELS["line of 4, touching"].track
     assert isinstance(track, c2d.LineOfWheels)
     assert track.wheel_radius == pytest.approx(0.365 / 3 / 2)
 
 
-def test_the_quick_study_writes_its_tables_and_its_picture(
+def test_the_wheels_of_the_hybrid_stand_on_one_level() -> None:
+    wheels = ROBOT.with_track(MODELS["hybrid"].track).wheels()
+    assert np.ptp(wheels["y"] - wheels["radius"]) < 1e-12
+
+
+def test_each_robot_of_the_study_differs_from_the_preset_in_one_estimate() -> None:
+    preset, *others = robots_of_the_study().values()
+    assert preset == ROBOT
+    for other in others:
+        changed = [
+            f.name for f in fields(Robot) if getattr(other, f.name) != getattr(preset, f.name)
+        ]
+        assert len(changed) == 1
+
+
+def test_every_model_gets_the_same_draws() -> None:
+    found = study(replace(TINY, repeats=2)).on_obstacle("step")
+    for name in ("drawn_approach", "drawn_track_phase", "drawn_speed", "drawn_friction"):
+        assert np.ptp(found[name].to_numpy(), axis=0).max() == 0.0
+        assert np.ptp(found[name].to_numpy(), axis=2).min() > 0.0
+
+
+def test_the_obstacles_are_those_of_the_design() -> None:
+    for obstacle, thickness in (("barrier", 0.1), ("knife edge", 0.01)):
+        text = study().on_obstacle(obstacle)["scenario"].to_numpy().flat[0]
+        terrain = Scenario.from_json(text).terrain
+        assert isinstance(terrain, c2d.terrains.barrier)
+        assert (terrain.thickness, terrain.height) == (thickness, TINY.heights[obstacle][0])
+
+
+def test_cells_count_successes_failures_and_runs_without_a_result(table: xr.Dataset) -> None:
+    cells = study_tables.cells(table, "step")
+    assert [cell.cleared for cell in cells] == [10, 4, 10, 0, 0, 0, 0, 0]
+    assert [cell.count for cell in cells] == [10, 10, 10, 10, 9, 10, 10, 10]
+    assert cells[1].others == "6 stopped"
+    assert cells[4].others == "9 stopped, 1 diverged"
+    assert (cells[1].rate, cells[1].low, cells[1].high) == c2d.wilson(4, 10)
+    assert "6 stopped" in study_report.rates_text(cells)
+
+
+def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
+    first, second = study_tables.climbs(table, "step")
+    assert (first.highest, first.gaps) == (0.06, (0.04,))
+    assert math.isnan(second.highest)
+    assert second.gaps == ()
+    assert (first.simulated_time, first.computing_time) == pytest.approx((400.0, 4.0))
+    assert second.max_penetration == 3e-4
+    models = {"first": MODELS["belt"], "second": MODELS["line of 3"]}
+    lines = study_report.climbs_text(models, [first, second]).splitlines()
+    assert lines[-2].split() == ["first", "ours", "60", "(not", "40)", "100", "0.10"]
+    assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
+
+
+def test_stops_tell_loaded_edges_and_standing_tracks(table: xr.Dataset) -> None:
+    first, second = study_tables.stops(table, "step")
+    assert (first.stopped, first.loaded, first.standing) == (6, 3, 0)
+    assert (second.stopped, second.standing) == (39, 39)
+    assert first.depth == pytest.approx(2e-3)  # of 0, 2 and 4 mm
+    assert first.root_depth == pytest.approx(1e-3)
+    assert "6, 0 stood, 3 loaded: 2.0, 1.0" in study_report.stops_text([first, second])
+
+
+def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() -> None:
+    rides = {ride.model: ride for ride in study_tables.rides(study().on_the_flat())}
+    assert rides["line of 3"].over_reading == pytest.approx(0.0, abs=1e-4)
+    assert rides["line of 3"].vertical_acceleration < 0.01
+    assert rides["line of 3 gears"].over_reading > 0.005
+    assert rides["line of 3 gears"].vertical_acceleration > 1.0
+
+
+def test_wheels_that_turn_together_shake_up_and_down_but_do_not_rock() -> None:
+    phases = study_tables.phases(study().over_phases())
+    by_place = {(phase.count, phase.phase_fraction): phase for phase in phases}
+    for count in (3, 4, 5):
+        together, turned = by_place[count, 0.0], by_place[count, 1.0 / 3.0]
+        assert together.vertical_acceleration > turned.vertical_acceleration
+        assert together.angular_velocity < 0.1 * turned.angular_velocity
+
+
+def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
+    runs = public_wheel_model()
+    assert {place: str(run.outcome) for place, run in runs.items()} == {
+        (0.03, True): "cleared",
+        (0.05, True): "stopped",
+        (0.08, True): "stopped",
+        (0.03, False): "cleared",
+        (0.05, False): "stopped",
+        (0.08, False): "stopped",
+    }
+    found = posts(runs)
+    for (height, belly), run in runs.items():
+        own = [post for post in found if (post.height, post.belly) == (height, belly)]
+        deepest = max(own, key=lambda post: post.depth)
+        first, second = map(int, deepest.bodies.split())
+        assert first == second + 1
+        # The belly hangs 50 mm above the ground between the wheels.
+        reach = min(height, 0.05) if belly else height
+        assert deepest.depth == pytest.approx(reach, abs=1e-3)
+        assert (deepest.end == run.metrics["time"]) == (run.outcome == "stopped")
+
+
+def test_the_quick_study_writes_its_tables_and_its_pictures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(experiments, "QUICK_HEIGHTS", (0.03, 0.15))
-    monkeypatch.setattr(experiments, "QUICK_REPEATS", 2)
-    assert experiments.main(["--quick", "--out", str(tmp_path / "out")]) == 0
+    monkeypatch.setattr(experiments, "QUICK", TINY)
+    out = tmp_path / "out"
+    assert experiments.main(["--quick", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
-    assert "belt" in printed
-    assert "2/2" in printed
-    with (tmp_path / "out" / "study.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 6 * 2 * 2
-    assert {row["outcome"] for row in rows} <= {str(outcome) for outcome in c2d.Outcome}
-    with (tmp_path / "out" / "rates.csv").open(newline="") as file:
+    assert "torque 6.0 N m a sprocket" in printed
+    text = (out / "study.txt").read_text(encoding="utf-8")
+    assert set(text.splitlines()) <= set(printed.splitlines())
+    for name in MODELS:
+        assert name in text
+    with (out / "rates.csv").open(newline="") as file:
         rates = list(csv.DictReader(file))
-    assert len(rates) == 6 * 2
-    for rate in rates:
-        of_cell = [
-            row for row in rows if (row["model"], row["height"]) == (rate["model"], rate["height"])
-        ]
-        assert int(rate["cleared"]) == sum(row["outcome"] == "cleared" for row in of_cell)
-    assert (tmp_path / "out" / "study.png").stat().st_size > 10_000
+    assert len(rates) == len(MODELS) * (3 + len(robots_of_the_study()))
+    with (out / "runs_step.csv").open(newline="") as file:
+        runs = list(csv.DictReader(file))
+    assert {run["outcome"] for run in runs} <= {str(outcome) for outcome in c2d.Outcome}
+    for row in rates:
+        if (row["robot"], row["obstacle"]) == ("preset", "step") and row["height"] == "0.06":
+            own = [run for run in runs if run["track"] == row["model"]]
+            assert int(row["cleared"]) == sum(run["outcome"] == "cleared" for run in own)
+    for picture in ("rates.png", "phases.png", "posts.png"):
+        assert (out / picture).stat().st_size > 10_000
 
 
-def test_a_cell_counts_failures_and_distinct_poses() -> None:
-    stuck = c2d.simulate(ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1))
-    cleared = c2d.simulate(ROBOT, c2d.terrains.step(0.03))
-    (cell,) = experiments.summarise({("both", 0.1): [stuck, stuck, cleared]})
-    assert (cell.cleared, cell.count, cell.poses) == (1, 3, 2)
-    assert cell.failures == {"stopped": 2}
-    assert cell.rate == c2d.wilson(1, 3)
-    assert "2 stopped" in experiments.table([cell])
+def test_ctrl_c_ends_the_study_with_its_own_exit_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(_study: Study, _obstacle: str) -> xr.Dataset:
+        raise c2d.BatchInterrupted([])
+
+    monkeypatch.setattr(Study, "on_obstacle", interrupted)
+    assert experiments.main(["--quick", "--out", str(tmp_path)]) == 130
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_our_models_stand_below_their_row_of_the_paper(table: xr.Dataset) -> None:
+    models = {"first": MODELS["line of 3"], "second": MODELS["24 gears all round"]}
+    climbs = [climb for obstacle in QUICK.heights for climb in study_tables.climbs(table, obstacle)]
+    lines = study_report.beside_the_paper(models, climbs).splitlines()
+    below = {line.split("  ")[0]: following for line, following in itertools.pairwise(lines)}
+    assert "ours: first" in below["LWA, large standard fixed wheels"]
+    assert "ours: second" in below["CWA, small gear wheels"]
+
+
+def test_the_pictures_have_a_panel_a_model_and_a_line_a_count(table: xr.Dataset) -> None:
+    cells = [*study_tables.cells(table, "step"), *study_tables.cells(table, "barrier")]
+    first, second = study_plot.plot_rates(cells).axes
+    assert (first.get_title(), second.get_title()) == ("first", "second")
+    assert len(first.lines) == 2
+    phases = [
+        study_tables.Phase(
+            count=count, phase_fraction=f, vertical_acceleration=1.0, angular_velocity=0.1
+        )
+        for count in (3, 4, 5)
+        for f in (0.0, 0.5, 1.0)
+    ]
+    for ax in study_plot.plot_phases(phases).axes:
+        assert len(ax.lines) == 3 + 1  # the last marks eq. (1)

@@ -63,7 +63,7 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
         for obstacle, style in zip(obstacles, styles, strict=False):
             own = [c for c in cells if (c.model, c.obstacle) == (models[index], obstacle)]
             heights = [1e3 * cell.height for cell in own]
-            lows, highs = ([1e2 * bound for bound in bounds] for bounds in _bounds(own))
+            lows, highs = [1e2 * cell.low for cell in own], [1e2 * cell.high for cell in own]
             ax.fill_between(heights, lows, highs, color=style["color"], alpha=0.15, linewidth=0.0)
             ax.plot(heights, [1e2 * cell.rate for cell in own], label=obstacle, **style)
         ax.set_title(models[index], fontsize="medium")
@@ -155,7 +155,3 @@ def plot_posts(runs: Mapping[tuple[float, bool], Run]) -> Figure:
         ax.label_outer()
         ax.get_legend().remove()
     return figure
-
-
-def _bounds(cells: Sequence[Cell]) -> tuple[list[float], list[float]]:
-    return [cell.low for cell in cells], [cell.high for cell in cells]
