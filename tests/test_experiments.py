@@ -12,12 +12,14 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d import experiments, study_plot, study_report, study_tables
-from crawler2d.public_model import posts, public_wheel_model
+from crawler2d.experiments import __main__ as command
+from crawler2d.experiments import plot, report, tables
+from crawler2d.experiments.__main__ import main
+from crawler2d.experiments.models import study_models
+from crawler2d.experiments.public_model import posts, public_wheel_model
+from crawler2d.experiments.sweeps import QUICK, Design, Study, robots_of_the_study
 from crawler2d.robot import Robot
 from crawler2d.scenario import Scenario
-from crawler2d.study_models import study_models
-from crawler2d.study_sweeps import QUICK, Design, Study, robots_of_the_study
 
 MODELS = study_models(ROBOT.outline.axle_distance)
 FEW = {name: MODELS[name] for name in ("belt", "line of 3", "line of 3 gears")}
@@ -113,39 +115,39 @@ def test_the_obstacles_are_those_of_the_design() -> None:
 
 
 def test_cells_count_successes_failures_and_runs_without_a_result(table: xr.Dataset) -> None:
-    cells = study_tables.cells(table, "step")
+    cells = tables.cells(table, "step")
     assert [cell.cleared for cell in cells] == [10, 4, 10, 0, 0, 0, 0, 0]
     assert [cell.count for cell in cells] == [10, 10, 10, 10, 9, 10, 10, 10]
     assert cells[1].others == "6 stopped"
     assert cells[4].others == "9 stopped, 1 diverged"
     assert (cells[1].rate, cells[1].low, cells[1].high) == c2d.wilson(4, 10)
-    assert "6 stopped" in study_report.rates_text(cells)
+    assert "6 stopped" in report.rates_text(cells)
 
 
 def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
-    first, second = study_tables.climbs(table, "step")
+    first, second = tables.climbs(table, "step")
     assert (first.highest, first.gaps) == (0.06, (0.04,))
     assert math.isnan(second.highest)
     assert second.gaps == ()
     assert (first.simulated_time, first.computing_time) == pytest.approx((400.0, 4.0))
     assert second.max_penetration == 3e-4
     models = {"first": MODELS["belt"], "second": MODELS["line of 3"]}
-    lines = study_report.climbs_text(models, [first, second]).splitlines()
+    lines = report.climbs_text(models, [first, second]).splitlines()
     assert lines[-2].split() == ["first", "ours", "60", "(not", "40)", "100", "0.10"]
     assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
 
 
 def test_stops_tell_loaded_edges_and_standing_tracks(table: xr.Dataset) -> None:
-    first, second = study_tables.stops(table, "step")
+    first, second = tables.stops(table, "step")
     assert (first.stopped, first.loaded, first.standing) == (6, 3, 0)
     assert (second.stopped, second.standing) == (39, 39)
     assert first.depth == pytest.approx(2e-3)  # of 0, 2 and 4 mm
     assert first.root_depth == pytest.approx(1e-3)
-    assert "6, 0 stood, 3 loaded: 2.0, 1.0" in study_report.stops_text([first, second])
+    assert "6, 0 stood, 3 loaded: 2.0, 1.0" in report.stops_text([first, second])
 
 
 def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() -> None:
-    rides = {ride.model: ride for ride in study_tables.rides(study().on_the_flat())}
+    rides = {ride.model: ride for ride in tables.rides(study().on_the_flat())}
     assert rides["line of 3"].over_reading == pytest.approx(0.0, abs=1e-4)
     assert rides["line of 3"].vertical_acceleration < 0.01
     assert rides["line of 3 gears"].over_reading > 0.005
@@ -153,7 +155,7 @@ def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() ->
 
 
 def test_wheels_that_turn_together_shake_up_and_down_but_do_not_rock() -> None:
-    phases = study_tables.phases(study().over_phases())
+    phases = tables.phases(study().over_phases())
     by_place = {(phase.count, phase.phase_fraction): phase for phase in phases}
     for count in (3, 4, 5):
         together, turned = by_place[count, 0.0], by_place[count, 1.0 / 3.0]
@@ -186,9 +188,9 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
 def test_the_quick_study_writes_its_tables_and_its_pictures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(experiments, "QUICK", TINY)
+    monkeypatch.setattr(command, "QUICK", TINY)
     out = tmp_path / "out"
-    assert experiments.main(["--quick", "--out", str(out)]) == 0
+    assert main(["--quick", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "torque 6.0 N m a sprocket" in printed
     text = (out / "study.txt").read_text(encoding="utf-8")
@@ -216,30 +218,28 @@ def test_ctrl_c_ends_the_study_with_its_own_exit_code(
         raise c2d.BatchInterrupted([])
 
     monkeypatch.setattr(Study, "on_obstacle", interrupted)
-    assert experiments.main(["--quick", "--out", str(tmp_path)]) == 130
+    assert main(["--quick", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
 
 
 def test_our_models_stand_below_their_row_of_the_paper(table: xr.Dataset) -> None:
     models = {"first": MODELS["line of 3"], "second": MODELS["24 gears all round"]}
-    climbs = [climb for obstacle in QUICK.heights for climb in study_tables.climbs(table, obstacle)]
-    lines = study_report.beside_the_paper(models, climbs).splitlines()
+    climbs = [climb for obstacle in QUICK.heights for climb in tables.climbs(table, obstacle)]
+    lines = report.beside_the_paper(models, climbs).splitlines()
     below = {line.split("  ")[0]: following for line, following in itertools.pairwise(lines)}
     assert "ours: first" in below["LWA, large standard fixed wheels"]
     assert "ours: second" in below["CWA, small gear wheels"]
 
 
 def test_the_pictures_have_a_panel_a_model_and_a_line_a_count(table: xr.Dataset) -> None:
-    cells = [*study_tables.cells(table, "step"), *study_tables.cells(table, "barrier")]
-    first, second = study_plot.plot_rates(cells).axes
+    cells = [*tables.cells(table, "step"), *tables.cells(table, "barrier")]
+    first, second = plot.plot_rates(cells).axes
     assert (first.get_title(), second.get_title()) == ("first", "second")
     assert len(first.lines) == 2
     phases = [
-        study_tables.Phase(
-            count=count, phase_fraction=f, vertical_acceleration=1.0, angular_velocity=0.1
-        )
+        tables.Phase(count=count, phase_fraction=f, vertical_acceleration=1.0, angular_velocity=0.1)
         for count in (3, 4, 5)
         for f in (0.0, 0.5, 1.0)
     ]
-    for ax in study_plot.plot_phases(phases).axes:
+    for ax in plot.plot_phases(phases).axes:
         assert len(ax.lines) == 3 + 1  # the last marks eq. (1)

@@ -30,8 +30,9 @@ const AGREEMENT: f64 = 1e-7;
 const SELF_STRESS_TIME: f64 = 0.1;
 /// [m] Surfaces closer than this touch; a gap that a substep has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
-/// [m/s] A gap that closes faster is a collision; slower ones are contacts that come and go.
-const COLLISION_SPEED: f64 = 0.01;
+/// [m/s] A gap that closes faster is a collision; slower ones are contacts that come and go. Jammed
+/// small gear wheels rattle at some mm/s: at 10 mm/s they shake themselves free too often.
+const COLLISION_SPEED: f64 = 0.001;
 /// [s] Substep of a collision. What motor and weight do during the substep in which a wheel strikes
 /// an edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which
 /// a robot just climbs by 1 %, this shifts it by less than 0.1 %.

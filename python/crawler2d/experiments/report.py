@@ -6,14 +6,14 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from crawler2d import paper
 from crawler2d._core import build_info
+from crawler2d.experiments import paper
 
 if TYPE_CHECKING:
-    from crawler2d.public_model import Post
-    from crawler2d.study_models import StudyModel
-    from crawler2d.study_sweeps import Study
-    from crawler2d.study_tables import Cell, Climb, Phase, Ride, Stops
+    from crawler2d.experiments.models import StudyModel
+    from crawler2d.experiments.public_model import Post
+    from crawler2d.experiments.sweeps import Study
+    from crawler2d.experiments.tables import Cell, Climb, Phase, Ride, Stops
 
 __all__ = [
     "beside_the_paper",

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crawler2d import study_report as report
-from crawler2d import study_tables as rows
 from crawler2d.errors import BatchInterrupted
-from crawler2d.public_model import posts, public_wheel_model
-from crawler2d.study_sweeps import FULL, QUICK, Study
+from crawler2d.experiments import report
+from crawler2d.experiments import tables as rows
+from crawler2d.experiments.public_model import posts, public_wheel_model
+from crawler2d.experiments.sweeps import FULL, QUICK, Study
 
 if TYPE_CHECKING:
     from crawler2d.run import Run
@@ -101,11 +101,11 @@ def _draw(
     out: Path,
 ) -> None:
     try:
-        from crawler2d import study_plot  # noqa: PLC0415 - optional
+        from crawler2d.experiments import plot  # noqa: PLC0415 - optional
 
-        study_plot.plot_rates(cells).savefig(out / "rates.png", dpi=100)
-        study_plot.plot_phases(phases).savefig(out / "phases.png", dpi=100)
-        study_plot.plot_posts(runs).savefig(out / "posts.png", dpi=100)
+        plot.plot_rates(cells).savefig(out / "rates.png", dpi=100)
+        plot.plot_phases(phases).savefig(out / "phases.png", dpi=100)
+        plot.plot_posts(runs).savefig(out / "posts.png", dpi=100)
     except ImportError as missing:
         print(f"no pictures: {missing}", file=sys.stderr)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from crawler2d.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
+from crawler2d.experiments.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 from crawler2d.track import (
     BeltTrack,
     CircumferentialWheels,

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import terrains
+from crawler2d.experiments.models import StudyModel, study_models
 from crawler2d.robots import engineer
 from crawler2d.scenario import Drive, Scenario
-from crawler2d.study_models import StudyModel, study_models
 from crawler2d.sweep import sweep
 from crawler2d.track import GearWheel, LineOfWheels
 
