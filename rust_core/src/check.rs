@@ -42,8 +42,8 @@ impl Scenario {
             let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
             return Err(ScenarioError::new("drive.speed", self.drive.speed, rule));
         }
-        let parts = Model::new(&self.robot)?.parts;
-        let (tip, root) = parts.iter().flat_map(Part::discs).fold(
+        let model = Model::new(&self.robot)?;
+        let (tip, root) = model.parts.iter().flat_map(Part::discs).fold(
             (f64::INFINITY, f64::INFINITY),
             |(tip, root), (circumscribed, inner)| {
                 (tip.min(circumscribed.radius), root.min(inner.radius))
@@ -70,7 +70,7 @@ impl Scenario {
             ));
         }
         let ground = Ground::new(&self.terrain)?;
-        robot::start_pose(self, &ground)?;
+        robot::start_pose(self, &model, &ground)?;
         Ok(())
     }
 }

@@ -95,6 +95,17 @@ pub enum Shape {
     },
 }
 
+/// A wheel whose shape turns with its drive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TurningWheel {
+    /// [m] Axle in the chassis frame.
+    pub center: Vector,
+    /// [m] Radius at which its surface runs with the drive.
+    pub radius: f64,
+    /// Index of the drive.
+    pub drive: usize,
+}
+
 impl Model {
     /// The model of a robot: mass, centre of mass and moments of inertia are the built robot's,
     /// whatever the track model.
@@ -195,6 +206,18 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
+    /// The wheel that it is, if turning changes what it touches.
+    pub(crate) fn turning(&self) -> Option<TurningWheel> {
+        match (&self.shape, self.drive) {
+            (Shape::Gear { center, gear }, Some(drive)) => Some(TurningWheel {
+                center: *center,
+                radius: gear.radius,
+                drive,
+            }),
+            _ => None,
+        }
+    }
+
     /// Velocity of the surface over the chassis where the outward normal of the ground is `normal`,
     /// for a surface speed of 1; `spoke` leads from the centre of a turning wheel to that place.
     pub(crate) fn surface_motion(&self, normal: Vector, spoke: Vector) -> Vector {
@@ -208,8 +231,11 @@ impl Part {
 }
 
 /// Position of the chassis frame at time 0: on the ground, `start.approach` before the first edge.
-pub(crate) fn start_pose(scenario: &Scenario, ground: &Ground) -> Result<Vector, ScenarioError> {
-    let model = Model::new(&scenario.robot)?;
+pub(crate) fn start_pose(
+    scenario: &Scenario,
+    model: &Model,
+    ground: &Ground,
+) -> Result<Vector, ScenarioError> {
     let (sine, cosine) = libm::sincos(scenario.start.angle);
     let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
     let turned_disc = |d: Disc| Disc {

@@ -44,8 +44,8 @@ impl Simulation {
     /// # Errors
     /// [`Error::Scenario`] if the robot does not fit on it.
     pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
-        let position = robot::start_pose(scenario, &ground)?;
         let model = Model::new(&scenario.robot)?;
+        let position = robot::start_pose(scenario, &model, &ground)?;
         let contact = ReferenceContact::new(&model.parts, &ground.profile);
         let state = State::at_rest(
             &model,

@@ -11,7 +11,7 @@ use rapier2d_f64::parry::shape::{Polyline, PolylineFlags};
 use rapier2d_f64::prelude::SharedShape;
 
 use super::{Contact, without_redundant};
-use crate::robot::{Part, Shape};
+use crate::robot::{Part, Shape, TurningWheel};
 use crate::terrain::Profile;
 
 /// [m] A contact this close to a vertex touches the edge, not the face beside it.
@@ -21,29 +21,26 @@ const FACET_TURN: f64 = 0.01;
 
 /// Shapes of one robot and one ground.
 pub(crate) struct ReferenceContact {
-    solids: Vec<Solid>,
+    bodies: Vec<Body>,
     ground: Polyline,
     profile: Profile,
     manifolds: Vec<ContactManifold<(), ()>>,
 }
 
-/// One convex piece of a part.
-struct Solid {
+/// A part as convex pieces.
+struct Body {
     part: usize,
+    /// [m] A disc round it, in the chassis frame.
+    bound: (Vector, f64),
+    solids: Vec<Solid>,
+}
+
+/// One convex piece.
+struct Solid {
     shape: SharedShape,
     /// Place in the frame of the wheel that it turns with, or of the chassis.
     place: Pose,
-    wheel: Option<Wheel>,
-    /// [m] A disc round the wheel or the piece, in the chassis frame.
-    bound: (Vector, f64),
-}
-
-/// A wheel whose shape turns with its drive.
-#[derive(Clone, Copy)]
-struct Wheel {
-    center: Vector,
-    radius: f64,
-    drive: usize,
+    wheel: Option<TurningWheel>,
 }
 
 impl Solid {
@@ -62,10 +59,14 @@ impl ReferenceContact {
         // Outside lies on the right of each segment, so the ground runs from +x to -x.
         let vertices: Vec<Vector> = profile.points.iter().rev().copied().collect();
         Self {
-            solids: parts
+            bodies: parts
                 .iter()
                 .enumerate()
-                .flat_map(|(i, part)| solids_of(i, part))
+                .map(|(i, part)| Body {
+                    part: i,
+                    bound: part.bound(),
+                    solids: solids_of(part),
+                })
                 .collect(),
             ground: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
             profile: profile.clone(),
@@ -84,26 +85,29 @@ impl ReferenceContact {
         contacts: &mut Vec<Contact>,
     ) {
         contacts.clear();
-        for i in 0..self.solids.len() {
-            let solid = &self.solids[i];
-            let (center, radius) = solid.bound;
+        for i in 0..self.bodies.len() {
+            let (center, radius) = self.bodies[i].bound;
             let center = pose.transform_point(center);
             if self.profile.is_clear_of(center, radius + prediction) {
                 continue;
             }
-            self.find_solid(i, pose * solid.at(drives), prediction, contacts);
+            for k in 0..self.bodies[i].solids.len() {
+                let place = pose * self.bodies[i].solids[k].at(drives);
+                self.find_solid((i, k), place, prediction, contacts);
+            }
         }
         without_redundant(contacts);
     }
 
     fn find_solid(
         &mut self,
-        solid: usize,
+        (body, solid): (usize, usize),
         pose: Pose,
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let solid = &self.solids[solid];
+        let part = self.bodies[body].part;
+        let solid = &self.bodies[body].solids[solid];
         // A manifold that was kept would be reused until the pose changes by a degree.
         self.manifolds.clear();
         DefaultQueryDispatcher
@@ -121,7 +125,7 @@ impl ReferenceContact {
             for point in manifold.points.iter().filter(|p| p.dist < prediction) {
                 let on_solid = pose.transform_point(point.local_p2);
                 contacts.push(Contact {
-                    part: solid.part,
+                    part,
                     facet,
                     edge: self.edge_at(facet, point.local_p1),
                     point: 0.5 * (point.local_p1 + on_solid),
@@ -147,14 +151,11 @@ impl ReferenceContact {
 }
 
 /// The convex pieces of a part.
-fn solids_of(index: usize, part: &Part) -> Vec<Solid> {
-    let bound = part.bound();
+fn solids_of(part: &Part) -> Vec<Solid> {
     let solid = |shape, place, wheel| Solid {
-        part: index,
         shape,
         place,
         wheel,
-        bound,
     };
     let on_chassis = |shape, place| vec![solid(shape, place, None)];
     match &part.shape {
@@ -173,11 +174,7 @@ fn solids_of(index: usize, part: &Part) -> Vec<Solid> {
         Shape::Gear { center, gear } => {
             let place = Pose::from_translation(*center);
             let root = solid(SharedShape::ball(gear.root_radius), place, None);
-            let wheel = part.drive.map(|drive| Wheel {
-                center: *center,
-                radius: gear.radius,
-                drive,
-            });
+            let wheel = part.turning();
             let grousers = gear.directions().map(|direction| {
                 let corners = gear.corners(direction).to_vec();
                 solid(polygon(corners), Pose::identity(), wheel)

@@ -6,7 +6,7 @@ use super::law::Admittance;
 use super::state::State;
 use crate::contact::{Contact, LoadedContact};
 use crate::plane::{cross, right_of};
-use crate::robot::{Model, Part, Shape};
+use crate::robot::Model;
 
 /// One contact's constraint in one step.
 #[derive(Clone, Copy, Debug)]
@@ -88,13 +88,15 @@ impl Row {
         let part = &model.parts[contact.part];
         let (center, angle) = middle;
         let arm = contact.point - center;
-        let axle = axle_of(part).map(|axle| Rotation::new(angle) * (axle - model.center_of_mass));
-        let spoke = axle.map_or(Vector::ZERO, |axle| arm - axle);
+        let wheel = part.turning();
+        let spoke = wheel.map_or(Vector::ZERO, |wheel| {
+            arm - Rotation::new(angle) * (wheel.center - model.center_of_mass)
+        });
         let motion = part.surface_motion(contact.normal, spoke);
         let normal = Direction::new(contact.normal, arm, motion, model);
         let tangent = Direction::new(right_of(contact.normal), arm, motion, model);
         let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
-        let turn = turn_of(part);
+        let turn = wheel.map_or(0.0, |wheel| 1.0 / wheel.radius);
         let back = Rotation::new(state.angle - angle);
         let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
         let mut start = Place {
@@ -145,22 +147,6 @@ impl Row {
         }
         let moved = state.center - center + turned * s.arm + spoke - s.arm - s.spoke;
         self.gap = s.gap + self.normal.unit.dot(moved);
-    }
-}
-
-/// Centre of a wheel whose shape turns, in the chassis frame.
-fn axle_of(part: &Part) -> Option<Vector> {
-    match &part.shape {
-        Shape::Gear { center, .. } if part.drive.is_some() => Some(*center),
-        _ => None,
-    }
-}
-
-/// [1/m] Turn of such a wheel for each metre of its drive.
-fn turn_of(part: &Part) -> f64 {
-    match &part.shape {
-        Shape::Gear { gear, .. } if part.drive.is_some() => 1.0 / gear.radius,
-        _ => 0.0,
     }
 }
 

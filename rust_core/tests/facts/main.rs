@@ -14,6 +14,7 @@ mod another_engine;
 mod basics;
 mod belt;
 mod climbing;
+mod drawn;
 mod drive;
 mod gears;
 mod ghosts;

@@ -1,0 +1,148 @@
+//! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
+
+use crawler2d_core::{
+    CircumferentialWheels, GearWheel, HybridWheels, Scenario, Terrain, TorqueSharing, Track,
+    TrackOutline, Wheel,
+};
+
+use crate::common::*;
+
+fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
+    let smallest = outline.front_radius.min(outline.rear_radius);
+    let wheel = if draw.unit() < 0.5 {
+        Wheel::Round
+    } else {
+        Wheel::Gear(GearWheel {
+            grouser_count: Some(3 + (draw.unit() * 15.0) as u32),
+            grouser_height: Some(draw.between(0.02, 0.09) * smallest),
+            tip_thickness: Some(0.01 * smallest),
+            base_thickness: Some(draw.between(0.01, 0.03) * smallest),
+            phase_fraction: draw.unit(),
+        })
+    };
+    match (draw.unit() * 8.0) as u32 {
+        0 => belt(),
+        1 => force(),
+        2 => force_on_wheels(),
+        3 => Track::Circumferential(CircumferentialWheels {
+            count: 3 + (draw.unit() * 30.0) as u32,
+            wheel_radius: Some(draw.between(0.12, 0.9) * smallest),
+            wheel,
+        }),
+        4 => {
+            let mut placed = || {
+                let (x, y) = (draw.between(-0.5, 0.5), draw.between(-0.3, 0.3));
+                [
+                    x * outline.axle_distance,
+                    y * smallest,
+                    draw.between(0.12, 1.0) * smallest,
+                ]
+            };
+            let placements = (0..5).map(|_| placed()).collect();
+            Track::Hybrid(HybridWheels { placements, wheel })
+        }
+        _ => line_of(2 + (draw.unit() * 10.0) as u32, wheel),
+    }
+}
+
+fn drawn_terrain(draw: &mut Draw) -> Terrain {
+    let (friction, height, edge_radius) = (draw.between(0.0, 2.0), draw.between(0.01, 0.5), 0.0);
+    match (draw.unit() * 10.0) as u32 {
+        0 | 1 => step(height, friction),
+        2 => Terrain::Ramp {
+            angle: draw.between(-1.2, 1.2),
+            length: draw.between(0.05, 2.0),
+            edge_radius,
+            friction,
+        },
+        3 => Terrain::Barrier {
+            height,
+            thickness: draw.between(0.005, 0.5),
+            edge_radius: 0.002,
+            friction,
+        },
+        4 => Terrain::Ridge {
+            height,
+            edge_angle: draw.between(0.2, 3.0),
+            edge_radius,
+            friction,
+        },
+        5 => Terrain::Gap {
+            width: draw.between(0.02, 1.0),
+            depth: height,
+            edge_radius,
+            friction,
+        },
+        6 => Terrain::HalfRound {
+            radius: height,
+            friction,
+        },
+        _ => {
+            let (mut x, mut points) = (0.0, vec![[-10.0, 0.0], [0.0, 0.0]]);
+            for _ in 0..12 {
+                let y = draw.between(-0.2, 0.2);
+                points.push([x, y]);
+                x += draw.between(0.02, 0.4);
+                points.push([x, y]);
+            }
+            points.push([x + 10.0, 0.0]);
+            Terrain::Points {
+                points,
+                goal: x,
+                edge_radius,
+                friction,
+            }
+        }
+    }
+}
+
+/// A legal scenario anywhere in the space of robots, grounds and settings.
+pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
+    let mut s = engineer();
+    let r = &mut s.robot;
+    r.outline.axle_distance = draw.between(0.1, 1.5);
+    r.outline.front_radius = draw.between(0.1, 0.45) * r.outline.axle_distance;
+    r.outline.rear_radius = if draw.unit() < 0.5 {
+        r.outline.front_radius
+    } else {
+        draw.between(0.1, 0.45) * r.outline.axle_distance
+    };
+    let smallest = r.outline.front_radius.min(r.outline.rear_radius);
+    r.outline.grouser_height = draw.between(0.0, 0.3) * smallest;
+    r.mass = libm::exp(draw.between(0.0, 6.0));
+    r.track_mass = draw.between(0.01, 0.3) * r.mass;
+    r.moment_of_inertia = draw.between(0.35, 1.0) * r.mass * r.outline.axle_distance.powi(2);
+    r.center_of_mass = [
+        draw.between(-0.3, 0.3) * r.outline.axle_distance,
+        draw.between(-0.1, 0.3) * r.outline.axle_distance,
+    ];
+    let (half, low) = (
+        0.5 * r.outline.axle_distance,
+        -draw.between(0.0, 0.9) * smallest,
+    );
+    r.belly = (draw.unit() < 0.5).then(|| {
+        vec![
+            [-half, low],
+            [half, low],
+            [half, smallest],
+            [-half, smallest],
+        ]
+    });
+    // From a hundredth of the weight to seven times the weight in traction.
+    r.drivetrain.max_torque = libm::exp(draw.between(-4.0, 2.0)) * 0.5 * r.mass * G * smallest;
+    r.drivetrain.max_acceleration = libm::exp(draw.between(-3.0, 3.0));
+    r.track = drawn_track(draw, &r.outline);
+    let driven = !matches!(r.track, Track::Belt(_) | Track::Force(_));
+    if driven && draw.unit() < 0.5 {
+        r.drivetrain.torque_sharing = TorqueSharing::Wheel;
+    }
+    s.terrain = drawn_terrain(draw);
+    s.drive.speed = draw.between(-1.3, 1.3);
+    s.gravity = if draw.unit() < 0.05 {
+        0.0
+    } else {
+        draw.between(0.5, 20.0)
+    };
+    s.duration = 2.0;
+    s
+}
