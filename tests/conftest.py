@@ -91,3 +91,10 @@ def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
 def _no_thread_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep a limit of the developer's own out of the tests."""
     monkeypatch.delenv("CRAWLER2D_THREADS", raising=False)
+
+
+def refusal(robot: c2d.Robot, **fields: Any) -> c2d.ScenarioError:
+    """Return the error that a robot on flat ground gets."""
+    with pytest.raises(c2d.ScenarioError) as caught:
+        Scenario(robot, c2d.terrains.flat(), **fields).validate()
+    return caught.value
