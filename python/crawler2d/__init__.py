@@ -14,6 +14,7 @@ from crawler2d import robots, terrains
 from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
 from crawler2d.compare import compare
+from crawler2d.diagnosis import Condition, Diagnosis, Mechanism
 from crawler2d.draws import scaled, uniform
 from crawler2d.errors import (
     BatchInterrupted,
@@ -23,9 +24,10 @@ from crawler2d.errors import (
     ScenarioError,
     SimulationDiverged,
 )
+from crawler2d.outcome import Outcome
 from crawler2d.rates import rate
 from crawler2d.robot import Drivetrain, Robot, TrackOutline
-from crawler2d.run import Outcome, Run
+from crawler2d.run import Run
 from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
 from crawler2d.simulation import Simulation
 from crawler2d.statistics import newcombe, newcombe_paired, wilson
@@ -44,7 +46,9 @@ __all__ = [
     "BatchInterrupted",
     "BeltTrack",
     "CircumferentialWheels",
+    "Condition",
     "Crawler2dError",
+    "Diagnosis",
     "Drive",
     "Drivetrain",
     "ForceTrack",
@@ -53,6 +57,7 @@ __all__ = [
     "InternalError",
     "LimitError",
     "LineOfWheels",
+    "Mechanism",
     "Outcome",
     "Robot",
     "RoundWheel",

@@ -10,7 +10,7 @@ import numpy as np
 from crawler2d._extras import extra
 from crawler2d._sweep_table import NO_RESULT
 from crawler2d.errors import ScenarioError
-from crawler2d.run import Outcome
+from crawler2d.outcome import Outcome
 from crawler2d.statistics import wilson
 
 if TYPE_CHECKING:

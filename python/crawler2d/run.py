@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
 
+from crawler2d.diagnosis import Diagnosis, Mechanism
 from crawler2d.errors import Crawler2dError
+from crawler2d.outcome import Outcome
 from crawler2d.table import Table, read_only
 
 if TYPE_CHECKING:
@@ -17,23 +20,7 @@ if TYPE_CHECKING:
 
     from crawler2d.scenario import Scenario
 
-__all__ = ["Outcome", "Run"]
-
-
-class Outcome(StrEnum):
-    """How a run ended; where several apply, the first of this list."""
-
-    DETRACKED = "detracked"
-    TIPPED_OVER = "tipped_over"
-    LEFT_TERRAIN = "left_terrain"
-    CLEARED = "cleared"
-    SEIZED = "seized"
-    HUNG_UP = "hung_up"
-    STALLED = "stalled"
-    SLIPPING = "slipping"
-    CYCLING = "cycling"
-    STOPPED = "stopped"
-    TIMED_OUT = "timed_out"
+__all__ = ["Run"]
 
 
 class Run:
@@ -48,6 +35,8 @@ class Run:
         What was simulated.
     outcome : Outcome or None
         How it ended; None where `error` says why there is no result.
+    diagnosis : Diagnosis or None
+        Why it stopped, if it ended in a stop; ``print(run.diagnosis)`` says it in a sentence.
     metrics : dict of str to float
         Figures of the whole run, see the notes.
     edges : Table
@@ -79,6 +68,8 @@ class Run:
     `max_penetration`        m      deepest overlap of any part with the ground
     `drive_work`             J      work of the motors
     `stopped_time`           s      spent in stops
+    `time_to_free`           s      longest stop from which the robot freed itself, 0 if none
+    `progress`               -      share of the commanded distance made in the last stop window
     `vertical_acceleration`  m/s^2  of the chassis frame, averaged over 10 ms; root mean square
     `angular_velocity`       rad/s  rate of the chassis angle, root mean square
     `intrusion_depth`        m      greatest depth of the most loaded of the intrusions that last to
@@ -115,12 +106,26 @@ class Run:
         self.scenario = scenario
         self.error = error
         self.outcome = Outcome(result["outcome"]) if error is None else None
+        why = result.get("diagnosis")
+        self.diagnosis = None if why is None else Diagnosis.from_core(why)
         self.metrics: dict[str, float] = dict(result.get("metrics", {}))
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)
         self._trace = {name: read_only(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
+
+    @property
+    def mechanism(self) -> Mechanism | None:
+        """How ground inside the track is held, if the run ended in a stop and there is any."""
+        return None if self.diagnosis is None else self.diagnosis.mechanism
+
+    @property
+    def is_creeping(self) -> bool:
+        """Whether it made a little way at its end, between `criteria.creep_from` and `creep_to`."""
+        criteria = self.scenario.criteria
+        progress = self.metrics.get("progress", 1.0)
+        return criteria.creep_from <= progress < criteria.creep_to
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -254,10 +259,58 @@ class Run:
 
         return plot_run(self, time, axes)
 
+    @overload
+    def to_html(self, path: None = None, *, time: float | None = None) -> str: ...
+
+    @overload
+    def to_html(self, path: str | PathLike[str], *, time: float | None = None) -> Path: ...
+
+    def to_html(
+        self, path: str | PathLike[str] | None = None, *, time: float | None = None
+    ) -> str | Path:
+        """Write one HTML page that replays the run; it needs no network and no other file.
+
+        A run of more than 3000 samples is thinned to at most so many, and the page says so.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Where to write the page; None returns its text.
+        time : float, optional
+            [s] Instant that the page opens at; None takes the end where the run stopped, else the
+            beginning.
+
+        Returns
+        -------
+        str or Path
+            The text, or the path of the written file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+        """
+        from crawler2d.viewer import replay_page  # noqa: PLC0415 - costs nothing until used
+
+        text = replay_page(self, time)
+        if path is None:
+            return text
+        Path(path).write_text(text, encoding="utf-8", newline="\n")
+        return Path(path)
+
+    def _repr_html_(self) -> str:
+        """Replay the run in a notebook, or show its figures where there is no history."""
+        from crawler2d.viewer import embedded  # noqa: PLC0415 - costs nothing until used
+
+        return embedded(self)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the data; arrays are read-only again in the copy."""
         result = {
             "outcome": self.outcome,
+            "diagnosis": None if self.diagnosis is None else self.diagnosis.to_plain(),
             "metrics": self.metrics,
             "edges": dict(self.edges),
             "events": dict(self.events),

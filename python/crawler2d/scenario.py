@@ -116,6 +116,29 @@ class SeizureCriteria(Parameters):
         [m] Ground inside the envelope of the track is an intrusion beyond this depth, 0 to 0.1. The
         default lies above what round wheels and belts sink in when they strike an edge (0.2 mm).
         With 0 the ground that the robot rests on joins the pieces under it.
+    intrusion_load : float
+        [-] Share of the weight from which an intrusion is loaded; less is a touch in passing.
+    belly_load : float
+        [-] Share of the weight on the belly from which a stop without a seizure is a hang-up: what
+        is missing below the tracks is then more than the friction number is usually known to.
+    sliding_speed : float
+        [-] Share of the commanded speed from which a surface slides, or a drive turns. A solver's
+        sticking contact creeps by a thousandth of that.
+    torque_limit : float
+        [-] Share of the torque limit from which a motor is at its limit, in the mean.
+    cycling_distance : float
+        [m] A robot that moves to and fro by this much within a stop window is cycling: more than
+        jammed grousers rattle, less than the spacing of any wheels.
+    imbalance : float
+        [-] Share of the weight that an equilibrium of a stationary state may leave unbalanced.
+    mean_imbalance : float
+        [-] The same for the means of a state that rattles on.
+    creep_from, creep_to : float
+        [-] Shares of the commanded distance between which the robot creeps.
+    escape_distance : float
+        [m] Advance that counts as getting away from a stop.
+    escape_time : float
+        [s] Time that a closed belt is given to get away from a stop.
     """
 
     place: ClassVar[str] = "criteria"
@@ -129,6 +152,17 @@ class SeizureCriteria(Parameters):
     clear_angle: float = math.radians(5.0)
     tip_over_angle: float = math.pi / 2.0
     intrusion_depth: float = 5e-4
+    intrusion_load: float = 0.02
+    belly_load: float = 0.10
+    sliding_speed: float = 0.02
+    torque_limit: float = 0.98
+    cycling_distance: float = 0.02
+    imbalance: float = 1e-3
+    mean_imbalance: float = 0.02
+    creep_from: float = 0.02
+    creep_to: float = 0.20
+    escape_distance: float = 0.05
+    escape_time: float = 5.0
 
 
 @dataclass(frozen=True, slots=True)

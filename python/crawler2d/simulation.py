@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from crawler2d import _core
 from crawler2d._arrays import real_number
 from crawler2d.errors import ScenarioError
-from crawler2d.run import Outcome
+from crawler2d.outcome import Outcome
 from crawler2d.scenario import Scenario
 from crawler2d.table import Table, read_only
 

@@ -9,7 +9,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
-use crate::errors;
+use crate::{diagnosis, errors};
 
 /// What to keep of a run, from its two arguments.
 pub(crate) fn record(sample_interval: f64, record: &str) -> PyResult<Record> {
@@ -73,6 +73,8 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
         metrics.set_item(name, value)?;
     }
     result.set_item("outcome", run.outcome.name())?;
+    let why = run.diagnosis.as_ref();
+    result.set_item("diagnosis", why.map(|d| diagnosis::of(py, d)).transpose()?)?;
     result.set_item("metrics", metrics)?;
     result.set_item("trace", trace(py, run.trace, run.drives)?)?;
     result.set_item("contacts", contacts(py, run.contacts)?)?;

@@ -1,6 +1,7 @@
 //! The Python module `crawler2d._core`: JSON text in, `NumPy` columns out.
 
 mod convert;
+mod diagnosis;
 mod errors;
 mod stepwise;
 

@@ -1,9 +1,11 @@
 //! What happened during a run, with a beginning and an end: stops, and edges inside the track.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::Intrusion;
 
 /// What an event is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
     /// A span without progress, though commanded.
     Stop,
@@ -22,7 +24,7 @@ impl EventKind {
 }
 
 /// One event; a stop carries the most loaded of the intrusions that were there at its end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// What it is.
     pub kind: EventKind,
@@ -59,13 +61,14 @@ impl Event {
 }
 
 /// Follows intrusions from look to look.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct IntrusionWatch {
     present: Vec<Present>,
     past: Vec<Event>,
 }
 
 /// An intrusion that goes on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Present {
     event: Event,
     /// Edges inside when it was last seen.

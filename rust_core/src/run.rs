@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use crate::diagnosis::Diagnosis;
 use crate::error::Error;
 use crate::events::{Event, EventKind};
 use crate::outcome::Outcome;
@@ -16,6 +17,8 @@ use crate::trace::{ContactTable, Record, Recorder, Trace};
 pub struct Run {
     /// How it ended.
     pub outcome: Outcome,
+    /// Why it stopped, if that is how it ended.
+    pub diagnosis: Option<Diagnosis>,
     /// Figures of the whole run.
     pub metrics: Metrics,
     /// History, if recorded.
@@ -61,6 +64,10 @@ pub struct Metrics {
     pub drive_work: f64,
     /// [s] Time spent in stops.
     pub stopped_time: f64,
+    /// [s] Longest stop from which the robot freed itself; 0 if there was none.
+    pub time_to_free: f64,
+    /// Share of the commanded distance made in the last stop window.
+    pub progress: f64,
     /// [m/s^2] Root mean square of the vertical acceleration, averaged over 10 ms.
     pub vertical_acceleration: f64,
     /// [rad/s] Root mean square of the rate of the chassis angle.
@@ -76,7 +83,7 @@ pub struct Metrics {
 
 impl Metrics {
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 18] {
+    pub fn entries(&self) -> [(&'static str, f64); 20] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -91,6 +98,8 @@ impl Metrics {
             ("max_penetration", self.max_penetration),
             ("drive_work", self.drive_work),
             ("stopped_time", self.stopped_time),
+            ("time_to_free", self.time_to_free),
+            ("progress", self.progress),
             ("vertical_acceleration", self.vertical_acceleration),
             ("angular_velocity", self.angular_velocity),
             ("intrusion_depth", self.intrusion_depth),
@@ -122,7 +131,7 @@ pub(crate) fn simulate_until(
     let start = simulation.reading();
     let mut recorder = record.history.then(|| Recorder::new(&simulation, record));
     let steps = scenario.step_count();
-    while simulation.steps() < steps && simulation.outcome().is_none() {
+    while simulation.steps() < steps && !simulation.is_over() {
         simulation.step()?;
         if let Some(recorder) = &mut recorder {
             recorder.step(&simulation);
@@ -138,33 +147,41 @@ pub(crate) fn simulate_until(
     let (trace, contacts) = recorder.map(|r| (r.trace, r.contacts)).unwrap_or_default();
     let end = simulation.reading();
     let events = simulation.events();
+    let diagnosis = simulation.diagnosis();
+    let outcome = diagnosis
+        .as_ref()
+        .map_or_else(|| simulation.outcome_now(), |d| d.outcome);
     let monitor = simulation.monitor();
+    let seen = &monitor.seen;
     let inside = monitor.intrusion();
     let metrics = Metrics {
         time: end.time,
-        time_to_clear: monitor.time_to_clear,
+        time_to_clear: seen.time_to_clear,
         final_x: end.position.x,
         final_y: end.position.y,
         final_angle: end.chassis_angle,
         distance: end.position.x - start.position.x,
         track_distance: end.track_position - start.track_position,
-        path_length: monitor.path_length,
-        max_angle: monitor.max_angle.max(start.chassis_angle),
-        min_angle: monitor.min_angle.min(start.chassis_angle),
-        max_penetration: monitor.max_penetration,
-        drive_work: monitor.drive_work,
+        path_length: seen.path_length,
+        max_angle: seen.max_angle.max(start.chassis_angle),
+        min_angle: seen.min_angle.min(start.chassis_angle),
+        max_penetration: seen.max_penetration,
+        drive_work: seen.drive_work,
         stopped_time: events
             .iter()
             .filter(|e| e.kind == EventKind::Stop)
             .fold(0.0, |sum, e| sum + e.end - e.start),
-        vertical_acceleration: monitor.shaking.vertical_acceleration(),
-        angular_velocity: monitor.shaking.angular_velocity(),
+        time_to_free: monitor.time_to_free(),
+        progress: monitor.progress(),
+        vertical_acceleration: seen.shaking.vertical_acceleration(),
+        angular_velocity: seen.shaking.angular_velocity(),
         intrusion_depth: inside.map_or(0.0, |e| e.depth),
         intrusion_root_depth: inside.map_or(0.0, |e| e.root_depth),
         intrusion_force: inside.map_or(0.0, |e| e.force),
     };
     Ok(Run {
-        outcome: simulation.outcome_now(),
+        outcome,
+        diagnosis,
         metrics,
         trace,
         contacts,

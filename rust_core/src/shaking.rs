@@ -1,9 +1,11 @@
 //! How much the chassis shakes, as an inertial sensor with a bandwidth of one look would see it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::reading::Reading;
 
 /// Sums over the looks of a run.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Shaking {
     last: Option<(f64, f64)>,
     time: f64,

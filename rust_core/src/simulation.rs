@@ -1,11 +1,13 @@
 //! One robot on one ground, step by step.
 
 use crate::contact::{Contact, Intrusion, LoadedContact, ReferenceContact};
+use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
 use crate::dynamics::{DriveState, Dynamics, State};
 use crate::error::{Error, SimulationError};
 use crate::events::Event;
-use crate::outcome::{Monitor, Outcome};
+use crate::monitor::Monitor;
+use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::robot::{self, BodyKind, Model};
 use crate::scenario::Scenario;
@@ -121,19 +123,11 @@ impl Simulation {
 
     fn observe(&mut self) {
         let reading = self.reading();
-        self.monitor.observe(
-            &reading,
-            self.command,
-            self.dynamics.loaded(),
-            self.drive_work_rate(),
-        );
-    }
-
-    /// [W] What the motors put into the surfaces.
-    fn drive_work_rate(&self) -> f64 {
-        (0..self.drives())
-            .map(|k| self.state.drives[k].force * self.drive_speed(k))
-            .sum()
+        let model = self.dynamics.model();
+        let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
+        let drives = self.state.drives.iter().copied().zip(speeds);
+        self.monitor
+            .observe(&reading, self.command, self.dynamics.loaded(), drives);
     }
 
     /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
@@ -191,14 +185,45 @@ impl Simulation {
         &self.ground
     }
 
+    /// Whether the outcome is certain, so that a run may end.
+    pub fn is_over(&self) -> bool {
+        self.monitor.is_over()
+    }
+
     /// The outcome, as soon as it is certain.
     pub fn outcome(&self) -> Option<Outcome> {
-        self.monitor.certain()
+        self.is_over().then(|| self.outcome_now())
     }
 
     /// The outcome if the run ended here.
     pub fn outcome_now(&self) -> Outcome {
-        self.monitor.now()
+        let ended = self.monitor.ended_as();
+        let stopped = || self.diagnosis().map(|d| d.outcome);
+        ended.or_else(stopped).unwrap_or(Outcome::TimedOut)
+    }
+
+    /// Why the robot has stopped, if it has.
+    pub fn diagnosis(&self) -> Option<Diagnosis> {
+        let since = self.monitor.stop_since()?;
+        if self.monitor.ended_as().is_some() {
+            return None;
+        }
+        let seen = diagnosis::Seen {
+            time: self.time(),
+            since,
+            progress: self.monitor.progress(),
+        };
+        let scene = Scene {
+            model: self.dynamics.model(),
+            profile: &self.ground.profile,
+            envelope: self.monitor.envelope(),
+            criteria: &self.scenario.criteria,
+            gravity: self.scenario.gravity,
+            command: self.command,
+            set_point: self.set_point,
+            half_length: 0.5 * self.scenario.robot.outline.axle_distance,
+        };
+        Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
     }
 
     /// What of the ground is inside the envelope of the track now, from the left.

@@ -6,7 +6,7 @@ mod tests;
 
 use rapier2d_f64::math::{Pose, Vector};
 
-use super::LoadedContact;
+use super::{Contact, LoadedContact};
 use crate::outline::cut::{self, Piece};
 use crate::outline::{Disc, Envelope};
 use crate::robot::Part;
@@ -110,6 +110,11 @@ impl TrackEnvelope {
         self.points_under(profile, pose)
             .filter(stands_out)
             .any(inside)
+    }
+
+    /// The outward normal, in the chassis frame, of the root belt where it lies nearest to a point.
+    pub(crate) fn outward_at(&self, point: Vector) -> Vector {
+        self.roots.hull.outward_at(point)
     }
 
     /// Every piece of the ground inside the envelope, from the left.
@@ -233,14 +238,17 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 }
 
 impl Intrusion {
+    /// Whether a contact lies on it.
+    pub(crate) fn bears(&self, profile: &Profile, contact: &Contact) -> bool {
+        let (place, length) = profile.place_on(contact.facet, contact.point);
+        let margin = BEARS / length;
+        let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
+        self.stretches.iter().any(near)
+    }
+
     /// [N] Normal force that the robot puts on it.
     pub(crate) fn force(&self, profile: &Profile, loaded: &[LoadedContact]) -> f64 {
-        let bears = |l: &&LoadedContact| {
-            let (place, length) = profile.place_on(l.contact.facet, l.contact.point);
-            let margin = BEARS / length;
-            let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
-            self.stretches.iter().any(near)
-        };
-        loaded.iter().filter(bears).map(|l| l.normal_force).sum()
+        let bearing = loaded.iter().filter(|l| self.bears(profile, &l.contact));
+        bearing.map(|l| l.normal_force).sum()
     }
 }

@@ -5,6 +5,7 @@ mod reading;
 mod reference;
 
 use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
 
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
@@ -12,7 +13,7 @@ pub(crate) use reading::Readings;
 pub(crate) use reference::ReferenceContact;
 
 /// One place where a part is on the ground or about to be.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Index of the part.
     pub part: usize,
@@ -29,7 +30,7 @@ pub(crate) struct Contact {
 }
 
 /// A contact as the solver keeps it from step to step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct LoadedContact {
     /// Where and what.
     pub contact: Contact,

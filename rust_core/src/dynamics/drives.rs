@@ -5,6 +5,7 @@ use rapier2d_f64::math::{Rotation, Vector};
 use super::Dynamics;
 use super::state::State;
 use crate::plane::cross;
+use crate::robot::Model;
 
 impl Dynamics {
     /// The motor holds the surface at the set-point within its force limit.
@@ -30,7 +31,7 @@ impl Dynamics {
     /// The push drives the chassis as if its axis ran on a rail: no slip, the motor limits it.
     pub(super) fn solve_push(&mut self, state: &mut State, set_point: f64, h: f64) -> f64 {
         let m = &self.model;
-        let (axis, lever) = self.push_axis(state);
+        let (axis, lever) = push_axis(&self.model, state.angle);
         let slip = axis.dot(state.velocity)
             + lever * state.angular_velocity
             + m.drive_radius * state.drives[0].spin;
@@ -67,7 +68,7 @@ impl Dynamics {
     }
 
     pub(super) fn push_chassis(&self, state: &mut State, impulse: f64) {
-        let (axis, lever) = self.push_axis(state);
+        let (axis, lever) = push_axis(&self.model, state.angle);
         state.velocity += axis * (impulse * self.inverse.mass);
         state.angular_velocity += lever * impulse * self.inverse.inertia;
         self.spin_up(state, 0, impulse);
@@ -77,13 +78,13 @@ impl Dynamics {
     pub(super) fn spin_up(&self, state: &mut State, k: usize, impulse: f64) {
         state.drives[k].spin += impulse * self.model.drive_radius * self.inverse.drive;
     }
+}
 
-    /// Direction and lever of a force along the chassis at axle height.
-    pub(super) fn push_axis(&self, state: &State) -> (Vector, f64) {
-        let rotation = Rotation::new(state.angle);
-        let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
-        // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
-        let arm = self.model.drive_radius * up - rotation * self.model.center_of_mass;
-        (axis, cross(arm, axis))
-    }
+/// Direction and lever of a force along the chassis at axle height, at a chassis angle [rad].
+pub(crate) fn push_axis(model: &Model, angle: f64) -> (Vector, f64) {
+    let rotation = Rotation::new(angle);
+    let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
+    // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
+    let arm = model.drive_radius * up - rotation * model.center_of_mass;
+    (axis, cross(arm, axis))
 }

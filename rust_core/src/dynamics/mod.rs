@@ -18,8 +18,10 @@ use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
+pub(crate) use drives::push_axis;
 use law::{Softness, coulomb};
 use row::Row;
+pub(crate) use row::{Direction, Levers};
 pub(crate) use state::{DriveState, State};
 
 /// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a substep of

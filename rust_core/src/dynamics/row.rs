@@ -32,7 +32,7 @@ pub(super) struct Row {
 
 /// A direction at a contact, and how the velocities of body and drive add up along it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Direction {
+pub(crate) struct Direction {
     pub unit: Vector,
     /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
     pub lever: f64,
@@ -58,7 +58,7 @@ struct Place {
 impl Direction {
     /// `arm` leads from the centre of mass to the contact; `motion` is the velocity of the surface over
     /// the chassis for a surface speed of 1.
-    fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
+    pub(crate) fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
         // The surface speed is the drive radius times the spin over the chassis, clockwise.
         let drive_lever = -model.drive_radius * unit.dot(motion);
         Self {
@@ -75,6 +75,34 @@ impl Direction {
     }
 }
 
+/// Where a contact lies on the robot, and its directions.
+pub(crate) struct Levers {
+    pub normal: Direction,
+    pub tangent: Direction,
+    /// [m] From the centre of mass to the contact.
+    arm: Vector,
+    /// [m] From the axle of a wheel that turns under the contact; zero for other parts.
+    spoke: Vector,
+}
+
+impl Levers {
+    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`.
+    pub(crate) fn new(contact: &Contact, (center, angle): (Vector, f64), model: &Model) -> Self {
+        let part = &model.parts[contact.part];
+        let arm = contact.point - center;
+        let spoke = part.turning().map_or(Vector::ZERO, |wheel| {
+            arm - Rotation::new(angle) * (wheel.center - model.center_of_mass)
+        });
+        let motion = part.surface_motion(contact.normal, spoke);
+        Self {
+            normal: Direction::new(contact.normal, arm, motion, model),
+            tangent: Direction::new(right_of(contact.normal), arm, motion, model),
+            arm,
+            spoke,
+        }
+    }
+}
+
 impl Row {
     /// The row of a contact that was found at `middle`, the centre of mass and angle of the middle of
     /// the step; `last` is the same contact of the last step.
@@ -86,18 +114,15 @@ impl Row {
         (middle, time): ((Vector, f64), f64),
     ) -> Self {
         let part = &model.parts[contact.part];
-        let (center, angle) = middle;
-        let arm = contact.point - center;
-        let wheel = part.turning();
-        let spoke = wheel.map_or(Vector::ZERO, |wheel| {
-            arm - Rotation::new(angle) * (wheel.center - model.center_of_mass)
-        });
-        let motion = part.surface_motion(contact.normal, spoke);
-        let normal = Direction::new(contact.normal, arm, motion, model);
-        let tangent = Direction::new(right_of(contact.normal), arm, motion, model);
+        let Levers {
+            normal,
+            tangent,
+            arm,
+            spoke,
+        } = Levers::new(contact, middle, model);
         let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
-        let turn = wheel.map_or(0.0, |wheel| 1.0 / wheel.radius);
-        let back = Rotation::new(state.angle - angle);
+        let turn = part.turning().map_or(0.0, |wheel| 1.0 / wheel.radius);
+        let back = Rotation::new(state.angle - middle.1);
         let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
         let mut start = Place {
             gap: contact.distance,

@@ -1,12 +1,13 @@
 //! What moves: the body and its drives.
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
+use serde::{Deserialize, Serialize};
 
 use crate::plane::left_of;
 use crate::robot::Model;
 
 /// The moving state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct State {
     /// [m] Centre of mass.
     pub center: Vector,
@@ -21,7 +22,7 @@ pub(crate) struct State {
 }
 
 /// State of one drive.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct DriveState {
     /// [rad/s] Spin over ground; a drive of a robot at rest has none.
     pub spin: f64,

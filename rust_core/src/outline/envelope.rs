@@ -140,6 +140,14 @@ impl Envelope {
         }
     }
 
+    /// The outward normal of the hull where it lies nearest to a point.
+    pub(crate) fn outward_at(&self, point: Vector) -> Vector {
+        match self.stretches[self.nearest(point).stretch].shape {
+            Form::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
+            Form::Run { outward, .. } => outward,
+        }
+    }
+
     /// The discs on either side of a point, first the one that the belt passes before it.
     ///
     /// They are the nearest along the belt that reach as far out as the point lies deep.

@@ -73,6 +73,28 @@ pub struct SeizureCriteria {
     pub tip_over_angle: f64,
     /// [m] An edge inside the envelope of the track is an intrusion from this depth.
     pub intrusion_depth: f64,
+    /// Share of the weight from which an intrusion is loaded.
+    pub intrusion_load: f64,
+    /// Share of the weight on the belly from which a stop without a seizure is a hang-up.
+    pub belly_load: f64,
+    /// Share of the commanded speed from which a surface slides on the ground, or a drive turns.
+    pub sliding_speed: f64,
+    /// Share of the torque limit from which a motor is at its limit.
+    pub torque_limit: f64,
+    /// [m] A robot that moves to and fro by this much during a stop window is cycling.
+    pub cycling_distance: f64,
+    /// Share of the weight that an equilibrium of a stationary state may leave unbalanced.
+    pub imbalance: f64,
+    /// The same for the means of a state that is not stationary.
+    pub mean_imbalance: f64,
+    /// Share of the commanded distance from which a robot creeps.
+    pub creep_from: f64,
+    /// Share of the commanded distance up to which a robot creeps.
+    pub creep_to: f64,
+    /// [m] Advance that counts as getting away from a stop.
+    pub escape_distance: f64,
+    /// [s] Time that a closed belt is given to get away from a stop.
+    pub escape_time: f64,
 }
 
 impl Drive {
@@ -127,6 +149,17 @@ impl SeizureCriteria {
             clear_angle: f.number("clear_angle", Range::above(0.0, 3.15, "rad"))?,
             tip_over_angle: f.number("tip_over_angle", Range::above(0.0, 3.15, "rad"))?,
             intrusion_depth: f.number("intrusion_depth", Range::between(0.0, 0.1, "m"))?,
+            intrusion_load: f.number("intrusion_load", Range::above(0.0, 1.0, ""))?,
+            belly_load: f.number("belly_load", Range::above(0.0, 1.0, ""))?,
+            sliding_speed: f.number("sliding_speed", Range::above(0.0, 1.0, ""))?,
+            torque_limit: f.number("torque_limit", Range::above(0.0, 1.0, ""))?,
+            cycling_distance: f.number("cycling_distance", Range::above(0.0, 10.0, "m"))?,
+            imbalance: f.number("imbalance", Range::above(0.0, 1.0, ""))?,
+            mean_imbalance: f.number("mean_imbalance", Range::above(0.0, 1.0, ""))?,
+            creep_from: f.number("creep_from", Range::between(0.0, 1.0, ""))?,
+            creep_to: f.number("creep_to", Range::between(0.0, 1.0, ""))?,
+            escape_distance: f.number("escape_distance", Range::above(0.0, 10.0, "m"))?,
+            escape_time: f.number("escape_time", Range::between(0.01, 1e4, "s"))?,
         };
         f.finish()?;
         Ok(criteria)

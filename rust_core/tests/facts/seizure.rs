@@ -351,7 +351,7 @@ fn stops_on_three_sliding_contacts_are_the_candidates_of_statics() {
         let row = drawn(&mut draw);
         let run = run(&row.scenario());
         match run.outcome {
-            Outcome::Stopped => match classify(&row, &run) {
+            outcome if outcome.is_stop() => match classify(&row, &run) {
                 Stop::Candidate {
                     angle_off,
                     share_off,
@@ -438,14 +438,14 @@ fn friction_at_which_a_row_no_longer_seizes_lies_at_or_below_that_of_statics() {
         let statics = grid(1.5, &|mu| !at(mu).candidates().is_empty()).expect("a candidate exists");
         let seizes = |mu: f64| {
             let run = run(&at(mu).scenario());
-            run.outcome == Outcome::Stopped && run.metrics.final_angle > 0.01
+            run.outcome.is_stop() && run.metrics.final_angle > 0.01
         };
         // Above the limit of statics nothing may hold the robot.
         assert!(!seizes(statics + 0.02) && !seizes(statics + 0.1));
         let found = grid(statics, &seizes);
         let nose = bisect(0.3, 1.5, |mu| {
             let run = run(&at(mu).scenario());
-            run.outcome == Outcome::Stopped && run.metrics.final_angle < 0.01
+            run.outcome.is_stop() && run.metrics.final_angle < 0.01
         });
         println!(
             "{count} wheels, b/L {behind}, h {height}: statics up to mu {statics:.2}, simulated up to {found:.2?}; \

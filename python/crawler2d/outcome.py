@@ -1,0 +1,22 @@
+"""How a run ended."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+__all__ = ["Outcome"]
+
+
+class Outcome(StrEnum):
+    """How a run ended; where several apply, the first of this list."""
+
+    DETRACKED = "detracked"
+    TIPPED_OVER = "tipped_over"
+    LEFT_TERRAIN = "left_terrain"
+    CLEARED = "cleared"
+    SEIZED = "seized"
+    HUNG_UP = "hung_up"
+    STALLED = "stalled"
+    SLIPPING = "slipping"
+    CYCLING = "cycling"
+    TIMED_OUT = "timed_out"

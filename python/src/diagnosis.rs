@@ -1,0 +1,78 @@
+//! Why a run stopped, as dictionaries and `NumPy` columns.
+
+use crawler2d_core::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A diagnosis; what has no answer is None.
+pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let names = |set: &Vec<Condition>| PyTuple::new(py, set.iter().map(|c| c.name()));
+    let cause = d.cause.iter().map(names).collect::<PyResult<Vec<_>>>()?;
+    let place = d.intrusion.as_ref();
+    result.set_item("outcome", d.outcome.name())?;
+    result.set_item("mechanism", d.mechanism.map(Mechanism::name))?;
+    result.set_item("cause", PyTuple::new(py, cause)?)?;
+    result.set_item("seized_at_tips", d.seized_at_tips)?;
+    result.set_item("time", d.time)?;
+    result.set_item("since", d.since)?;
+    result.set_item("position", PyTuple::new(py, d.position)?)?;
+    result.set_item("chassis_angle", d.chassis_angle)?;
+    result.set_item("intrusion", place.map(|i| intrusion(py, i)).transpose()?)?;
+    result.set_item("contacts", contacts(py, &d.contacts)?)?;
+    result.set_item("belly_share", d.belly_share)?;
+    result.set_item("sliding_share", d.sliding_share)?;
+    result.set_item("stalled_share", d.stalled_share)?;
+    result.set_item("progress", d.progress)?;
+    result.set_item("stationary", d.stationary)?;
+    result.set_item("imbalance", d.imbalance)?;
+    result.set_item("certified", d.certified)?;
+    result.set_item("escape_force", d.escape_force)?;
+    result.set_item("free_escape_force", d.free_escape_force)?;
+    Ok(result)
+}
+
+fn intrusion<'py>(py: Python<'py>, i: &LoadedIntrusion) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("edge", i.place.edge)?;
+    result.set_item("edges", PyTuple::new(py, &i.place.edges)?)?;
+    result.set_item("bodies", PyTuple::new(py, i.place.bodies)?)?;
+    result.set_item("depth", i.place.depth)?;
+    result.set_item("root_depth", i.place.root_depth)?;
+    result.set_item("x", i.place.x)?;
+    result.set_item("y", i.place.y)?;
+    result.set_item("force", i.force)?;
+    Ok(result)
+}
+
+fn contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let whole = |value: fn(&StopContact) -> i64| {
+        let column: Vec<i64> = found.iter().map(value).collect();
+        column.into_pyarray(py)
+    };
+    let number = |value: fn(&StopContact) -> f64| {
+        let column: Vec<f64> = found.iter().map(value).collect();
+        column.into_pyarray(py)
+    };
+    let is = |value: fn(&StopContact) -> bool| {
+        let column: Vec<bool> = found.iter().map(value).collect();
+        column.into_pyarray(py)
+    };
+    columns.set_item("lane", whole(|_| 0))?;
+    columns.set_item("body", whole(|c| c.body as i64))?;
+    columns.set_item("body_kind", whole(|c| c.kind as i64))?;
+    columns.set_item("segment", whole(|c| c.segment as i64))?;
+    columns.set_item("edge", whole(|c| i64::from(c.edge)))?;
+    columns.set_item("x", number(|c| c.point.x))?;
+    columns.set_item("y", number(|c| c.point.y))?;
+    columns.set_item("normal_x", number(|c| c.normal.x))?;
+    columns.set_item("normal_y", number(|c| c.normal.y))?;
+    columns.set_item("normal_force", number(|c| c.normal_force))?;
+    columns.set_item("friction_force", number(|c| c.friction_force))?;
+    columns.set_item("surface_speed", number(|c| c.surface_speed))?;
+    columns.set_item("slides", is(|c| c.slides))?;
+    columns.set_item("in_pocket", is(|c| c.in_pocket))?;
+    Ok(columns)
+}

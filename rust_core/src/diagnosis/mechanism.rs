@@ -1,0 +1,85 @@
+//! How the ground inside the track is held.
+
+use super::StopContact;
+use crate::robot::BodyKind;
+use crate::scenario::SeizureCriteria;
+
+/// How the ground inside the track is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mechanism {
+    /// Two bodies bear on it.
+    Straddled,
+    /// One body alone bears on it and slides at its friction limit.
+    Undercut,
+    /// The ground reached the belly.
+    Bellied,
+    /// The motors stand at their limit.
+    Blocked,
+    /// The motors stand at their limit with a grouser's flank against it.
+    Interlocked,
+}
+
+impl Mechanism {
+    /// Name as in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Straddled => "straddled",
+            Self::Undercut => "undercut",
+            Self::Bellied => "bellied",
+            Self::Blocked => "blocked",
+            Self::Interlocked => "interlocked",
+        }
+    }
+
+    /// The mechanism that the facts show, the first that fits; None if one body sticks to the ground
+    /// and turns with it.
+    pub(super) fn of(facts: &Facts, criteria: &SeizureCriteria, weight: f64) -> Option<Self> {
+        let on_it = || facts.contacts.iter().filter(|c| c.in_pocket);
+        let force_of = |body: usize| -> f64 {
+            on_it()
+                .filter(|c| c.body == body)
+                .map(|c| c.normal_force)
+                .sum()
+        };
+        let least = criteria.intrusion_load * weight;
+        let mut bodies: Vec<usize> = on_it().map(|c| c.body).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let is_belly = |body: &usize| {
+            on_it()
+                .find(|c| c.body == *body)
+                .is_some_and(|c| c.kind == BodyKind::Belly)
+        };
+        let (belly, track): (Vec<usize>, Vec<usize>) = bodies.into_iter().partition(is_belly);
+        let bearing = track.iter().filter(|b| force_of(**b) > 0.5 * least).count();
+        if belly.iter().any(|b| force_of(*b) > least) {
+            Some(Self::Bellied)
+        } else if facts.stalled_share >= 0.5 {
+            Some(if facts.flank {
+                Self::Interlocked
+            } else {
+                Self::Blocked
+            })
+        } else if bearing >= 2 {
+            Some(Self::Straddled)
+        } else if on_it().any(|c| c.slides) {
+            Some(Self::Undercut)
+        } else {
+            None
+        }
+    }
+}
+
+/// What a stop shows.
+pub(super) struct Facts {
+    /// Contacts that bear.
+    pub contacts: Vec<StopContact>,
+    /// Share of the lift that the belly has.
+    pub belly_share: f64,
+    /// Share of the normal forces at contacts that slide.
+    pub sliding_share: f64,
+    /// Share of the motors that stand at their limit.
+    pub stalled_share: f64,
+    /// A grouser's flank bears on the ground inside the track.
+    pub flank: bool,
+}

@@ -1,0 +1,369 @@
+//! Plane statics of a stop: which forces within friction and torque limits could balance it?
+//!
+//! Every contact pushes along its normal and the friction that goes with it: anywhere in its cone
+//! while it sticks, against its slip at the edge of the cone while it slides. Forces, the moment
+//! about the centre of mass, and the torque of each drive must balance; how far the best choice of
+//! forces misses that is the imbalance. A condition that holds the robot is found by relaxing it.
+
+use super::linear_program::Rows;
+use crate::dynamics::{Direction, Levers, push_axis};
+use crate::robot::Model;
+
+/// Multiple of the weight beyond which a force counts as without limit.
+const WITHOUT_LIMIT: f64 = 1e3;
+/// Of a slack that rounding makes, the escape force must not feed.
+const SLACK: f64 = 1e-8;
+
+/// A stop as forces that could be.
+#[derive(Clone, Debug)]
+pub(super) struct Statics {
+    supports: Vec<Support>,
+    /// What would bear if every pocket were closed.
+    closed: Vec<Support>,
+    /// For each drive: +1 or -1, as commanded, if its motor bears against the ground; else 0.
+    motors: Vec<f64>,
+    /// Largest force of a motor, in weights.
+    torque: f64,
+    /// [m] Moments count as forces at this lever.
+    lever: f64,
+    radius: f64,
+    /// Force along the chassis of a track that pushes it: direction and lever.
+    push: Option<(f64, f64, f64)>,
+}
+
+/// A contact that bears or could.
+#[derive(Clone, Debug)]
+pub(super) struct Support {
+    pub normal: Direction,
+    pub tangent: Direction,
+    pub drive: Option<usize>,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Sign of its slip along the tangent; 0 while it sticks.
+    pub slides: f64,
+    pub role: Role,
+}
+
+/// What a support is to the diagnosis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It bears on ground in a pocket.
+    Pocket,
+    /// The belly bears on it.
+    Belly,
+    /// Anything else.
+    Track,
+}
+
+/// A condition of an equilibrium that can be relaxed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// The pockets of the track: closed, a belt runs over what is in them.
+    Pocket,
+    /// The belly: removed.
+    Belly,
+    /// The torque limit: lifted.
+    Torque,
+    /// The friction: doubled.
+    Friction,
+}
+
+impl Condition {
+    /// All of them.
+    pub(super) const ALL: [Self; 4] = [Self::Pocket, Self::Belly, Self::Torque, Self::Friction];
+
+    /// Name as in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pocket => "pocket",
+            Self::Belly => "belly",
+            Self::Torque => "torque",
+            Self::Friction => "friction",
+        }
+    }
+}
+
+/// What the drives do in an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drives {
+    /// As was seen.
+    AsFound,
+    /// All turn as commanded, and the surfaces slide.
+    Turn,
+    /// All stand, their motors at the limit.
+    Stand,
+}
+
+/// Columns of a linear program: what a unit of each force does, and its bounds.
+struct Forces {
+    columns: Vec<Vec<f64>>,
+    bounds: Vec<(f64, f64)>,
+}
+
+impl Statics {
+    /// `command` is the sign of the commanded speed, `torque` the largest force of a motor in
+    /// weights, `lever` [m] makes moments comparable with forces.
+    pub(super) fn new(
+        model: &Model,
+        angle: f64,
+        (supports, closed): (Vec<Support>, Vec<Support>),
+        (command, torque, lever): (f64, f64, f64),
+    ) -> Self {
+        let bears = |k: usize| {
+            (model.pushes_chassis && k == 0) || supports.iter().any(|s| s.drive == Some(k))
+        };
+        let motors = (0..model.drives)
+            .map(|k| {
+                if k < model.motors && bears(k) {
+                    command
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let push = model.pushes_chassis.then(|| {
+            let (axis, lever) = push_axis(model, angle);
+            (axis.x, axis.y, lever)
+        });
+        Self {
+            supports,
+            closed,
+            motors,
+            torque,
+            lever,
+            radius: model.drive_radius,
+            push,
+        }
+    }
+
+    /// Share of the weight by which the best choice of forces misses balance; None if the program
+    /// has no answer.
+    pub(super) fn imbalance(&self) -> Option<f64> {
+        self.forces(Drives::AsFound, &[]).imbalance()
+    }
+
+    /// The largest push along the command at the centre of mass that can be balanced, in weights;
+    /// infinite if any can. Contacts slide as they do, or not at all where `free`.
+    pub(super) fn escape(&self, direction: f64, free: bool) -> Option<f64> {
+        let forces = if free {
+            let mut gripping = self.clone();
+            for support in &mut gripping.supports {
+                support.slides = 0.0;
+            }
+            gripping.forces(Drives::AsFound, &[])
+        } else {
+            self.forces(Drives::AsFound, &[])
+        };
+        forces.largest_push(direction)
+    }
+
+    /// The smallest sets of conditions whose relaxation leaves no equilibrium within `tolerance`,
+    /// every one of that size.
+    pub(super) fn cause(&self, tolerance: f64, given: &[Condition]) -> Vec<Vec<Condition>> {
+        let subsets = || (1_u32..1 << given.len()).map(|bits| subset(given, bits));
+        for size in 1..=given.len() {
+            let ending: Vec<Vec<Condition>> = subsets()
+                .filter(|set| set.len() == size && self.ends(set, tolerance))
+                .collect();
+            if !ending.is_empty() {
+                return ending;
+            }
+        }
+        Vec::new()
+    }
+
+    /// Whether no equilibrium is left without these conditions.
+    pub(super) fn ends(&self, relaxed: &[Condition], tolerance: f64) -> bool {
+        let balanced = |drives| {
+            let imbalance = self.forces(drives, relaxed).imbalance();
+            imbalance.is_none_or(|imbalance| imbalance <= tolerance)
+        };
+        // What a motor at its limit held is no longer held as it was found.
+        let as_found = !relaxed.contains(&Condition::Torque) && balanced(Drives::AsFound);
+        !as_found && !balanced(Drives::Turn) && !balanced(Drives::Stand)
+    }
+
+    fn forces(&self, drives: Drives, relaxed: &[Condition]) -> Forces {
+        let without = |condition| relaxed.contains(&condition);
+        let stays = |s: &&Support| match s.role {
+            Role::Pocket => !without(Condition::Pocket),
+            Role::Belly => !without(Condition::Belly),
+            Role::Track => true,
+        };
+        let closed = if without(Condition::Pocket) {
+            &self.closed[..]
+        } else {
+            &[]
+        };
+        let raised = if without(Condition::Friction) {
+            2.0
+        } else {
+            1.0
+        };
+        let mut forces = Forces {
+            columns: Vec::new(),
+            bounds: Vec::new(),
+        };
+        for support in self.supports.iter().filter(stays).chain(closed) {
+            let motor = support.drive.map_or(0.0, |k| self.motors[k]);
+            let slides = match drives {
+                _ if motor == 0.0 => support.slides,
+                Drives::AsFound => support.slides,
+                Drives::Turn => support.slip_at(motor),
+                Drives::Stand => 0.0,
+            };
+            let friction = raised * support.friction;
+            let sides: &[f64] = if slides == 0.0 {
+                &[-1.0, 1.0]
+            } else {
+                &[-slides.signum()]
+            };
+            for side in sides {
+                let column = self.column(support, side * friction);
+                forces.push(column, (0.0, f64::INFINITY));
+            }
+        }
+        let torque = if without(Condition::Torque) {
+            WITHOUT_LIMIT
+        } else {
+            self.torque
+        };
+        for (k, motor) in self.motors.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+            let bounds = match drives {
+                Drives::Stand => (motor * torque, motor * torque),
+                _ => (-torque, torque),
+            };
+            forces.push(self.motor_column(k), bounds);
+        }
+        if let Some((x, y, lever)) = self.push {
+            let mut column = self.zero();
+            (column[0], column[1], column[2]) = (x, y, lever / self.lever);
+            column[3] = 1.0;
+            forces.push(column, (-WITHOUT_LIMIT, WITHOUT_LIMIT));
+        }
+        forces
+    }
+
+    fn zero(&self) -> Vec<f64> {
+        vec![0.0; 3 + self.motors.len()]
+    }
+
+    /// A unit normal force with friction along the tangent.
+    fn column(&self, support: &Support, friction: f64) -> Vec<f64> {
+        let (n, t) = (&support.normal, &support.tangent);
+        let unit = n.unit + t.unit * friction;
+        let mut column = self.zero();
+        (column[0], column[1]) = (unit.x, unit.y);
+        column[2] = (n.lever + t.lever * friction) / self.lever;
+        if let Some(k) = support.drive {
+            column[3 + k] = (n.drive_lever + t.drive_lever * friction) / self.radius;
+        }
+        column
+    }
+
+    /// A unit force of a motor at the surface, and its reaction on the chassis.
+    fn motor_column(&self, k: usize) -> Vec<f64> {
+        let mut column = self.zero();
+        column[2] = self.radius / self.lever;
+        column[3 + k] = -1.0;
+        column
+    }
+}
+
+impl Support {
+    /// Sign of the slip of a surface whose drive turns that way.
+    fn slip_at(&self, motor: f64) -> f64 {
+        // A surface speed of 1 moves the surface by -drive_lever / drive_radius.
+        -self.tangent.drive_lever * motor
+    }
+
+    /// From the levers of a contact.
+    pub(super) fn new(
+        levers: &Levers,
+        drive: Option<usize>,
+        (friction, slides): (f64, f64),
+        role: Role,
+    ) -> Self {
+        Self {
+            normal: levers.normal,
+            tangent: levers.tangent,
+            drive,
+            friction,
+            slides,
+            role,
+        }
+    }
+}
+
+impl Forces {
+    fn push(&mut self, column: Vec<f64>, bounds: (f64, f64)) {
+        self.columns.push(column);
+        self.bounds.push(bounds);
+    }
+
+    /// Both ways of every balance with the weight; `slack` is that of the last variable.
+    fn rows(&self, last: &[f64], slack: (f64, f64)) -> Rows {
+        let n = self.columns.len();
+        let mut rows = Rows::default();
+        let size = last.len();
+        for i in 0..size {
+            let weight = if i == 1 { 1.0 } else { 0.0 };
+            let row: Vec<f64> = self.columns.iter().map(|c| c[i]).collect();
+            for (sign, missed) in [(1.0, -slack.0), (-1.0, -slack.0)] {
+                let mut signed: Vec<f64> = row.iter().map(|v| sign * v).collect();
+                signed.push(sign * last[i] + missed);
+                rows.push(signed, sign * weight + slack.1);
+            }
+        }
+        for (j, (low, high)) in self.bounds.iter().enumerate() {
+            for (sign, bound) in [(-1.0, -low), (1.0, *high)] {
+                if bound.is_finite() {
+                    let mut row = vec![0.0; n + 1];
+                    row[j] = sign;
+                    rows.push(row, bound);
+                }
+            }
+        }
+        let mut row = vec![0.0; n + 1];
+        row[n] = -1.0;
+        rows.push(row, 0.0);
+        rows
+    }
+
+    fn size(&self) -> usize {
+        self.columns.first().map_or(3, Vec::len)
+    }
+
+    fn cost(&self, of_last: f64) -> Vec<f64> {
+        let mut cost = vec![0.0; self.columns.len()];
+        cost.push(of_last);
+        cost
+    }
+
+    fn imbalance(&self) -> Option<f64> {
+        let rows = self.rows(&vec![0.0; self.size()], (1.0, 0.0));
+        let found = rows.minimise(&self.cost(1.0))?;
+        found.last().map(|t| t.max(0.0))
+    }
+
+    fn largest_push(&self, direction: f64) -> Option<f64> {
+        let missed = self.imbalance()?;
+        let mut push = vec![0.0; self.size()];
+        push[0] = direction;
+        let mut rows = self.rows(&push, (0.0, missed + SLACK));
+        let mut cap = vec![0.0; self.columns.len()];
+        cap.push(1.0);
+        rows.push(cap, WITHOUT_LIMIT);
+        let found = *rows.minimise(&self.cost(-1.0))?.last()?;
+        Some(if found > 0.999 * WITHOUT_LIMIT {
+            f64::INFINITY
+        } else {
+            found.max(0.0)
+        })
+    }
+}
+
+fn subset(given: &[Condition], bits: u32) -> Vec<Condition> {
+    let chosen = |(i, c): (usize, &Condition)| (bits & (1 << i) != 0).then_some(*c);
+    given.iter().enumerate().filter_map(chosen).collect()
+}

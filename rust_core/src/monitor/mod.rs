@@ -1,0 +1,326 @@
+//! Watches a run: goal, tip-over, stops. It only reads, and ends a run when its outcome is certain.
+
+mod progress;
+
+use rapier2d_f64::math::Pose;
+use serde::{Deserialize, Serialize};
+
+use crate::contact::{LoadedContact, TrackEnvelope};
+use crate::diagnosis::{Signals, Stance};
+use crate::dynamics::DriveState;
+use crate::events::{Event, IntrusionWatch};
+use crate::outcome::Outcome;
+use crate::reading::Reading;
+use crate::robot::{Model, Shape};
+use crate::scenario::{Scenario, SeizureCriteria};
+use crate::shaking::Shaking;
+use crate::terrain::{Ground, Profile};
+use progress::Progress;
+
+/// [s] Time between two looks at the progress; far below any stop window.
+const LOOK: f64 = 0.01;
+
+/// Watches one run.
+pub(crate) struct Monitor {
+    criteria: SeizureCriteria,
+    profile: Profile,
+    goal: f64,
+    /// [m] A metre below the whole ground.
+    floor: f64,
+    half_length: f64,
+    rear_radius: f64,
+    grouser_pitch: f64,
+    envelope: TrackEnvelope,
+    /// A turning grouser changes what is there although the pose does not.
+    has_grousers: bool,
+    /// What it has seen.
+    pub seen: Seen,
+}
+
+/// What a monitor remembers of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    looks: u64,
+    last_time: f64,
+    progress: Progress,
+    signals: Signals,
+    intrusions: IntrusionWatch,
+    anchor: Option<Anchor>,
+    goal_since: Option<f64>,
+    ended: Option<Outcome>,
+    stays: bool,
+    /// [s] When the goal was first held, if it was.
+    pub time_to_clear: f64,
+    /// [m] Deepest penetration so far.
+    pub max_penetration: f64,
+    /// [rad] Largest chassis angle so far.
+    pub max_angle: f64,
+    /// [rad] Smallest chassis angle so far.
+    pub min_angle: f64,
+    /// [J] Work of the motors so far.
+    pub drive_work: f64,
+    /// [m] How far the chassis frame has moved along its own axis so far.
+    pub path_length: f64,
+    /// How much the chassis shook so far.
+    pub shaking: Shaking,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self {
+            looks: 0,
+            last_time: 0.0,
+            progress: Progress::default(),
+            signals: Signals::default(),
+            intrusions: IntrusionWatch::default(),
+            anchor: None,
+            goal_since: None,
+            ended: None,
+            stays: false,
+            time_to_clear: f64::INFINITY,
+            max_penetration: 0.0,
+            max_angle: f64::NEG_INFINITY,
+            min_angle: f64::INFINITY,
+            drive_work: 0.0,
+            path_length: 0.0,
+            shaking: Shaking::default(),
+        }
+    }
+}
+
+/// A pose that the robot has not left since.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Anchor {
+    since: f64,
+    x: f64,
+    y: f64,
+    angle: f64,
+    contacts: u64,
+}
+
+impl Monitor {
+    pub(crate) fn new(scenario: &Scenario, ground: &Ground, model: &Model) -> Self {
+        let outline = &scenario.robot.outline;
+        Self {
+            criteria: scenario.criteria.clone(),
+            profile: ground.profile.clone(),
+            goal: ground.goal_of(scenario),
+            floor: ground.profile.lowest() - 1.0,
+            half_length: 0.5 * outline.axle_distance,
+            rear_radius: outline.rear_radius,
+            grouser_pitch: outline.grouser_pitch,
+            envelope: TrackEnvelope::new(&model.parts, scenario.criteria.intrusion_depth),
+            has_grousers: model
+                .parts
+                .iter()
+                .any(|part| matches!(part.shape, Shape::Gear { .. })),
+            seen: Seen::default(),
+        }
+    }
+
+    /// Takes in one step: what the robot did, the contacts' forces, the drives with their speeds.
+    pub(crate) fn observe(
+        &mut self,
+        now: &Reading,
+        command: f64,
+        loaded: &[LoadedContact],
+        drives: impl Iterator<Item = (DriveState, f64)> + Clone,
+    ) {
+        let seen = &mut self.seen;
+        let dt = now.time - seen.last_time;
+        seen.last_time = now.time;
+        let work_rate: f64 = drives
+            .clone()
+            .map(|(drive, speed)| drive.force * speed)
+            .sum();
+        seen.drive_work += work_rate * dt;
+        seen.path_length += now.forward_speed() * dt;
+        seen.max_angle = seen.max_angle.max(now.chassis_angle);
+        seen.min_angle = seen.min_angle.min(now.chassis_angle);
+        for l in loaded {
+            seen.max_penetration = seen.max_penetration.max(-l.contact.distance);
+        }
+        let length = 2.0 * self.half_length;
+        seen.progress.advance(now, command, length, dt);
+        let window = self.window(command);
+        if self.seen.progress.falters() {
+            self.seen.signals.add(now, loaded, drives, window);
+        }
+        if self.seen.ended.is_none() {
+            self.seen.ended = self.ended(now);
+        }
+        if now.time >= self.seen.looks as f64 * LOOK {
+            self.seen.looks += 1;
+            self.seen.shaking.look(now);
+            self.look_inside(now, loaded);
+            self.look(now, command, window);
+            if !self.has_grousers {
+                self.watch_stationary(now, window, loaded);
+            }
+        }
+    }
+
+    /// Ends that need no window.
+    fn ended(&mut self, now: &Reading) -> Option<Outcome> {
+        if now.chassis_angle.abs() > self.criteria.tip_over_angle {
+            return Some(Outcome::TippedOver);
+        }
+        let (sine, cosine) = libm::sincos(now.chassis_angle);
+        let rear = now.position.x - cosine * self.half_length;
+        let front = now.position.x + cosine * self.half_length;
+        let lower_axle = now.position.y - (sine * self.half_length).abs();
+        let (low, high) = self.profile.extent();
+        if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
+            return Some(Outcome::LeftTerrain);
+        }
+        let level = (now.chassis_angle - self.profile.angle_at(now.position.x)).abs()
+            < self.criteria.clear_angle;
+        if rear > self.goal + self.rear_radius && level {
+            let since = *self.seen.goal_since.get_or_insert(now.time);
+            if now.time - since >= self.criteria.clear_time {
+                self.seen.time_to_clear = since;
+                return Some(Outcome::Cleared);
+            }
+        } else {
+            self.seen.goal_since = None;
+        }
+        None
+    }
+
+    /// Follows what is inside the track.
+    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact]) {
+        let pose = Pose::new(now.position, now.chassis_angle);
+        let profile = &self.profile;
+        let inside = if self.envelope.holds_edge(profile, pose) {
+            self.envelope.intrusions(profile, pose)
+        } else {
+            Vec::new()
+        };
+        let with_force = inside.into_iter().filter(|i| i.edge >= 0).map(|i| {
+            let force = i.force(profile, loaded);
+            (i, force)
+        });
+        self.seen.intrusions.look(now.time, with_force);
+    }
+
+    /// Compares the progress with that of one window ago.
+    fn look(&mut self, now: &Reading, command: f64, window: f64) {
+        let least = self.criteria.stop_progress;
+        let seen = &mut self.seen;
+        let freed = seen
+            .progress
+            .look(now.time, command != 0.0, (window, LOOK), least);
+        if let Some(start) = freed {
+            let inside = seen.intrusions.most_loaded();
+            let stop = Event::stop(start, now.time, inside);
+            seen.progress.stops.push(stop);
+        }
+        if !seen.progress.falters() {
+            seen.signals = Signals::default();
+        }
+    }
+
+    /// [s] Time without progress that is a stop.
+    fn window(&self, command: f64) -> f64 {
+        let pitches = self.criteria.stop_pitches * self.grouser_pitch / command.abs();
+        if pitches.is_finite() {
+            self.criteria.stop_window.max(pitches)
+        } else {
+            self.criteria.stop_window
+        }
+    }
+
+    /// A state that does not change at all will not change later: the run may end.
+    fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[LoadedContact]) {
+        let contacts = loaded
+            .iter()
+            .filter(|l| l.normal_force > 0.0)
+            .fold(0_u64, |sum, l| {
+                // Order does not matter, and neither does on which side of a vertex an edge was found.
+                let place = if l.contact.edge >= 0 {
+                    l.contact.edge as u64 + (1 << 32)
+                } else {
+                    l.contact.facet as u64
+                };
+                sum.wrapping_add(
+                    (place << 8 | l.contact.part as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15),
+                )
+            });
+        let here = Anchor {
+            since: now.time,
+            x: now.position.x,
+            y: now.position.y,
+            angle: now.chassis_angle,
+            contacts,
+        };
+        let tolerance = self.criteria.stationary_distance;
+        let seen = &mut self.seen;
+        let anchor = *seen.anchor.get_or_insert(here);
+        let moved = (here.x - anchor.x).abs().max((here.y - anchor.y).abs());
+        let turned = (here.angle - anchor.angle).abs() * self.half_length;
+        if moved > tolerance || turned > tolerance || here.contacts != anchor.contacts {
+            seen.anchor = Some(here);
+            return;
+        }
+        let still = now.time - anchor.since;
+        let enough = f64::from(self.criteria.stationary_windows) * window;
+        seen.stays |= seen.progress.stop_since.is_some() && still >= enough;
+    }
+
+    /// Nothing that still happens could change the outcome.
+    pub(crate) fn is_over(&self) -> bool {
+        self.seen.ended.is_some() || self.seen.stays
+    }
+
+    /// The outcome of a run that ended otherwise than by a stop or its time.
+    pub(crate) fn ended_as(&self) -> Option<Outcome> {
+        self.seen.ended
+    }
+
+    /// [s] Since when the robot has stopped, if it has.
+    pub(crate) fn stop_since(&self) -> Option<f64> {
+        self.seen.progress.stop_since
+    }
+
+    /// Share of the commanded distance made in the last stop window; 1 before the first is over.
+    pub(crate) fn progress(&self) -> f64 {
+        self.seen.progress.share
+    }
+
+    /// What was seen of a stop: means of the last one to two stop windows.
+    pub(crate) fn stance(&self) -> Stance {
+        self.seen.signals.stance()
+    }
+
+    /// Stops and intrusions so far, in order of their beginning; those that last end at `now`.
+    pub(crate) fn events(&self, now: f64) -> Vec<Event> {
+        let Seen {
+            progress,
+            intrusions,
+            ..
+        } = &self.seen;
+        let inside = intrusions.most_loaded();
+        let open = progress
+            .stop_since
+            .map(|start| Event::stop(start, now, inside));
+        let stops = progress.stops.iter().cloned().chain(open);
+        let mut events: Vec<Event> = stops.chain(intrusions.events(now)).collect();
+        events.sort_by(|a, b| a.start.total_cmp(&b.start));
+        events
+    }
+
+    /// [s] Longest stop from which the robot freed itself, 0 if there was none.
+    pub(crate) fn time_to_free(&self) -> f64 {
+        let stops = self.seen.progress.stops.iter();
+        stops.fold(0.0, |longest, stop| longest.max(stop.end - stop.start))
+    }
+
+    /// The most loaded of what is inside the track.
+    pub(crate) fn intrusion(&self) -> Option<&Event> {
+        self.seen.intrusions.most_loaded()
+    }
+
+    pub(crate) fn envelope(&self) -> &TrackEnvelope {
+        &self.envelope
+    }
+}
