@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test check bench format build soak tools
+.PHONY: help study test test-browser check bench format build soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -23,7 +23,7 @@ SOURCES := Cargo.toml $(wildcard Cargo.lock) pyproject.toml \
 CARGO := PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo
 
 help: ## list the verbs
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 10
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 14
 
 study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
 	$(BIN)/python -m crawler2d.experiments $(ARGS)
@@ -33,6 +33,9 @@ test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 	$(CARGO) test --package crawler2d-core --test facts every_build
 	$(BIN)/python -m pytest
 	@$(MAKE) --no-print-directory check
+
+test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs in a real browser
+	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
 
 check: $(VENV)/.built ## format, lint, types, stubs and documentation, nothing changed
 	cargo fmt --all --check
@@ -70,6 +73,19 @@ $(VENV)/.dependencies: pyproject.toml | tools
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
+
+# Which browser the pages are tested in: one of this machine, playwright's own, or Debian's.
+$(VENV)/.browser: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group browser
+	@find() { for name in chromium chromium-browser google-chrome google-chrome-stable chrome; do \
+		command -v $$name && return; done; return 1; }; \
+	if find > $@; then exit; fi; \
+	if $(BIN)/python -m playwright install chromium; then echo playwright > $@; exit; fi; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get > /dev/null; then \
+		apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes chromium; fi; \
+	if ! find > $@; then \
+		echo "test-browser needs chromium or chrome on the PATH (Debian: apt-get install chromium)" >&2; \
+		exit 1; fi
 
 # An old core of another kind (abi3 or not) would be preferred silently: it goes first.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)

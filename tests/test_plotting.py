@@ -12,6 +12,8 @@ from conftest import GEAR, PLACEMENTS, POINTS, ROBOT
 mpl.use("Agg")
 from matplotlib import pyplot as plt
 
+WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+
 
 @pytest.fixture(autouse=True)
 def _close() -> Any:
@@ -77,7 +79,7 @@ def test_every_kind_of_robot_and_ground_is_drawn(track: Any, terrain: Any) -> No
 def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:
     track = c2d.CircumferentialWheels(24, wheel=c2d.GearWheel(grouser_count=8))
     run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.06), duration=3.0)
-    assert run.outcome is c2d.Outcome.STOPPED  # so that its last contacts are those of its pose
+    assert run.diagnosis is not None  # it stopped, so that its last contacts are those of its pose
     _, ax = plt.subplots()
     run.plot(run.time[-1], axes=ax)
     drawn = [np.array(line.get_xydata()) for line in ax.get_lines()]
@@ -99,15 +101,56 @@ def distance(place: Any, outline: Any) -> float:
 
 
 def test_an_edge_inside_the_track_is_marked_and_named() -> None:
-    track = c2d.LineOfWheels(4, wheel_radius=0.0608)
-    run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.1), duration=4.0)
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
     side, *strips = run.plot()
     (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
     assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.1]]
     depth = 1e3 * run.metrics["intrusion_depth"]
-    assert mark.get_label() == f"edge inside the track: {depth:.1f} mm between wheels 2 and 1"
+    assert mark.get_label() == f"edge inside the track: {depth:.1f} mm between wheels 1 and 2"
     shaded = [len(strip.patches) for strip in strips]
     assert shaded == [np.count_nonzero(run.events["kind"] == "stop")] * 3 == [1] * 3
+
+
+def labels(ax: Any) -> list[str]:
+    return [str(artist.get_label()) for artist in (*ax.get_lines(), *ax.collections)]
+
+
+def test_the_last_pose_has_its_contacts_with_a_stated_scale() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    side = run.plot()[0]
+    last = run.contacts["time"] == run.time[-1]
+    force = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])[last].max()
+    speed = np.abs(run.contacts["surface_speed"][last]).max()
+    forces, speeds = (
+        next(c for c in side.collections if word in str(c.get_label()))
+        for word in ("contact forces", "surface over the ground")
+    )
+    assert forces.get_label() == f"contact forces, longest {force:.0f} N"
+    assert speeds.get_label() == f"surface over the ground, longest {speed:.2f} m/s"
+    assert len(np.asarray(forces.get_offsets())) == np.count_nonzero(last)
+
+
+def test_contacts_are_those_of_the_last_pose_that_is_drawn() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    _, ax = plt.subplots()
+    run.plot([0.0, 0.5], axes=ax)
+    now = run.contacts["time"] == run.time[np.abs(run.time - 0.5).argmin()]
+    (forces,) = [c for c in ax.collections if "contact forces" in str(c.get_label())]
+    assert np.allclose(np.asarray(forces.get_offsets())[:, 0], run.contacts["x"][now])
+    assert not [label for label in labels(ax) if "inside" in label]
+
+
+def test_the_belt_is_drawn_round_wheels_alone(run: c2d.Run) -> None:
+    belt = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.5)
+    assert "taut belt round the wheels" in labels(run.plot()[0])
+    assert "taut belt round the wheels" not in labels(belt.plot()[0])
+
+
+def test_the_title_says_why_the_robot_stopped() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    vars(run)["diagnosis"] = "The edge is held."
+    title = run.plot()[0].get_title(loc="left")
+    assert title == f"{run.title}\nThe edge is held."
 
 
 def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) -> None:

@@ -31,7 +31,7 @@ def sentence(diagnosis: Diagnosis) -> str:
     """Say what a diagnosis found, most telling first."""
     d = diagnosis
     head = _OUTCOMES[d.outcome]
-    if d.mechanism is not None and d.mechanism != d.outcome:
+    if d.mechanism is not None:
         head += f", {d.mechanism}"
     parts = []
     if d.intrusion is not None:
@@ -52,9 +52,9 @@ def _bearing(d: Diagnosis) -> list[str]:
     """Say what the most loaded contact in the pocket, the belly and the motors do."""
     said = []
     contacts = d.contacts
-    inside = np.flatnonzero(contacts["in_pocket"]) if len(contacts["in_pocket"]) else []
-    if len(inside):
-        most = max(inside, key=lambda i: contacts["normal_force"][i])
+    inside = np.flatnonzero(contacts["in_pocket"])
+    if len(inside) > 0:
+        most = inside[np.argmax(contacts["normal_force"][inside])]
         body = "the belly" if contacts["body_kind"][most] == _BELLY else None
         body = body or f"wheel {contacts['body'][most]}"
         does = "slides" if contacts["slides"][most] else "bears"
@@ -81,6 +81,9 @@ def _balance(d: Diagnosis) -> list[str]:
             said.append("no push forwards frees it")
         else:
             said.append(f"a push of {d.escape_force:.0f} N would move it")
+    if d.counterfactual is not None:
+        does = "gets away" if d.counterfactual.freed else "does not get away"
+        said.append(f"a closed belt {does}")
     return said
 
 

@@ -53,6 +53,14 @@ def to_table(
         return cells, counts.reshape(sizes), {"units": "1"}
 
     variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
+    why = [run.diagnosis for run in runs]
+    variables["mechanism"] = by_run([str((d and d.mechanism) or "") for d in why], str)
+    variables["seized_at_tips"] = by_run([bool(d and d.seized_at_tips) for d in why], bool)
+    belts = [d and d.counterfactual for d in why]
+    if any(belts):
+        distances = [belt.distance if belt else math.nan for belt in belts]
+        variables["belt_freed"] = by_run([bool(belt and belt.freed) for belt in belts], bool)
+        variables["belt_distance"] = by_run(distances, float, units="m")
     for name in next((run.metrics for run in runs if run.error is None), {}):
         figures = [run.metrics.get(name, math.nan) for run in runs]
         variables[name] = by_run(figures, float, units=METRICS.get(name, ""))

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import Any, Literal
 
 from crawler2d import _core, errors
-from crawler2d._arrays import real_number
 from crawler2d._progress import Progress, reporter
+from crawler2d._recording import Recording, recording
 from crawler2d._threads import thread_count
 from crawler2d.errors import BatchInterrupted, Crawler2dError, InternalError, ScenarioError
 from crawler2d.robot import Robot
@@ -17,8 +17,6 @@ from crawler2d.terrain import Terrain
 
 __all__ = ["simulate", "simulate_many"]
 
-Recording = Literal["full", "summary"]
-
 
 def simulate(
     scenario: Scenario | Robot,
@@ -26,6 +24,7 @@ def simulate(
     *,
     record: Recording = "full",
     sample_interval: float = 0.01,
+    counterfactual: bool = False,
     **fields: Any,
 ) -> Run:
     """Simulate one scenario to its end.
@@ -40,6 +39,8 @@ def simulate(
         Whether to keep the history, or only outcome, metrics and events.
     sample_interval : float
         [s] Time between two samples of the history, rounded to whole time steps.
+    counterfactual : bool
+        Whether to try a closed belt at the stop that the run ends in; see `Run.counterfactual`.
     **fields : object
         Further fields of the scenario, such as ``duration=5.0``.
 
@@ -65,7 +66,8 @@ def simulate(
     <Outcome.CLEARED: 'cleared'>
     """
     complete = _complete(scenario, terrain).replace(fields)
-    return Run(complete, _core.simulate(complete.to_json(), *_recording(sample_interval, record)))
+    recorded = (*recording(sample_interval, record), bool(counterfactual))
+    return Run(complete, _core.simulate(complete.to_json(), *recorded))
 
 
 def simulate_many(
@@ -74,6 +76,7 @@ def simulate_many(
     threads: int | None = None,
     record: Recording = "full",
     sample_interval: float = 0.01,
+    counterfactual: bool = False,
     progress: bool | Progress | None = False,
     on_error: Literal["raise", "record"] = "raise",
 ) -> list[Run]:
@@ -90,6 +93,8 @@ def simulate_many(
         Whether to keep the histories, or only outcomes, metrics and events.
     sample_interval : float
         [s] Time between two samples of a history, rounded to whole time steps.
+    counterfactual : bool
+        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
     progress : bool or callable
         True shows a bar; a callable gets the numbers of finished runs and of all runs.
     on_error : {"raise", "record"}
@@ -123,7 +128,7 @@ def simulate_many(
     """
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    recording = _recording(sample_interval, record)
+    recorded = (*recording(sample_interval, record), bool(counterfactual))
     count = thread_count(threads)
     batch = list(scenarios)
     checked = [_checked(scenario, index) for index, scenario in enumerate(batch)]
@@ -131,7 +136,7 @@ def simulate_many(
         _raise_first(checked)
     texts = [text for text in checked if isinstance(text, str)]
     with reporter(progress, len(texts)) as callback:
-        results, interrupted = _core.simulate_many(texts, count, *recording, callback)
+        results, interrupted = _core.simulate_many(texts, count, *recorded, callback)
     rest = iter(results)
     runs = [
         _run(scenario, next(rest) if isinstance(text, str) else text)
@@ -153,12 +158,6 @@ def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
     if terrain is None:
         raise ScenarioError("terrain", terrain, "must be given with a robot")
     return Scenario(scenario, terrain)
-
-
-def _recording(sample_interval: float, record: str) -> tuple[float, str]:
-    if record not in ("full", "summary"):
-        raise ScenarioError("record", record, "must be one of full, summary")
-    return real_number(sample_interval, "sample_interval"), record
 
 
 def _checked(scenario: Scenario, index: int) -> str | ScenarioError:

@@ -107,6 +107,7 @@ def compare(
         repeats=repeats,
         seed=seed,
         vary=vary,
+        counterfactual=False,
         threads=threads,
         progress=progress,
         on_error="raise",

@@ -11,7 +11,7 @@ from crawler2d._sentence import sentence
 from crawler2d.outcome import Outcome
 from crawler2d.table import Table
 
-__all__ = ["Condition", "Diagnosis", "Intrusion", "Mechanism"]
+__all__ = ["Condition", "Counterfactual", "Diagnosis", "Intrusion", "Mechanism"]
 
 
 class Mechanism(StrEnum):
@@ -61,6 +61,34 @@ class Intrusion:
     x: float
     y: float
     force: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counterfactual:
+    """How a closed belt fares in the pose of a stop; `Run.counterfactual` tries it.
+
+    Attributes
+    ----------
+    freed : bool
+        It advanced by more than `criteria.escape_distance` within `criteria.escape_time`: the stop
+        was the wheels' fault, *unnatural*.
+    distance : float
+        [m] How far it got along the command in that time.
+    time : float
+        [s] How long it took to get away; inf if it did not.
+    outcome : Outcome
+        How it stood in the end.
+    """
+
+    freed: bool
+    distance: float
+    time: float
+    outcome: Outcome
+
+    @classmethod
+    def from_core(cls, plain: Mapping[str, Any]) -> Counterfactual:
+        """Read what the core says."""
+        return cls(**{**plain, "outcome": Outcome(plain["outcome"])})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,6 +141,8 @@ class Diagnosis:
         [N] Largest push at the centre of mass along the command that can be balanced: while sliding
         contacts slide on, and if every contact could hold within its friction cone; inf: wedged.
         None without a certificate.
+    counterfactual : Counterfactual or None
+        How a closed belt fares from here, where the run was simulated with ``counterfactual=True``.
     """
 
     outcome: Outcome
@@ -134,6 +164,7 @@ class Diagnosis:
     certified: bool
     escape_force: float | None
     free_escape_force: float | None
+    counterfactual: Counterfactual | None
 
     @classmethod
     def from_core(cls, plain: Mapping[str, Any]) -> Diagnosis:
@@ -144,6 +175,8 @@ class Diagnosis:
         values["mechanism"] = None if mechanism is None else Mechanism(mechanism)
         values["intrusion"] = None if inside is None else Intrusion(**inside)
         values["cause"] = tuple(tuple(map(Condition, names)) for names in values["cause"])
+        belt = values["counterfactual"]
+        values["counterfactual"] = None if belt is None else Counterfactual.from_core(belt)
         values["contacts"] = Table(values["contacts"])
         return cls(**values)
 
@@ -151,6 +184,8 @@ class Diagnosis:
         """Write what `from_core` reads."""
         plain = {field.name: getattr(self, field.name) for field in fields(self)}
         plain["contacts"] = dict(self.contacts)
+        belt = self.counterfactual
+        plain["counterfactual"] = None if belt is None else asdict(belt)
         plain["intrusion"] = None if self.intrusion is None else asdict(self.intrusion)
         return plain
 

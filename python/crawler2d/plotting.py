@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,15 +17,25 @@ if TYPE_CHECKING:
 
     from crawler2d.run import Run
 
-__all__ = ["plot_run", "side_view", "time_strips"]
+__all__ = ["extent", "inset", "plot_run", "side_view", "taut_belt", "time_strips"]
 
 # Okabe and Ito's palette: told apart by colour-blind readers.
 _BLACK, _ORANGE, _BLUE, _RED, _GREEN = "#222222", "#E69F00", "#0072B2", "#D55E00", "#009E73"
-_GROUND = "#D9D2C5"
+_GROUND, _PURPLE = "#D9D2C5", "#A3327B"
 
 # A contact force as large as the weight is drawn as long as this share of the axle distance, and a
 # larger one of a robot that wedges itself in no longer.
 _FORCE_LENGTH = 0.6
+# The same of a surface that passes the ground at the commanded speed, or of the fastest beyond it.
+_SPEED_LENGTH = 0.22
+# They lie so far inside the ground, as a share of the axle distance, where they hide nothing.
+_BELOW = 0.03
+# Shorter arrows, as a share of the longest one there can be, would be mere dots.
+_SHORTEST = 0.02
+# [m] Lines that coincide enclose slivers of rounding; an intrusion is deeper.
+_SLIVER = 2e-5
+# Characters of a line of the title.
+_TITLE_WIDTH = 80
 # Most drawings of the robot in one side view.
 _MOST_DRAWINGS = 7
 
@@ -53,10 +64,11 @@ def plot_run(
 
 
 def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
-    """Draw ground, robot at some instants, path of the chassis origin, and how it ends.
+    """Draw ground, robot at some instants, path of the chassis origin, and what holds the robot.
 
-    The end shows the contact forces of the last sample, and the edges inside the track: the taut
-    belt round the wheels is drawn with them.
+    At the last of the instants the contacts are drawn, with their forces on the robot and the
+    speeds of its surface over the ground, the taut belt round its wheels, and the ground and the
+    edges inside that belt.
 
     Parameters
     ----------
@@ -70,7 +82,7 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     geometry = _core.geometry(run.scenario.to_json())
     profile = geometry["profile"]
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
-    left, right, bottom, top = _extent(run, profile, geometry)
+    left, right, bottom, top = extent(run, profile, geometry)
     ax.fill_between(
         profile[:, 0], profile[:, 1], bottom - 1.0, color=_GROUND, linewidth=0.0, zorder=0
     )
@@ -86,12 +98,15 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
         label="path of the chassis origin",
         zorder=3,
     )
-    _draw_forces(run, ax)
-    _draw_intrusions(run, geometry, ax)
+    shown = int(samples[-1])
+    _draw_contacts(run, shown, ax)
+    if not geometry["hull"]:  # nothing gets inside a belt
+        _draw_envelope(run, geometry, shown, ax)
+    _draw_intrusions(run, shown, ax)
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    ax.set_title(run.title, loc="left", fontsize="medium")
+    ax.set_title(_title(run), loc="left", fontsize="medium")
     ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
 
 
@@ -126,6 +141,13 @@ def time_strips(run: Run, axes: tuple[Axes, ...]) -> None:
         angle.set_title("shaded: stops", loc="right", fontsize="small")
 
 
+def _title(run: Run) -> str:
+    diagnosis = getattr(run, "diagnosis", None)
+    if diagnosis is None:
+        return run.title
+    return f"{run.title}\n{textwrap.fill(str(diagnosis), _TITLE_WIDTH)}"
+
+
 def _drawing_times(run: Run) -> NDArray[np.float64]:
     """Choose instants that lie about one robot length of travel apart."""
     travelled = np.hypot(*np.diff(run.position, axis=0, prepend=run.position[:1]).T).cumsum()
@@ -137,7 +159,7 @@ def _drawing_times(run: Run) -> NDArray[np.float64]:
     return run.time[samples]
 
 
-def _extent(
+def extent(
     run: Run, profile: NDArray[np.float64], geometry: dict[str, Any]
 ) -> tuple[float, float, float, float]:
     """[m] Left, right, bottom and top of what the run visits, with the obstacle's beginning."""
@@ -165,10 +187,10 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
         for gear in geometry["gears"]:
             draw(_turned(gear, run.drive_positions[sample]), _BLACK)
     elif geometry["hull"]:
-        draw(_taut_belt(circles), _BLACK)
+        draw(taut_belt(circles), _BLACK)
     else:
         for circle in circles:
-            draw(_taut_belt(circle[None]), _BLACK)
+            draw(taut_belt(circle[None]), _BLACK)
     center = _placed(run, sample, np.array([run.scenario.robot.center_of_mass]))
     ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
 
@@ -196,7 +218,7 @@ def _closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.vstack([polygon, polygon[:1]])
 
 
-def _taut_belt(circles: NDArray[np.float64]) -> NDArray[np.float64]:
+def taut_belt(circles: NDArray[np.float64]) -> NDArray[np.float64]:
     """[m] Outline of a belt around circles: the outermost point in every direction."""
     directions = np.linspace(0.0, 2.0 * np.pi, 181)
     normals = np.column_stack([np.cos(directions), np.sin(directions)])
@@ -205,53 +227,111 @@ def _taut_belt(circles: NDArray[np.float64]) -> NDArray[np.float64]:
     return belt
 
 
-def _draw_forces(run: Run, ax: Axes) -> None:
-    """Arrows of the contact forces on the robot at the last sample, tails on the contact."""
+def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
+    """[m] A closed convex line, moved inwards by a depth."""
+    way = np.roll(belt, -1, axis=0) - belt
+    belt = belt[np.hypot(*way.T) > 1e-9]  # without corners that coincide
+    way = np.roll(belt, -1, axis=0) - belt
+    x, y = belt.T
+    counter_clockwise = np.sign((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
+    inwards = counter_clockwise * np.column_stack([-way[:, 1], way[:, 0]])
+    inwards /= np.hypot(*way.T)[:, None]
+    inwards = inwards + np.roll(inwards, 1, axis=0)
+    moved: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
+    return moved
+
+
+def _draw_contacts(run: Run, sample: int, ax: Axes) -> None:
+    """Arrows of the forces on the robot and of the speeds of its surface, at one sample."""
     contacts = run.contacts
-    last = contacts["time"] == run.time[-1]
-    if not last.any() or run.scenario.gravity <= 0.0:
+    now = contacts["time"] == run.time[sample]
+    if not now.any():
         return
-    normal = np.column_stack([contacts["normal_x"], contacts["normal_y"]])[last]
-    tangent = np.column_stack([normal[:, 1], -normal[:, 0]])
-    force = contacts["normal_force"][last, None] * normal
-    force = force + contacts["friction_force"][last, None] * tangent
     robot = run.scenario.robot
-    longest = max(robot.mass * run.scenario.gravity, float(np.hypot(*force.T).max()))
-    scale = _FORCE_LENGTH * robot.outline.axle_distance / longest
+    places = np.column_stack([contacts["x"], contacts["y"]])[now]
+    normal = np.column_stack([contacts["normal_x"], contacts["normal_y"]])[now]
+    tangent = np.column_stack([normal[:, 1], -normal[:, 0]])
+    speed = contacts["surface_speed"][now, None] * tangent
+    below = places - _BELOW * robot.outline.axle_distance * normal
+    usual, length = abs(run.scenario.drive.speed), _SPEED_LENGTH * robot.outline.axle_distance
+    label = "surface over the ground, longest {:.2f} m/s"
+    _draw_arrows(ax, below, speed, (usual, length), color=_BLUE, label=label)
+    force = contacts["normal_force"][now, None] * normal
+    force = force + contacts["friction_force"][now, None] * tangent
+    usual = robot.mass * run.scenario.gravity
+    length = _FORCE_LENGTH * robot.outline.axle_distance
+    label = "contact forces, longest {:.0f} N"
+    _draw_arrows(ax, places, force, (usual, length), color=_RED, label=label)
+
+
+def _draw_arrows(
+    ax: Axes,
+    places: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    scale: tuple[float, float],
+    *,
+    color: str,
+    label: str,
+) -> None:
+    """Arrows with their tails at some places.
+
+    The scale is a usual size and the length [m] that it is drawn at, or the largest if beyond it.
+    """
+    usual, length = scale
+    sizes = np.hypot(*vectors.T)
+    most = max(usual, float(sizes.max()))
+    drawn = sizes > _SHORTEST * most
+    if not drawn.any():
+        return
     ax.quiver(
-        contacts["x"][last],
-        contacts["y"][last],
-        *(scale * force).T,
-        color=_RED,
+        *places[drawn].T,
+        *(length / most * vectors[drawn]).T,
+        color=color,
         angles="xy",
         scale_units="xy",
         scale=1.0,
         width=0.004,
-        label="contact forces at the end",
+        label=label.format(sizes.max()),
         zorder=4,
     )
 
 
-def _draw_intrusions(run: Run, geometry: dict[str, Any], ax: Axes) -> None:
-    """Mark the edges that are inside the track at the end, and the belt that they are inside of."""
-    events = run.events
-    inside = np.flatnonzero((events["kind"] == "intrusion") & (events["end"] == run.time[-1]))
-    if not inside.size:
-        return
-    edges = events["edge"][inside]
-    most_loaded = inside[events["force"][inside].argmax()]
-    depth, (before, after) = events["depth"][most_loaded], events["bodies"][most_loaded]
-    label = f"edge inside the track: {1e3 * depth:.1f} mm"
-    if before != after:
-        label += f" between wheels {before} and {after}"
+def _draw_envelope(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
+    """Draw the taut belt round the wheels, and fill what of the ground is inside it."""
+    belt = geometry.get("envelope")
+    belt = taut_belt(geometry["circles"]) if belt is None else belt
     ax.plot(
-        *_placed(run, -1, _taut_belt(geometry["circles"])).T,
-        color=_RED,
-        linestyle=":",
-        linewidth=1.2,
+        *_closed(_placed(run, sample, belt)).T,
+        color=_PURPLE,
+        linestyle="--",
+        linewidth=0.9,
         label="taut belt round the wheels",
-        zorder=1.5,
+        zorder=2.5,
     )
+    depth = max(run.scenario.criteria.intrusion_depth, _SLIVER)
+    inner = _placed(run, sample, inset(belt, depth))
+    x, y = geometry["profile"].T
+    soil = ax.fill_between(
+        x, y, float(inner[:, 1].min()) - 1.0, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6
+    )
+    patches = extra("matplotlib.patches", "plot")
+    soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
+
+
+def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
+    """Mark the edges that are inside the track at one sample."""
+    events, time = run.events, run.time[sample]
+    inside = events["kind"] == "intrusion"
+    inside &= (events["start"] <= time) & (time <= events["end"])
+    rows = np.flatnonzero(inside)
+    if not rows.size:
+        return
+    edges = events["edge"][rows]
+    most_loaded = rows[events["force"][rows].argmax()]
+    depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
+    label = f"edge inside the track: {1e3 * depth:.1f} mm"
+    if one != other:
+        label += f" between wheels {one} and {other}"
     ax.plot(
         run.edges["x"][edges],
         run.edges["y"][edges],
@@ -259,7 +339,7 @@ def _draw_intrusions(run: Run, geometry: dict[str, Any], ax: Axes) -> None:
         marker="D",
         markersize=6,
         markerfacecolor="white",
-        markeredgecolor=_RED,
+        markeredgecolor=_PURPLE,
         label=label,
         zorder=5,
     )

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
-from crawler2d.diagnosis import Diagnosis, Mechanism
+from crawler2d import branch as branching
+from crawler2d._recording import Recording
+from crawler2d.diagnosis import Counterfactual, Diagnosis, Mechanism
 from crawler2d.errors import Crawler2dError
 from crawler2d.outcome import Outcome
 from crawler2d.table import Table, read_only
@@ -18,7 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from crawler2d.scenario import Scenario
+    from crawler2d.scenario import Drive, Scenario
+    from crawler2d.track import Track
 
 __all__ = ["Run"]
 
@@ -47,6 +50,8 @@ class Run:
         [s] Computing time of one thread.
     error : Crawler2dError or None
         Why there is no result, in a batch with ``on_error="record"``.
+    trunk : tuple of Scenario and float, or None
+        For a branch: what was simulated before it, and until when [s].
 
     Notes
     -----
@@ -101,10 +106,15 @@ class Run:
     """
 
     def __init__(
-        self, scenario: Scenario, result: Mapping[str, Any], error: Crawler2dError | None = None
+        self,
+        scenario: Scenario,
+        result: Mapping[str, Any],
+        error: Crawler2dError | None = None,
+        trunk: tuple[Scenario, float] | None = None,
     ) -> None:
         self.scenario = scenario
         self.error = error
+        self.trunk = trunk
         self.outcome = Outcome(result["outcome"]) if error is None else None
         why = result.get("diagnosis")
         self.diagnosis = None if why is None else Diagnosis.from_core(why)
@@ -210,6 +220,92 @@ class Run:
             raise AttributeError(f"this run has no history: {self.error}", name=name, obj=self)
         message = "this run has no history: it was recorded with record='summary'"
         raise AttributeError(message, name=name, obj=self)
+
+    def branch(
+        self,
+        at: float | Literal["stop"] = "stop",
+        *,
+        track: Track | None = None,
+        friction: float | None = None,
+        drive: Drive | None = None,
+        duration: float | None = None,
+        record: Recording = "full",
+        sample_interval: float = 0.01,
+    ) -> Run:
+        """Go on from an instant of this run with something changed.
+
+        The run is repeated up to that instant, bit by bit, and goes on from the same pose and
+        speeds; what is not changed goes on as it was. Ground that is inside the new track is let out
+        without a push: the track is dented there, and the dent heals as the robot moves on.
+
+        Parameters
+        ----------
+        at : float or "stop"
+            [s] When; "stop" is the instant of the diagnosis.
+        track : track model, optional
+            Another model of the robot's track.
+        friction : float, optional
+            [-] Another friction of the ground.
+        drive : Drive, optional
+            Another command.
+        duration : float, optional
+            [s] How long to go on; None takes that of the scenario, counted from the instant.
+        record : {"full", "summary"}
+            Whether to keep the history, or only outcome, metrics and events.
+        sample_interval : float
+            [s] Time between two samples of the history, rounded to whole time steps.
+
+        Returns
+        -------
+        Run
+            From that instant on; its stops, figures and outcome count from there.
+
+        Raises
+        ------
+        ScenarioError
+            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or a
+            change breaks a rule.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
+        >>> str(run.outcome), str(run.branch(track=c2d.BeltTrack()).outcome)
+        ('seized', 'cleared')
+        """
+        time = branching.branch_time(self, at)
+        changes = {"track": track, "friction": friction, "drive": drive, "duration": duration}
+        variant = branching.branch_scenario(self, changes)
+        result = branching.simulate_branch(self, time, variant, record, sample_interval)
+        return Run(variant, result, trunk=(self.scenario, time))
+
+    def counterfactual(self, at: float | Literal["stop"] = "stop") -> Counterfactual:
+        """Try a closed belt in the pose of an instant: same envelope, force, friction and speeds.
+
+        Parameters
+        ----------
+        at : float or "stop"
+            [s] When; "stop" is the instant of the diagnosis.
+
+        Returns
+        -------
+        Counterfactual
+            Whether it gets away, and how far.
+
+        Raises
+        ------
+        ScenarioError
+            If `at` is no time of the run, the run did not end in a stop, or is a branch itself.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+        >>> c2d.simulate(robot, c2d.terrains.step(0.10)).counterfactual().freed
+        True
+        """
+        return branching.try_belt(self, branching.branch_time(self, at))
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled data set.
@@ -318,7 +414,7 @@ class Run:
             "trace": self._trace,
             "contacts": dict(self._contacts),
         }
-        return Run, (self.scenario, result, self.error)
+        return Run, (self.scenario, result, self.error, self.trunk)
 
     def __repr__(self) -> str:
         """Say what ran and how it ended."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from crawler2d import _core
 from crawler2d._arrays import real_number
+from crawler2d.diagnosis import Diagnosis
 from crawler2d.errors import ScenarioError
 from crawler2d.outcome import Outcome
 from crawler2d.scenario import Scenario
@@ -110,20 +111,84 @@ class Simulation:
         """
         self._core.advance(real_number(duration, "duration"))
 
-    def command(self, *, speed: float | None = None) -> None:
-        """Give the drivetrain a new command; it follows within its limits.
+    def command(self, *, speed: float | None = None, push: float | None = None) -> None:
+        """Give the drivetrain a new command, which it follows within its limits, or push the robot.
 
         Parameters
         ----------
         speed : float, optional
             [m/s] Track speed; above 0 drives towards +x. None leaves it as it is.
+        push : float, optional
+            [N] Horizontal force of the surroundings at the centre of mass, from now on; above 0
+            pushes towards +x. None leaves it as it is.
 
         Raises
         ------
         ScenarioError
-            If `speed` is no number or beyond the drivetrain's.
+            If `speed` is no number or beyond the drivetrain's, or `push` no number or beyond 1e6 N.
         """
-        self._core.command(None if speed is None else real_number(speed, "drive.speed"))
+        self._core.command(
+            None if speed is None else real_number(speed, "drive.speed"),
+            None if push is None else real_number(push, "push"),
+        )
+
+    def snapshot(self) -> bytes:
+        """Write everything that the future depends on.
+
+        Returns
+        -------
+        bytes
+            For `from_snapshot` of the same build of crawler2d: about 10 kB.
+        """
+        return self._core.snapshot()
+
+    @classmethod
+    def from_snapshot(cls, snapshot: bytes) -> Simulation:
+        """Make the simulation of a snapshot; it goes on with the same bits.
+
+        Parameters
+        ----------
+        snapshot : bytes
+            What `snapshot` wrote.
+
+        Returns
+        -------
+        Simulation
+            Independent of the one that was written.
+
+        Raises
+        ------
+        ScenarioError
+            If the bytes are no snapshot, are damaged, or were written by another build.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05)))
+        >>> sim.advance(1.0)
+        >>> copy = c2d.Simulation.from_snapshot(sim.snapshot())
+        >>> for each in (sim, copy):
+        ...     each.advance(1.0)
+        >>> bool((sim.state().position == copy.state().position).all())
+        True
+        """
+        if not isinstance(snapshot, (bytes, bytearray, memoryview)):
+            raise ScenarioError("snapshot", snapshot, "must be bytes")
+        simulation = cls.__new__(cls)
+        simulation._core = _core.Simulation.from_snapshot(bytes(snapshot))
+        simulation.scenario = Scenario.from_json(simulation._core.scenario())
+        return simulation
+
+    def diagnosis(self) -> Diagnosis | None:
+        """Say why the robot has stopped.
+
+        Returns
+        -------
+        Diagnosis or None
+            None while it has not.
+        """
+        why = self._core.diagnosis()
+        return None if why is None else Diagnosis.from_core(why)
 
     def state(self) -> State:
         """Read the state of this instant.

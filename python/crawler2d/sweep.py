@@ -32,6 +32,7 @@ def sweep(
     repeats: int = 20,
     seed: int = 0,
     vary: Mapping[str, Distribution] | None = None,
+    counterfactual: bool = False,
     threads: int | None = None,
     progress: bool | Progress | None = True,
     on_error: OnError = "raise",
@@ -57,6 +58,8 @@ def sweep(
     vary : mapping of str to distribution, optional
         What the repeats draw, by path: `uniform` replaces a value, `scaled` multiplies it. None
         takes the variations of the notes, ``{}`` none at all.
+    counterfactual : bool
+        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
     threads : int, optional
         See `simulate_many`.
     progress : bool or callable
@@ -73,6 +76,8 @@ def sweep(
         tuple joins the last names of its paths, whose numbers are further coordinates.
 
         - `outcome`, and `error` where there is none: `diverged`, or `refused` by a rule;
+        - `mechanism` of a stop, "" without; `seized_at_tips`; with `counterfactual`, `belt_freed` and
+          `belt_distance`, False and nan where there was no stop;
         - every metric of `Run.metrics`, and `wall_time`;
         - `scenario`, the JSON text of each run, and its `identity`;
         - `drawn_...`, the value that was drawn for each path of `vary`;
@@ -116,7 +121,7 @@ def sweep(
     >>> models = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
     >>> table = c2d.sweep(base, {"robot.track": models}, repeats=2, progress=False)
     >>> table.outcome.values.tolist()
-    [['cleared', 'cleared'], ['stopped', 'stopped']]
+    [['cleared', 'cleared'], ['stalled', 'stalled']]
 
     Any run replays alone, with its history.
 
@@ -131,6 +136,7 @@ def sweep(
         repeats=repeats,
         seed=seed,
         vary=vary,
+        counterfactual=counterfactual,
         threads=threads,
         progress=progress,
         on_error=on_error,
@@ -144,6 +150,7 @@ def tabulate(
     repeats: int,
     seed: int,
     vary: Mapping[str, Distribution] | None,
+    counterfactual: bool,
     threads: int | None,
     progress: bool | Progress | None,
     on_error: OnError,
@@ -165,6 +172,7 @@ def tabulate(
         [plan.scenario for plan in plans],
         threads=threads,
         record="summary",
+        counterfactual=counterfactual,
         progress=progress,
         on_error="record",
     )

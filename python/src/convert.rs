@@ -11,8 +11,8 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::{diagnosis, errors};
 
-/// What to keep of a run, from its two arguments.
-pub(crate) fn record(sample_interval: f64, record: &str) -> PyResult<Record> {
+/// What to keep of a run, from its arguments.
+pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -> PyResult<Record> {
     if !(sample_interval > 0.0 && sample_interval <= 1e5) {
         let rule = "must be > 0 s and <= 100000 s";
         return Err(errors::argument(
@@ -25,10 +25,12 @@ pub(crate) fn record(sample_interval: f64, record: &str) -> PyResult<Record> {
         "full" => Ok(Record {
             sample_interval,
             history: true,
+            counterfactual,
         }),
         "summary" => Ok(Record {
             sample_interval,
             history: false,
+            counterfactual,
         }),
         other => Err(errors::argument(
             "record",
@@ -240,6 +242,8 @@ pub(crate) fn geometry<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     /// Points of one root arc between two grousers.
     const ARC_POINTS: usize = 12;
+    /// [rad] Turn between two points of a belt.
+    const BELT_TURN: f64 = 0.05;
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
     let mut belly: Vec<[f64; 2]> = Vec::new();
@@ -248,15 +252,9 @@ pub(crate) fn geometry<'py>(
     for part in &model.parts {
         match &part.shape {
             Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
-            Shape::Hull {
-                rear,
-                rear_radius,
-                front,
-                front_radius,
-            } => {
+            Shape::Hull { discs } => {
                 hull = true;
-                circles.push([rear.x, rear.y, *rear_radius]);
-                circles.push([front.x, front.y, *front_radius]);
+                circles.extend(discs.iter().map(|d| [d.center.x, d.center.y, d.radius]));
             }
             Shape::Gear { center, gear } => {
                 circles.push([center.x, center.y, gear.radius]);
@@ -284,6 +282,12 @@ pub(crate) fn geometry<'py>(
     result.set_item("gears", gears)?;
     result.set_item("wheels", wheels(py, model)?)?;
     result.set_item("belly", rows(py, &belly))?;
+    let [envelope, root_envelope] = model.envelopes(BELT_TURN).map(|points| {
+        let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        rows(py, &points)
+    });
+    result.set_item("envelope", envelope)?;
+    result.set_item("root_envelope", root_envelope)?;
     result.set_item("goal", ground.goal_of(scenario))?;
     Ok(result)
 }
@@ -340,6 +344,6 @@ pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
     )?;
     info.set_item("schema", crawler2d_core::SCHEMA)?;
-    info.set_item("build_id", env!("CRAWLER2D_BUILD_ID"))?;
+    info.set_item("build_id", crawler2d_core::BUILD_ID)?;
     Ok(info)
 }

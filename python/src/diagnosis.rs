@@ -1,6 +1,8 @@
 //! Why a run stopped, as dictionaries and `NumPy` columns.
 
-use crawler2d_core::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
+use crawler2d_core::{
+    Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
+};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -30,6 +32,24 @@ pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyD
     result.set_item("certified", d.certified)?;
     result.set_item("escape_force", d.escape_force)?;
     result.set_item("free_escape_force", d.free_escape_force)?;
+    let belt = d.counterfactual.as_ref();
+    result.set_item(
+        "counterfactual",
+        belt.map(|c| counterfactual(py, c)).transpose()?,
+    )?;
+    Ok(result)
+}
+
+/// How a closed belt fares from a stop.
+pub(crate) fn counterfactual<'py>(
+    py: Python<'py>,
+    c: &Counterfactual,
+) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("freed", c.freed)?;
+    result.set_item("distance", c.distance)?;
+    result.set_item("time", c.time)?;
+    result.set_item("outcome", c.outcome.name())?;
     Ok(result)
 }
 

@@ -11,12 +11,15 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     use std::sync::Mutex;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::time::Duration;
 
-    use crawler2d_core::{Error, Model, Progress, Run, Scenario};
+    use crawler2d_core::{Error, Model, Progress, Record, Run, Scenario};
     use pyo3::prelude::*;
     use pyo3::types::{PyDict, PyList};
 
     use crate::convert;
+    use crate::diagnosis;
     use crate::errors;
 
     #[pymodule_export]
@@ -53,8 +56,10 @@ mod _core {
         text: &str,
         sample_interval: f64,
         record: &str,
+        counterfactual: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (results, interrupted) = run_all(py, &[text], 1, sample_interval, record, None)?;
+        let record = convert::record(sample_interval, record, counterfactual)?;
+        let (results, interrupted) = run_all(py, &[text], 1, record, None)?;
         if let Some(signal) = interrupted {
             return Err(signal);
         }
@@ -73,11 +78,12 @@ mod _core {
         threads: usize,
         sample_interval: f64,
         record: &str,
+        counterfactual: bool,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyList>, bool)> {
         let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
-        let (results, interrupted) =
-            run_all(py, &texts, threads, sample_interval, record, progress)?;
+        let record = convert::record(sample_interval, record, counterfactual)?;
+        let (results, interrupted) = run_all(py, &texts, threads, record, progress)?;
         let list = PyList::empty(py);
         for result in results {
             match result {
@@ -98,6 +104,62 @@ mod _core {
         }
     }
 
+    /// A run up to a time, and on from there as another scenario.
+    #[pyfunction]
+    fn branch<'py>(
+        py: Python<'py>,
+        text: &str,
+        at: f64,
+        variant: &str,
+        sample_interval: f64,
+        record: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let record = convert::record(sample_interval, record, false)?;
+        let run = interruptible(py, |cancel| {
+            let (scenario, variant) = (Scenario::from_json(text)?, Scenario::from_json(variant)?);
+            crawler2d_core::branch(&scenario, at, &variant, record, cancel)
+        })?;
+        convert::run(py, run)
+    }
+
+    /// A run up to a time, and a closed belt from there.
+    #[pyfunction]
+    fn counterfactual<'py>(py: Python<'py>, text: &str, at: f64) -> PyResult<Bound<'py, PyDict>> {
+        let found = interruptible(py, |cancel| {
+            crawler2d_core::counterfactual(&Scenario::from_json(text)?, at, cancel)
+        })?;
+        diagnosis::counterfactual(py, &found)
+    }
+
+    /// Runs the core beside the interpreter, which looks for Ctrl-C meanwhile.
+    fn interruptible<T: Send>(
+        py: Python<'_>,
+        call: impl Send + FnOnce(&AtomicBool) -> Result<T, Error>,
+    ) -> PyResult<T> {
+        /// Between two looks.
+        const PAUSE: Duration = Duration::from_millis(10);
+
+        let cancel = AtomicBool::new(false);
+        let mut signal = None;
+        let result = py.detach(|| {
+            std::thread::scope(|scope| {
+                let work = scope.spawn(|| errors::guarded(|| call(&cancel)));
+                while !work.is_finished() {
+                    std::thread::sleep(PAUSE);
+                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        cancel.store(true, Ordering::Relaxed);
+                        signal = Some(error);
+                    }
+                }
+                work.join()
+            })
+        });
+        if let Some(signal) = signal {
+            return Err(signal);
+        }
+        result.unwrap_or_else(|_| Err(errors::internal("a thread of the core failed")))
+    }
+
     /// Version and build of the compiled core.
     #[pyfunction]
     fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
@@ -113,11 +175,9 @@ mod _core {
         py: Python<'_>,
         texts: &[&str],
         threads: usize,
-        sample_interval: f64,
-        record: &str,
+        record: Record,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(Results, Option<PyErr>)> {
-        let record = convert::record(sample_interval, record)?;
         let scenarios = errors::guarded(|| {
             texts
                 .iter()

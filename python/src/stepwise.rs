@@ -4,9 +4,9 @@ use std::sync::Mutex;
 
 use crawler2d_core::{Error, Scenario};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
-use crate::{convert, errors};
+use crate::{convert, diagnosis, errors};
 
 /// One simulation under way; a lock lets any thread use it, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
@@ -24,6 +24,32 @@ impl Simulation {
         Ok(Self {
             inner: Mutex::new(Some(simulation)),
         })
+    }
+
+    /// The simulation of a snapshot.
+    #[staticmethod]
+    fn from_snapshot(snapshot: &[u8]) -> PyResult<Self> {
+        let simulation = errors::guarded(|| crawler2d_core::Simulation::from_snapshot(snapshot))?;
+        Ok(Self {
+            inner: Mutex::new(Some(simulation)),
+        })
+    }
+
+    /// Everything that the future depends on.
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let snapshot = self.with(py, |simulation| Ok(simulation.snapshot()))?;
+        Ok(PyBytes::new(py, &snapshot))
+    }
+
+    /// The scenario as JSON.
+    fn scenario(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |simulation| Ok(simulation.scenario().to_json()))
+    }
+
+    /// Why the robot has stopped, if it has.
+    fn diagnosis<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let why = self.with(py, |simulation| Ok(simulation.diagnosis()))?;
+        why.map(|d| diagnosis::of(py, &d)).transpose()
     }
 
     /// Advances by a duration, rounded to whole steps.
@@ -52,13 +78,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Gives the drivetrain a new command.
-    #[pyo3(signature = (speed = None))]
-    fn command(&self, py: Python<'_>, speed: Option<f64>) -> PyResult<()> {
-        match speed {
-            Some(speed) => self.with(py, |simulation| simulation.set_speed(speed)),
-            None => Ok(()),
-        }
+    /// Gives the drivetrain a new command, or the robot a push.
+    #[pyo3(signature = (speed = None, push = None))]
+    fn command(&self, py: Python<'_>, speed: Option<f64>, push: Option<f64>) -> PyResult<()> {
+        self.with(py, |simulation| {
+            speed.map_or(Ok(()), |speed| simulation.set_speed(speed))?;
+            push.map_or(Ok(()), |push| simulation.set_push(push))
+        })
     }
 
     /// The state of this instant.

@@ -44,21 +44,24 @@ pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContac
 pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use outcome::Outcome;
-pub use outline::Gear;
+pub use outline::{Disc, Gear};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Part, Shape};
-pub use run::{Metrics, Run, simulate};
+pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack,
     GearWheel, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria,
     Solver, Start, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
-pub use simulation::Simulation;
+pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile};
 pub use trace::{ContactTable, Record, Trace};
 
 /// The engine that finds the contacts, with its exact version.
 pub const ENGINE: &str = "rapier2d-f64 0.36.1";
+
+/// Names the sources that this core was built from.
+pub const BUILD_ID: &str = env!("CRAWLER2D_BUILD_ID");
 
 /// A point or a direction in the plane.
 pub use rapier2d_f64::math::Vector;

@@ -3,7 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
-use crate::outline::{self, Disc, Gear};
+use crate::outline::{self, Disc, Envelope, Gear};
 use crate::plane::{left_of, right_of};
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::{Ground, Profile};
@@ -70,16 +70,10 @@ pub enum Shape {
         /// [m] Radius.
         radius: f64,
     },
-    /// The convex hull of two discs.
+    /// The convex hull of discs.
     Hull {
-        /// [m] Centre of the rear disc.
-        rear: Vector,
-        /// [m] Radius of the rear disc.
-        rear_radius: f64,
-        /// [m] Centre of the front disc.
-        front: Vector,
-        /// [m] Radius of the front disc.
-        front_radius: f64,
+        /// The discs.
+        discs: Vec<Disc>,
     },
     /// A wheel with grousers that turns with its drive.
     Gear {
@@ -146,6 +140,54 @@ impl Model {
         self.moment_of_inertia + self.drive_mass * self.drive_radius * self.drive_radius
     }
 
+    /// The same robot with a closed belt, taut round the bodies of its track: their circumscribed
+    /// circles, all their motors' force, their mass.
+    pub(crate) fn closed(&self) -> Self {
+        let discs: Vec<Disc> = self
+            .parts
+            .iter()
+            .flat_map(|part| part.discs().map(|(tip, _)| tip).collect::<Vec<_>>())
+            .collect();
+        let belt = Envelope::new(&discs);
+        // A closed belt shields a belly that lies inside of it.
+        let reaches_out = |part: &&Part| match &part.shape {
+            Shape::Polygon { corners } => corners.iter().any(|c| belt.depth(*c) < 0.0),
+            _ => false,
+        };
+        let belly = self.parts.iter().filter(reaches_out).cloned();
+        let shape = Shape::Hull { discs };
+        let belt = Part {
+            kind: BodyKind::Belt,
+            shape,
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+        };
+        Self {
+            parts: std::iter::once(belt).chain(belly).collect(),
+            drives: 1,
+            motors: 1,
+            drive_mass: self.drive_mass * self.drives as f64,
+            drive_force: self.drive_force * self.motors as f64,
+            pushes_chassis: false,
+            ..self.clone()
+        }
+    }
+
+    /// The taut belts round the circumscribed and the root circles of the track's bodies, as points
+    /// of the chassis frame, counter-clockwise; an arc is cut every `turn` [rad].
+    pub fn envelopes(&self, turn: f64) -> [Vec<Vector>; 2] {
+        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self
+            .parts
+            .iter()
+            .flat_map(|part| part.discs().collect::<Vec<_>>())
+            .unzip();
+        [tips, roots].map(|discs| {
+            let mut points = Envelope::new(&discs).polyline(turn);
+            points.reverse();
+            points
+        })
+    }
+
     /// [m] Farthest point of any part from the centre of mass.
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
@@ -168,24 +210,16 @@ impl Part {
             (disc, disc)
         };
         let discs = match &self.shape {
-            Shape::Disc { center, radius } => [Some(round(*center, *radius)), None],
-            Shape::Hull {
-                rear,
-                rear_radius,
-                front,
-                front_radius,
-            } => [
-                Some(round(*rear, *rear_radius)),
-                Some(round(*front, *front_radius)),
-            ],
+            Shape::Disc { center, radius } => vec![round(*center, *radius)],
+            Shape::Hull { discs } => discs.iter().map(|d| (*d, *d)).collect(),
             Shape::Gear { center, gear } => {
                 let (tip, _) = round(*center, gear.radius);
                 let (root, _) = round(*center, gear.root_radius);
-                [Some((tip, root)), None]
+                vec![(tip, root)]
             }
-            Shape::Polygon { .. } => [None, None],
+            Shape::Polygon { .. } => Vec::new(),
         };
-        discs.into_iter().flatten()
+        discs.into_iter()
     }
 
     /// A disc round it: centre and radius [m].
@@ -249,10 +283,13 @@ pub(crate) fn start_pose(
         discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
         match &part.shape {
             Shape::Disc { .. } => {}
-            Shape::Hull { .. } => {
-                if let [rear, front] = discs[discs.len() - 2..] {
-                    segments.push(outline::lower_tangent(rear, front));
-                }
+            Shape::Hull { discs: round } => {
+                let placed = &discs[discs.len() - round.len()..];
+                segments.extend(
+                    placed
+                        .windows(2)
+                        .map(|pair| outline::lower_tangent(pair[0], pair[1])),
+                );
             }
             Shape::Gear { center, gear } => {
                 let start = -scenario.start.track_phase / gear.radius;

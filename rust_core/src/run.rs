@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::events::{Event, EventKind};
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
-use crate::simulation::Simulation;
+use crate::simulation::{Counterfactual, Simulation};
 use crate::terrain::Edge;
 use crate::trace::{ContactTable, Record, Recorder, Trace};
 
@@ -123,31 +123,98 @@ pub(crate) fn simulate_until(
     record: Record,
     cancel: &AtomicBool,
 ) -> Result<Run, Error> {
+    let begin = Instant::now();
+    let mut simulation = Simulation::new(scenario)?;
+    advance(
+        &mut simulation,
+        scenario.step_count(),
+        record,
+        cancel,
+        begin,
+    )
+}
+
+/// Simulates `scenario` up to the time `at` [s], then goes on as `variant`, for its whole duration.
+///
+/// # Errors
+/// As [`simulate`], for both, and [`Error::Interrupted`] once `cancel` is set.
+pub fn branch(
+    scenario: &Scenario,
+    at: f64,
+    variant: &Scenario,
+    record: Record,
+    cancel: &AtomicBool,
+) -> Result<Run, Error> {
+    let begin = Instant::now();
+    let trunk = replay(scenario, at, cancel)?;
+    let mut simulation = trunk.branch(variant)?;
+    let last = simulation.steps() + variant.step_count();
+    advance(&mut simulation, last, record, cancel, begin)
+}
+
+/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there.
+///
+/// # Errors
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is set.
+pub fn counterfactual(
+    scenario: &Scenario,
+    at: f64,
+    cancel: &AtomicBool,
+) -> Result<Counterfactual, Error> {
+    replay(scenario, at, cancel)?.counterfactual()
+}
+
+/// The simulation of a scenario at a time [s].
+fn replay(scenario: &Scenario, at: f64, cancel: &AtomicBool) -> Result<Simulation, Error> {
+    let mut simulation = Simulation::new(scenario)?;
+    let steps = (at / simulation.time_step()).round() as u64;
+    while simulation.steps() < steps {
+        simulation.step()?;
+        check(&simulation, cancel)?;
+    }
+    Ok(simulation)
+}
+
+/// Looks now and then whether the caller wants to stop.
+fn check(simulation: &Simulation, cancel: &AtomicBool) -> Result<(), Error> {
     /// A step takes a few microseconds: a request to stop is seen within milliseconds.
     const STEPS_BETWEEN_CHECKS: u64 = 1024;
 
-    let begin = Instant::now();
-    let mut simulation = Simulation::new(scenario)?;
+    let is_due = simulation.steps().is_multiple_of(STEPS_BETWEEN_CHECKS);
+    if is_due && cancel.load(Ordering::Relaxed) {
+        Err(Error::Interrupted)
+    } else {
+        Ok(())
+    }
+}
+
+/// Simulates on to the step `last` or a certain outcome.
+fn advance(
+    simulation: &mut Simulation,
+    last: u64,
+    record: Record,
+    cancel: &AtomicBool,
+    begin: Instant,
+) -> Result<Run, Error> {
     let start = simulation.reading();
-    let mut recorder = record.history.then(|| Recorder::new(&simulation, record));
-    let steps = scenario.step_count();
-    while simulation.steps() < steps && !simulation.is_over() {
+    let mut recorder = record.history.then(|| Recorder::new(simulation, record));
+    while simulation.steps() < last && !simulation.is_over() {
         simulation.step()?;
         if let Some(recorder) = &mut recorder {
-            recorder.step(&simulation);
+            recorder.step(simulation);
         }
-        if simulation.steps().is_multiple_of(STEPS_BETWEEN_CHECKS) && cancel.load(Ordering::Relaxed)
-        {
-            return Err(Error::Interrupted);
-        }
+        check(simulation, cancel)?;
     }
     if let Some(recorder) = &mut recorder {
-        recorder.finish(&simulation);
+        recorder.finish(simulation);
     }
     let (trace, contacts) = recorder.map(|r| (r.trace, r.contacts)).unwrap_or_default();
     let end = simulation.reading();
     let events = simulation.events();
-    let diagnosis = simulation.diagnosis();
+    let mut diagnosis = simulation.diagnosis();
+    if let Some(diagnosis) = diagnosis.as_mut().filter(|_| record.counterfactual) {
+        diagnosis.counterfactual = Some(simulation.counterfactual()?);
+    }
     let outcome = diagnosis
         .as_ref()
         .map_or_else(|| simulation.outcome_now(), |d| d.outcome);

@@ -10,6 +10,8 @@ pub struct Record {
     pub sample_interval: f64,
     /// Keep the trace and the contact table; without it only outcome, metrics and events.
     pub history: bool,
+    /// Try a closed belt at the stop that a run ends in.
+    pub counterfactual: bool,
 }
 
 impl Default for Record {
@@ -17,6 +19,7 @@ impl Default for Record {
         Self {
             sample_interval: 0.01,
             history: true,
+            counterfactual: false,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Contacts between the robot's parts and the ground.
 
+mod dents;
+mod hull;
 mod intrusion;
 mod reading;
 mod reference;
@@ -7,6 +9,7 @@ mod reference;
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use dents::Dents;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use reading::Readings;

@@ -1,4 +1,4 @@
-//! The reference contact: parry's own queries on one oriented polyline a lane.
+//! The reference contact: parry's own queries on one oriented polyline a lane, and our own of hulls.
 //!
 //! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
 //! kept from step to step, so a contact is always of this pose.
@@ -10,14 +10,10 @@ use rapier2d_f64::parry::query::{
 use rapier2d_f64::parry::shape::{Polyline, PolylineFlags};
 use rapier2d_f64::prelude::SharedShape;
 
+use super::hull::HullContact;
 use super::{Contact, without_redundant};
 use crate::robot::{Part, Shape, TurningWheel};
 use crate::terrain::Profile;
-
-/// [m] A contact this close to a vertex touches the edge, not the face beside it.
-const AT_VERTEX: f64 = 1e-7;
-/// [rad] Turn of one facet of the larger end of a tapering belt: its chord lies below 1 um deep.
-const FACET_TURN: f64 = 0.01;
 
 /// Shapes of one robot and one ground.
 pub(crate) struct ReferenceContact {
@@ -32,6 +28,8 @@ struct Body {
     part: usize,
     /// [m] A disc round it, in the chassis frame.
     bound: (Vector, f64),
+    /// Round parts that are more than a disc.
+    hull: Option<HullContact>,
     solids: Vec<Solid>,
 }
 
@@ -65,6 +63,7 @@ impl ReferenceContact {
                 .map(|(i, part)| Body {
                     part: i,
                     bound: part.bound(),
+                    hull: HullContact::of(i, part),
                     solids: solids_of(part),
                 })
                 .collect(),
@@ -90,6 +89,9 @@ impl ReferenceContact {
             let center = pose.transform_point(center);
             if self.profile.is_clear_of(center, radius + prediction) {
                 continue;
+            }
+            if let Some(hull) = &self.bodies[i].hull {
+                hull.find(&self.profile, pose, prediction, contacts);
             }
             for k in 0..self.bodies[i].solids.len() {
                 let place = pose * self.bodies[i].solids[k].at(drives);
@@ -127,25 +129,12 @@ impl ReferenceContact {
                 contacts.push(Contact {
                     part,
                     facet,
-                    edge: self.edge_at(facet, point.local_p1),
+                    edge: self.profile.edge_at(facet, point.local_p1),
                     point: 0.5 * (point.local_p1 + on_solid),
                     normal: manifold.local_n1,
                     distance: point.dist,
                 });
             }
-        }
-    }
-
-    fn edge_at(&self, facet: usize, point: Vector) -> i32 {
-        let (points, edges) = (&self.profile.points, &self.profile.edge_of_point);
-        let (left, right) = (edges[facet], edges[facet + 1]);
-        let on_arc = left == right && left >= 0;
-        if on_arc || (point - points[facet]).length() < AT_VERTEX {
-            left
-        } else if (point - points[facet + 1]).length() < AT_VERTEX {
-            right
-        } else {
-            -1
         }
     }
 }
@@ -162,15 +151,7 @@ fn solids_of(part: &Part) -> Vec<Solid> {
         Shape::Disc { center, radius } => {
             on_chassis(SharedShape::ball(*radius), Pose::from_translation(*center))
         }
-        Shape::Hull {
-            rear,
-            rear_radius,
-            front,
-            front_radius,
-        } => on_chassis(
-            hull(*rear, *rear_radius, *front, *front_radius),
-            Pose::identity(),
-        ),
+        Shape::Hull { .. } => Vec::new(),
         Shape::Gear { center, gear } => {
             let place = Pose::from_translation(*center);
             let root = solid(SharedShape::ball(gear.root_radius), place, None);
@@ -187,29 +168,4 @@ fn solids_of(part: &Part) -> Vec<Solid> {
 
 fn polygon(corners: Vec<Vector>) -> SharedShape {
     SharedShape::convex_polyline(corners).expect("the corners are those of a convex polygon")
-}
-
-/// The hull of two discs is the hull of a disc and a point, grown by the smaller radius all round.
-fn hull(rear: Vector, rear_radius: f64, front: Vector, front_radius: f64) -> SharedShape {
-    let border = rear_radius.min(front_radius);
-    let extra = (rear_radius - front_radius).abs();
-    if extra == 0.0 {
-        return SharedShape::capsule(rear, front, border);
-    }
-    let (big, small) = if rear_radius > front_radius {
-        (rear, front)
-    } else {
-        (front, rear)
-    };
-    let facets = (std::f64::consts::TAU / FACET_TURN).ceil() as usize;
-    let mut points: Vec<Vector> = (0..facets)
-        .map(|i| {
-            big + Rotation::new(std::f64::consts::TAU * i as f64 / facets as f64)
-                * Vector::X
-                * extra
-        })
-        .collect();
-    points.push(small);
-    SharedShape::round_convex_hull(&points, border)
-        .expect("a disc and a point outside it span a hull")
 }

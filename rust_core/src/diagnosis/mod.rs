@@ -20,6 +20,7 @@ use crate::outcome::Outcome;
 use crate::plane::{left_of, right_of};
 use crate::robot::{BodyKind, Model};
 use crate::scenario::SeizureCriteria;
+use crate::simulation::Counterfactual;
 use crate::terrain::Profile;
 use mechanism::Facts;
 use signals::Bearing;
@@ -68,6 +69,8 @@ pub struct Diagnosis {
     pub escape_force: Option<f64>,
     /// [N] The same if every contact could hold within its friction cone.
     pub free_escape_force: Option<f64>,
+    /// How a closed belt fares from here, if that was asked for.
+    pub counterfactual: Option<Counterfactual>,
 }
 
 /// A connected piece of ground inside the track, with what bears on it.
@@ -200,6 +203,7 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
         certified,
         escape_force: escape(false),
         free_escape_force: escape(true),
+        counterfactual: None,
     }
 }
 

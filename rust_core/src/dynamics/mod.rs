@@ -13,6 +13,7 @@ mod state;
 mod tests;
 
 use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
@@ -53,6 +54,16 @@ pub(crate) struct Dynamics {
     push_impulse: f64,
     motor_impulses: Vec<f64>,
     loaded: Vec<LoadedContact>,
+    /// [N] Push of the surroundings at the centre of mass.
+    pub outer_force: Vector,
+}
+
+/// What a step hands to the next besides the state: impulses to start from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Impulses {
+    push: f64,
+    motors: Vec<f64>,
+    contacts: Vec<LoadedContact>,
 }
 
 /// What a unit impulse does.
@@ -89,7 +100,24 @@ impl Dynamics {
             push_impulse: 0.0,
             motor_impulses,
             loaded: Vec::new(),
+            outer_force: Vector::ZERO,
         }
+    }
+
+    /// The impulses that the next step starts from.
+    pub(crate) fn impulses(&self) -> Impulses {
+        Impulses {
+            push: self.push_impulse,
+            motors: self.motor_impulses.clone(),
+            contacts: self.loaded.clone(),
+        }
+    }
+
+    /// Starts from impulses of the same model.
+    pub(crate) fn start_from(&mut self, impulses: Impulses) {
+        self.push_impulse = impulses.push;
+        self.motor_impulses = impulses.motors;
+        self.loaded = impulses.contacts;
     }
 
     /// The contacts of the last step with their forces.
@@ -152,6 +180,7 @@ impl Dynamics {
             self.solver.contact_damping_ratio,
             h,
         );
+        state.velocity += self.outer_force * (h * self.inverse.mass);
         state.velocity.y -= self.gravity * h;
         self.apply_last_impulses(state);
         self.solve(state, set_point, h, Some(soft));

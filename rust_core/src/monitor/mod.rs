@@ -65,11 +65,12 @@ pub(crate) struct Seen {
     pub shaking: Shaking,
 }
 
-impl Default for Seen {
-    fn default() -> Self {
+impl Seen {
+    /// Nothing yet, at a time [s].
+    pub(crate) fn from(time: f64) -> Self {
         Self {
-            looks: 0,
-            last_time: 0.0,
+            looks: (time / LOOK).ceil() as u64,
+            last_time: time,
             progress: Progress::default(),
             signals: Signals::default(),
             intrusions: IntrusionWatch::default(),
@@ -114,7 +115,7 @@ impl Monitor {
                 .parts
                 .iter()
                 .any(|part| matches!(part.shape, Shape::Gear { .. })),
-            seen: Seen::default(),
+            seen: Seen::from(0.0),
         }
     }
 

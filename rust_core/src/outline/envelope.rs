@@ -140,6 +140,34 @@ impl Envelope {
         }
     }
 
+    /// Those of the discs that have an arc on the hull.
+    pub(crate) fn discs_outside(&self, discs: &[Disc]) -> Vec<Disc> {
+        let mut outside: Vec<usize> = self
+            .stretches
+            .iter()
+            .filter_map(|stretch| match stretch.shape {
+                Form::Arc { disc, .. } => Some(disc),
+                Form::Run { .. } => None,
+            })
+            .collect();
+        outside.sort_unstable();
+        outside.dedup();
+        outside.into_iter().map(|i| discs[i]).collect()
+    }
+
+    /// Points along the hull, an arc cut every `turn` [rad]; the last is not the first again.
+    pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
+        let cut = |stretch: &Stretch| {
+            let cuts = match stretch.shape {
+                Form::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0),
+                Form::Run { .. } => 1.0,
+            };
+            let (stretch, cuts) = (*stretch, cuts as usize);
+            (0..cuts).map(move |i| stretch.point_at(stretch.length * i as f64 / cuts as f64))
+        };
+        self.stretches.iter().flat_map(cut).collect()
+    }
+
     /// The outward normal of the hull where it lies nearest to a point.
     pub(crate) fn outward_at(&self, point: Vector) -> Vector {
         match self.stretches[self.nearest(point).stretch].shape {

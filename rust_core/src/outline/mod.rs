@@ -18,7 +18,7 @@ use crate::scenario::TrackOutline;
 
 /// A disc in the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Disc {
+pub struct Disc {
     /// [m] Centre.
     pub center: Vector,
     /// [m] Radius.

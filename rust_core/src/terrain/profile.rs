@@ -9,6 +9,9 @@ const FACET_TURN: f64 = 0.0175;
 /// [m] Points closer than this to the line of their neighbours do not make an edge.
 pub(super) const COLLINEAR: f64 = 1e-9;
 
+/// [m] A contact this close to a vertex touches the edge, not the face beside it.
+const AT_VERTEX: f64 = 1e-7;
+
 /// One lane: a polyline from left to right with the rounded edges cut into facets.
 #[derive(Clone, Debug)]
 pub struct Profile {
@@ -187,6 +190,19 @@ impl Profile {
         let (way, length) = (b - a, (b - a).length());
         let share = (point - a).dot(way) / (length * length);
         (facet as f64 + share.clamp(0.0, 1.0), length)
+    }
+
+    /// The edge that a point on a facet touches, or -1 on a face.
+    pub(crate) fn edge_at(&self, facet: usize, point: Vector) -> i32 {
+        let (left, right) = (self.edge_of_point[facet], self.edge_of_point[facet + 1]);
+        let on_arc = left == right && left >= 0;
+        if on_arc || (point - self.points[facet]).length() < AT_VERTEX {
+            left
+        } else if (point - self.points[facet + 1]).length() < AT_VERTEX {
+            right
+        } else {
+            -1
+        }
     }
 
     /// [rad] Angle of the ground at x; of the right-hand facet at a corner.

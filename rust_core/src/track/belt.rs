@@ -23,12 +23,8 @@ pub(super) fn hull(
     drive: Option<usize>,
     friction_limit: f64,
 ) -> Part {
-    let [rear, front] = outline::end_discs(&robot.outline);
     let shape = Shape::Hull {
-        rear: rear.center,
-        rear_radius: rear.radius,
-        front: front.center,
-        front_radius: front.radius,
+        discs: outline::end_discs(&robot.outline).to_vec(),
     };
     Part {
         kind,

@@ -1,6 +1,6 @@
 //! Who climbs, and where it stops, in the engine's own dynamics.
 
-use crawler2d_core::{Outcome, TorqueSharing, Track, Wheel};
+use crawler2d_core::{TorqueSharing, Track, Wheel};
 
 use crate::common::*;
 use crate::engine_world::{EngineSettings, EngineWorld};

@@ -22,3 +22,5 @@ mod repeat;
 mod robustness;
 mod seizure;
 mod slopes;
+mod snapshots;
+mod stops;

@@ -2,7 +2,7 @@
 //! statics predicts, with the forces it predicts.
 
 use crate::common::*;
-use crawler2d_core::{Outcome, Run, Scenario};
+use crawler2d_core::{Run, Scenario};
 
 /// A row of equal, turning wheels before a step; lengths [m].
 #[derive(Clone, Copy, Debug)]

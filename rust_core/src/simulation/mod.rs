@@ -1,10 +1,17 @@
 //! One robot on one ground, step by step.
 
-use crate::contact::{Contact, Intrusion, LoadedContact, ReferenceContact};
+mod branch;
+mod snapshot;
+
+use rapier2d_f64::math::Vector;
+
+pub use branch::Counterfactual;
+
+use crate::contact::{Contact, Dents, Intrusion, LoadedContact, ReferenceContact};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
 use crate::dynamics::{DriveState, Dynamics, State};
-use crate::error::{Error, SimulationError};
+use crate::error::{Error, ScenarioError, SimulationError};
 use crate::events::Event;
 use crate::monitor::Monitor;
 use crate::outcome::Outcome;
@@ -24,6 +31,7 @@ pub struct Simulation {
     step: u64,
     command: f64,
     set_point: f64,
+    dents: Dents,
     contacts: Vec<Contact>,
     /// [m] Where the drives are when contacts are looked for.
     drives_then: Vec<f64>,
@@ -48,13 +56,18 @@ impl Simulation {
     pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
         let model = Model::new(&scenario.robot)?;
         let position = robot::start_pose(scenario, &model, &ground)?;
-        let contact = ReferenceContact::new(&model.parts, &ground.profile);
         let state = State::at_rest(
             &model,
             position,
             scenario.start.angle,
             scenario.start.track_phase,
         );
+        Ok(Self::of(scenario, ground, model, state))
+    }
+
+    /// A robot in a state on a ground.
+    pub(crate) fn of(scenario: &Scenario, ground: Ground, model: Model, state: State) -> Self {
+        let contact = ReferenceContact::new(&model.parts, &ground.profile);
         let reach = model.reach();
         let monitor = Monitor::new(scenario, &ground, &model);
         let dynamics = Dynamics::new(
@@ -63,7 +76,7 @@ impl Simulation {
             scenario.gravity,
             scenario.solver.clone(),
         );
-        Ok(Self {
+        Self {
             command: scenario.drive.speed,
             scenario: scenario.clone(),
             ground,
@@ -73,10 +86,11 @@ impl Simulation {
             state,
             step: 0,
             set_point: 0.0,
+            dents: Dents::default(),
             contacts: Vec::new(),
             drives_then: Vec::new(),
             reach,
-        })
+        }
     }
 
     /// Advances by one time step.
@@ -114,11 +128,24 @@ impl Simulation {
             .extend(self.state.drive_positions_after(half, model));
         self.contact
             .find(middle, &self.drives_then, prediction, &mut self.contacts);
+        self.dents.forgive(&mut self.contacts);
+    }
+
+    /// Contacts of this very instant.
+    fn contacts_now(&mut self) -> Vec<Contact> {
+        let mut contacts = Vec::new();
+        let pose = self.state.pose(self.dynamics.model());
+        let drives: Vec<f64> = self.state.drives.iter().map(|d| d.position).collect();
+        let prediction = self.scenario.solver.prediction_distance;
+        self.contact.find(pose, &drives, prediction, &mut contacts);
+        contacts
     }
 
     fn advance(&mut self) -> Result<(), SimulationError> {
         self.dynamics
-            .advance(&mut self.state, &self.contacts, self.set_point, self.step)
+            .advance(&mut self.state, &self.contacts, self.set_point, self.step)?;
+        self.dents.heal(self.dynamics.loaded());
+        Ok(())
     }
 
     fn observe(&mut self) {
@@ -139,6 +166,19 @@ impl Simulation {
         next.drive.speed = speed;
         next.validate()?;
         self.command = speed;
+        Ok(())
+    }
+
+    /// Pushes at the centre of mass with a force [N] along x, from now on.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the force is not finite or beyond 1e6 N.
+    pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
+        if !(-1e6..=1e6).contains(&force) {
+            let rule = "must be >= -1e6 N and <= 1e6 N";
+            return Err(ScenarioError::new("push", force, rule).into());
+        }
+        self.dynamics.outer_force = Vector::new(force, 0.0);
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Gives the compiled core an id of the sources that it was built from.
+//! Gives the core an id of the sources that it was built from.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -6,12 +6,11 @@ use std::{env, fs};
 use sha2::{Digest, Sha256};
 
 fn main() {
-    let root = Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("..");
-    let mut files = vec![root.join("Cargo.lock")];
-    for folder in ["rust_core/src", "python/src"] {
-        println!("cargo::rerun-if-changed=../{folder}");
-        collect(&root.join(folder), &mut files);
-    }
+    let root = env::var("CARGO_MANIFEST_DIR").expect("cargo sets it");
+    let root = Path::new(&root);
+    let mut files = vec![root.join("../Cargo.lock")];
+    collect(&root.join("src"), &mut files);
+    println!("cargo::rerun-if-changed=src");
     println!("cargo::rerun-if-changed=../Cargo.lock");
     files.sort();
     let mut digest = Sha256::new();

@@ -1,0 +1,57 @@
+"""The same instant of a run with something changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from crawler2d import _core
+from crawler2d._arrays import real_number
+from crawler2d._recording import Recording, recording
+from crawler2d.diagnosis import Counterfactual
+from crawler2d.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from crawler2d.run import Run
+    from crawler2d.scenario import Scenario
+
+__all__ = ["branch_scenario", "branch_time", "simulate_branch", "try_belt"]
+
+
+def branch_time(run: Run, at: float | str) -> float:
+    """[s] The instant that `at` names: a time of the run, or the stop that it ended in."""
+    if run.trunk is not None:
+        raise ScenarioError("run", run, "must have begun at its start; branch the run it came from")
+    if at == "stop":
+        if run.diagnosis is None:
+            raise ScenarioError("at", at, "must be a time: the run did not end in a stop")
+        return run.diagnosis.time
+    time = real_number(at, "at")
+    end = run.metrics["time"] if run.error is None else 0.0
+    if not 0.0 <= time <= end:
+        raise ScenarioError("at", at, f'must be "stop" or a time from 0 to {end} s')
+    return time
+
+
+def branch_scenario(run: Run, changes: dict[str, Any]) -> Scenario:
+    """Change what is given of a run's scenario."""
+    paths = {
+        "track": "robot.track",
+        "friction": "terrain.friction",
+        "drive": "drive",
+        "duration": "duration",
+    }
+    given = {paths[name]: value for name, value in changes.items() if value is not None}
+    return run.scenario.replace(given)
+
+
+def simulate_branch(
+    run: Run, time: float, variant: Scenario, record: Recording, sample_interval: float
+) -> dict[str, Any]:
+    """Repeat the run up to a time, and go on from there as another scenario."""
+    recorded = recording(sample_interval, record)
+    return _core.branch(run.scenario.to_json(), time, variant.to_json(), *recorded)
+
+
+def try_belt(run: Run, time: float) -> Counterfactual:
+    """Repeat the run up to a time, and try a closed belt there."""
+    return Counterfactual.from_core(_core.counterfactual(run.scenario.to_json(), time))

@@ -1,0 +1,85 @@
+// From metres to pixels: which part of the ground is seen, and how large.
+
+class Camera {
+  constructor(extent, robotLength) {
+    [this.left, this.right, this.bottom, this.top] = extent;
+    this.robotLength = robotLength;
+    this.width = this.height = 1;
+    this.scale = 1; // pixels a metre
+    this.x = this.y = 0; // what is in the middle, from the robot where it is followed
+    this.follows = this.right - this.left > 5 * robotLength;
+    this.touched = false;
+  }
+
+  resize(width, height) {
+    this.width = width;
+    this.height = height;
+    if (!this.touched) this.reset();
+  }
+
+  reset() {
+    this.touched = false;
+    if (this.follows) {
+      this.scale = Math.min(this.width / (2.4 * this.robotLength), this.height / (1.3 * this.robotLength));
+      // More of what is ahead than behind, more sky than ground.
+      this.x = 0.15 * this.robotLength;
+      this.y = 0.12 * this.robotLength;
+      return;
+    }
+    const wide = this.right - this.left;
+    const high = this.top - this.bottom;
+    this.scale = Math.min(this.width / wide, this.height / high);
+    this.x = (this.left + this.right) / 2;
+    this.y = (this.top + this.bottom) / 2;
+  }
+
+  follow(on, robot) {
+    if (on === this.follows) return;
+    this.follows = on;
+    if (on) this.reset();
+    else {
+      this.x += robot.x;
+      this.y += robot.y;
+      this.touched = true;
+    }
+  }
+
+  // Where the middle is, with the robot where it is.
+  look(robot) {
+    this.middleX = this.x + (this.follows ? robot.x : 0);
+    this.middleY = this.y + (this.follows ? robot.y : 0);
+  }
+
+  screen(x, y) {
+    return [
+      this.width / 2 + (x - this.middleX) * this.scale,
+      this.height / 2 - (y - this.middleY) * this.scale,
+    ];
+  }
+
+  drag(dx, dy) {
+    this.x -= dx / this.scale;
+    this.y += dy / this.scale;
+    this.touched = true;
+  }
+
+  // Zooms so that what is under a pixel stays there.
+  zoom(factor, px = this.width / 2, py = this.height / 2) {
+    const widest = 4 * Math.max(this.right - this.left, 2 * this.robotLength);
+    const least = this.width / widest;
+    const most = this.width / (0.01 * this.robotLength);
+    const scale = Math.min(most, Math.max(least, this.scale * factor));
+    const shift = 1 / this.scale - 1 / scale;
+    this.x += (px - this.width / 2) * shift;
+    this.y -= (py - this.height / 2) * shift;
+    this.scale = scale;
+    this.touched = true;
+  }
+
+  // Lets a context draw in metres.
+  apply(ctx, ratio) {
+    const s = this.scale * ratio;
+    const [x, y] = this.screen(0, 0);
+    ctx.setTransform(s, 0, 0, -s, x * ratio, y * ratio);
+  }
+}

@@ -1,0 +1,72 @@
+// What both pictures are marked with, in pixels: arrows, diamonds, labels, and round numbers.
+
+// [px] Length of the arrow of a usual large force and speed, and of the longest that is drawn.
+const FORCE_LENGTH = 110;
+const SPEED_LENGTH = 42;
+const LONGEST = 1.6;
+const FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, Arial, sans-serif";
+
+// The round number at or below: 1, 2 or 5 times a power of ten.
+function nice(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const first = value / power;
+  return (first >= 5 ? 5 : first >= 2 ? 2 : 1) * power;
+}
+
+function diamond(ctx, x, y, size, fill, stroke) {
+  ctx.beginPath();
+  ctx.moveTo(x, y - size);
+  ctx.lineTo(x + size, y);
+  ctx.lineTo(x, y + size);
+  ctx.lineTo(x - size, y);
+  ctx.closePath();
+  ctx.fillStyle = fill;
+  ctx.strokeStyle = stroke;
+  ctx.lineWidth = 1.6;
+  ctx.fill();
+  ctx.stroke();
+}
+
+// One that is too long is cut, and has two heads. y of a vector points up.
+function arrow(ctx, x, y, vx, vy, usual, color, halo) {
+  const full = Math.hypot(vx, vy);
+  if (!(full > 0.02 * usual)) return;
+  const length = Math.min(full, LONGEST * usual);
+  const head = Math.min(9, length);
+  ctx.save();
+  ctx.translate(x, y);
+  ctx.rotate(Math.atan2(-vy, vx));
+  const shape = new Path2D();
+  shape.moveTo(0, 0);
+  shape.lineTo(Math.max(0, length - head), 0);
+  const heads = new Path2D();
+  for (const tip of length < full ? [length, length + 8] : [length]) {
+    heads.moveTo(tip, 0);
+    heads.lineTo(tip - head, 0.42 * head);
+    heads.lineTo(tip - head, -0.42 * head);
+    heads.closePath();
+  }
+  ctx.lineJoin = ctx.lineCap = "round";
+  ctx.strokeStyle = halo;
+  ctx.lineWidth = 5;
+  ctx.stroke(shape);
+  ctx.lineWidth = 3;
+  ctx.stroke(heads);
+  ctx.strokeStyle = ctx.fillStyle = color;
+  ctx.lineWidth = 2.4;
+  ctx.lineCap = "butt";
+  ctx.stroke(shape);
+  ctx.fill(heads);
+  ctx.restore();
+}
+
+function label(ctx, text, x, y, color, halo, width) {
+  ctx.font = `600 ${FONT}`;
+  const left = Math.max(4, Math.min(x, width - ctx.measureText(text).width - 6));
+  ctx.lineJoin = "round";
+  ctx.lineWidth = 4;
+  ctx.strokeStyle = halo;
+  ctx.strokeText(text, left, y);
+  ctx.fillStyle = color;
+  ctx.fillText(text, left, y);
+}

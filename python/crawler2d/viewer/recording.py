@@ -1,0 +1,188 @@
+"""From a run to what its page draws: plain data, compact and fit for JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.plotting import extent, inset, taut_belt
+from crawler2d.viewer.packed import packed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.run import Run
+
+__all__ = ["MOST_FRAMES", "recording"]
+
+MOST_FRAMES = 3000
+"""Samples that a page holds at most, give or take the last; longer runs are thinned."""
+
+# Finer than a pixel at any sensible zoom, wide enough for 16 bits in a usual run.
+_LENGTH, _SHAPE, _ANGLE, _TIME = 1e-5, 5e-6, 1e-4, 1e-4
+_SPEED = 1e-4
+_WAY = 1e-4
+# The same for arrows, as a share of the usual size, which is drawn some 100 pixels long.
+_ARROW = 1e-2
+# Impacts last one sample; arrows as long as theirs would leave all others unreadable.
+_USUAL = 98.0
+# Lines that coincide enclose slivers of rounding; an intrusion is deeper.
+_SLIVER = 2e-5
+
+
+def recording(run: Run, time: float | None = None) -> dict[str, Any]:
+    """Collect what the page of a run draws.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    time : float, optional
+        [s] Instant to open at; None takes the end where the run stopped, else the beginning.
+
+    Returns
+    -------
+    dict
+        Plain data without non-finite numbers; arrays as of `packed`.
+    """
+    count = run.time.size
+    every = max(1, math.ceil(count / MOST_FRAMES))
+    kept = np.unique(np.append(np.arange(0, count, every), count - 1))
+    if time is None:
+        stops = run.events["end"][run.events["kind"] == "stop"]
+        time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
+    geometry = _core.geometry(run.scenario.to_json())
+    bounds = extent(run, geometry["profile"], geometry)
+    return {
+        "samples": count,
+        "every": every,
+        "first": int(np.abs(run.time[kept] - time).argmin()),
+        "extent": [_number(value) for value in bounds],
+        "frames": _frames(run, kept),
+        "contacts": _contacts(run, kept),
+        "events": _events(run),
+        "ground": _ground(geometry),
+        "robot": _robot(run, geometry),
+    }
+
+
+def _frames(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
+    return {
+        "count": int(kept.size),
+        "drives": int(run.drive_positions.shape[1]),
+        "time": packed(run.time[kept], _TIME),
+        "x": packed(run.position[kept, 0], _LENGTH),
+        "y": packed(run.position[kept, 1], _LENGTH),
+        "angle": packed(run.chassis_angle[kept], _ANGLE),
+        "speed": packed(run.track_speed[kept], _SPEED),
+        "commanded": packed(run.commanded_speed[kept], _SPEED),
+        "ways": packed(run.drive_positions[kept], _WAY),
+    }
+
+
+def _contacts(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
+    """Contacts of the kept samples, as many a frame as `counts` says."""
+    table = run.contacts
+    frames = np.searchsorted(run.time, table["time"])
+    rows = np.flatnonzero(np.isin(frames, kept))
+    normal, friction = table["normal_force"][rows], table["friction_force"][rows]
+    forces = np.hypot(normal, friction)
+    weight = run.scenario.robot.mass * run.scenario.gravity
+    speeds = table["surface_speed"][rows]
+    force, speed = weight, abs(run.scenario.drive.speed)
+    if rows.size:
+        force = max(force, float(np.percentile(forces, _USUAL)))
+        speed = max(speed, float(np.percentile(np.abs(speeds), _USUAL)))
+    counts = np.bincount(frames[rows], minlength=run.time.size)
+    return {
+        "counts": packed(counts[kept], 1.0),
+        "x": packed(table["x"][rows], _LENGTH),
+        "y": packed(table["y"][rows], _LENGTH),
+        "normal": packed(np.arctan2(table["normal_y"], table["normal_x"])[rows], _ANGLE),
+        "normal_force": packed(normal, _ARROW * force),
+        "friction_force": packed(friction, _ARROW * force),
+        "surface_speed": packed(speeds, _ARROW * speed),
+        "usual_force": force,
+        "usual_speed": speed,
+    }
+
+
+def _events(run: Run) -> list[dict[str, Any]]:
+    events = run.events
+    return [
+        {
+            "kind": str(events["kind"][row]),
+            "start": _number(events["start"][row]),
+            "end": _number(events["end"][row]),
+            "edge": int(events["edge"][row]),
+            "bodies": [int(body) for body in events["bodies"][row]],
+        }
+        for row in range(len(events))
+    ]
+
+
+def _ground(geometry: dict[str, Any]) -> dict[str, Any]:
+    profile, edges = geometry["profile"], geometry["edges"]
+    # Rounded edges are marked where they are on the ground, not where they would be sharp.
+    corners = [
+        int(np.hypot(profile[:, 0] - x, profile[:, 1] - y).argmin())
+        for x, y in zip(edges["x"], edges["y"], strict=True)
+    ]
+    return {
+        "profile": packed(profile, _LENGTH / 100.0),
+        "corners": corners,
+        "convex": [bool(angle > 0.0) for angle in edges["angle"]],
+        "goal": _number(geometry["goal"]),
+    }
+
+
+def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
+    """Shapes in the chassis frame, and which drive moves each."""
+    robot = run.scenario.robot
+    circles, gears = geometry["circles"], geometry["gears"]
+    drives = run.drive_positions.shape[1]
+    # One motor turns all wheels, or each has its own; those of free wheels follow the motor's.
+    own = drives - len(circles) if drives >= len(circles) else None
+    wheels = [
+        {
+            "x": _number(x),
+            "y": _number(y),
+            "radius": _number(radius),
+            "drive": 0 if own is None else body + own,
+        }
+        for body, (x, y, radius) in enumerate(circles)
+    ]
+    for wheel, gear in zip(wheels, gears, strict=False):
+        wheel["outline"] = packed(gear["outline"], _SHAPE)
+    hull = bool(geometry["hull"])
+    envelope, root = geometry.get("envelope"), geometry.get("root_envelope")
+    depth = max(run.scenario.criteria.intrusion_depth, _SLIVER)
+    shapes = {
+        "hull": taut_belt(circles) if hull else None,
+        "envelope": None if hull else envelope,
+        "inner": None if hull or envelope is None else inset(envelope, depth),
+        "root": None if hull or not gears else root,
+        "belly": geometry["belly"],
+    }
+    outline = robot.outline
+    return {
+        "wheels": [] if hull else wheels,
+        "ends": wheels if hull else [],
+        "moving": hull and robot.track.kind == "belt",
+        "pitch": outline.grouser_pitch,
+        "length": outline.axle_distance + outline.front_radius + outline.rear_radius,
+        "axles": outline.axle_distance / 2.0,
+        "mass_center": [_number(value) for value in robot.center_of_mass],
+        **{
+            name: None if shape is None or not len(shape) else packed(shape, _SHAPE)
+            for name, shape in shapes.items()
+        },
+    }
+
+
+def _number(value: float) -> float | None:
+    """Take a number as JSON has it: the others are none."""
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,275 @@
+// The side view: ground, goal, path, robot, what is inside its track, and what the ground does to it.
+
+class Scene {
+  constructor(canvas, data, recording) {
+    this.canvas = canvas;
+    this.recording = recording;
+    this.robot = new Robot(data.robot);
+    this.camera = new Camera(data.extent, data.robot.length);
+    this.profile = unpacked(data.ground.profile);
+    this.edges = data.ground.corners.map((corner, i) => ({
+      corner, convex: data.ground.convex[i],
+      x: this.profile[2 * corner], y: this.profile[2 * corner + 1],
+    }));
+    this.goal = data.ground.goal;
+    this.layers = { forces: true, speeds: true, envelope: true };
+    this.forceScale = FORCE_LENGTH / (data.contacts.usual_force || 1);
+    this.speedScale = SPEED_LENGTH / (data.contacts.usual_speed || 1);
+    this.surface = outlineOf(this.profile, false);
+    this.route = outlineOf(Float64Array.from({ length: 2 * recording.count }, (_, i) =>
+      (i % 2 ? recording.y : recording.x)[i >> 1]), false);
+  }
+
+  // Whether this run has something to draw.
+  has(what) {
+    if (what === "envelope") return Boolean(this.robot.envelope);
+    const { normal_force: normal, friction_force: friction, surface_speed: speed } =
+      this.recording.contacts;
+    if (what === "contacts") return normal.length > 0;
+    if (what === "cut") {
+      const longest = (scale, values) => values.some((v) => Math.abs(v) * scale > LONGEST);
+      return longest(this.forceScale / FORCE_LENGTH, normal.map((n, i) => Math.hypot(n, friction[i])))
+        || longest(this.speedScale / SPEED_LENGTH, speed);
+    }
+    return this.recording.events.some((event) => event.kind === what);
+  }
+
+  draw(time, colors) {
+    const ctx = this.canvas.getContext("2d");
+    const ratio = this.canvas.width / this.camera.width;
+    const moment = this.recording.at(time);
+    const { camera, robot } = this;
+    camera.look(moment);
+    const pixel = 1 / camera.scale;
+    ctx.save(); // the next picture begins with no style of this one
+    ctx.lineJoin = "round";
+    ctx.setTransform(1, 0, 0, 1, 0, 0);
+    ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.drawGrid(ctx, colors);
+    camera.apply(ctx, ratio);
+    const soil = this.soil();
+    ctx.fillStyle = colors.ground;
+    ctx.fill(soil);
+    ctx.strokeStyle = colors.goal;
+    ctx.globalAlpha = 0.45;
+    ctx.lineWidth = 1.4 * pixel;
+    ctx.stroke(this.route);
+    ctx.globalAlpha = 1;
+
+    const jams = this.recording.eventsAt(time, "intrusion");
+    const jammed = jams.flatMap((e) => (e.bodies[0] === e.bodies[1] ? [] : e.bodies));
+    ctx.save();
+    place(ctx, moment);
+    robot.draw(ctx, colors, pixel, moment, jammed);
+    ctx.restore();
+    ctx.strokeStyle = colors.groundLine;
+    ctx.lineWidth = 1.8 * pixel;
+    ctx.stroke(this.surface);
+    if (this.layers.envelope) this.drawEnvelope(ctx, colors, pixel, moment, soil);
+
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.drawGoal(ctx, colors);
+    this.drawEdges(ctx, colors, moment);
+    if (this.layers.forces || this.layers.speeds) this.drawContacts(ctx, colors, moment);
+    this.drawScale(ctx, colors);
+    ctx.restore();
+  }
+
+  // The ground down to below what is seen.
+  soil() {
+    const { profile, camera } = this;
+    const path = new Path2D(this.surface);
+    let deepest = camera.middleY - camera.height / camera.scale;
+    for (let i = 1; i < profile.length; i += 2) deepest = Math.min(deepest, profile[i] - 1);
+    path.lineTo(profile[profile.length - 2], deepest);
+    path.lineTo(profile[0], deepest);
+    path.closePath();
+    return path;
+  }
+
+  drawEnvelope(ctx, colors, pixel, moment, soil) {
+    const { envelope, inner, root } = this.robot;
+    if (!envelope) return;
+    ctx.save();
+    place(ctx, moment);
+    ctx.strokeStyle = colors.intrusion;
+    ctx.lineWidth = 1.3 * pixel;
+    ctx.setLineDash([6 * pixel, 4 * pixel]);
+    ctx.stroke(envelope.path);
+    if (root) {
+      ctx.lineWidth = pixel;
+      ctx.setLineDash([1.5 * pixel, 3 * pixel]);
+      ctx.stroke(root.path);
+    }
+    ctx.setLineDash([]);
+    // Clips are kept from one transform to the next: the soil is cut by the belt.
+    ctx.clip(inner.path);
+    unplace(ctx, moment);
+    const pieces = new Path2D();
+    for (const edge of this.edges) {
+      if (!edge.convex || !(this.depth(edge, moment) > 0)) continue;
+      const [left, right] = this.piece(edge.corner, moment);
+      const middle = moment.y - 2 * this.robot.length;
+      pieces.rect(left - pixel, middle, right - left + 2 * pixel, 4 * this.robot.length);
+    }
+    ctx.clip(pieces);
+    ctx.fillStyle = colors.intrusionFill;
+    ctx.fill(soil);
+    ctx.strokeStyle = colors.intrusion;
+    ctx.lineWidth = 3 * pixel;
+    ctx.stroke(this.surface);
+    ctx.restore();
+  }
+
+  drawEdges(ctx, colors, moment) {
+    let deepest = null;
+    for (const edge of this.edges) {
+      const [x, y] = this.camera.screen(edge.x, edge.y);
+      const depth = this.layers.envelope ? this.depth(edge, moment) : 0;
+      if (edge.convex && depth > 0 && !(deepest && deepest.depth >= depth)) {
+        deepest = { depth, x, y };
+      }
+      diamond(ctx, x, y, 4.5, edge.convex ? colors.groundLine : colors.ground, colors.groundLine);
+    }
+    if (!deepest) return;
+    diamond(ctx, deepest.x, deepest.y, 6.5, colors.halo, colors.intrusion);
+    const jam = this.recording.eventsAt(moment.time, "intrusion").at(-1);
+    const millimetres = (1e3 * deepest.depth).toFixed(1);
+    const where = jam && jam.bodies.length === 2 && jam.bodies[0] !== jam.bodies[1]
+      ? `between wheels ${Math.min(...jam.bodies)} and ${Math.max(...jam.bodies)}` : "";
+    const below = deepest.y + deepest.depth * this.camera.scale + 26; // clear of what is filled
+    [`${millimetres} mm inside`, where].forEach((text, line) => {
+      const y = below + 15 * line;
+      label(ctx, text, deepest.x + 14, y, colors.intrusion, colors.halo, this.camera.width);
+    });
+  }
+
+  // [m] How deep a point is inside the envelope, 0 where it is not; the envelope is convex.
+  depth(point, moment) {
+    const { envelope, inner } = this.robot;
+    if (!envelope) return 0;
+    const cosine = Math.cos(moment.angle);
+    const sine = Math.sin(moment.angle);
+    const dx = point.x - moment.x;
+    const dy = point.y - moment.y;
+    if (Math.hypot(dx, dy) > 2 * this.robot.length) return 0;
+    const x = cosine * dx + sine * dy;
+    const y = cosine * dy - sine * dx;
+    return clearance(inner.points, x, y) > 0 ? clearance(envelope.points, x, y) : 0;
+  }
+
+  // [m] From where to where the surface is inside the envelope, along x, about a corner that is.
+  piece(corner, moment) {
+    const at = (i) => ({ x: this.profile[2 * i], y: this.profile[2 * i + 1] });
+    const last = this.profile.length / 2 - 1;
+    return [-1, 1].map((step) => {
+      let i = corner;
+      while (i + step >= 0 && i + step <= last && this.depth(at(i + step), moment) > 0) i += step;
+      let inside = at(i);
+      let outside = at(Math.min(last, Math.max(0, i + step)));
+      for (let k = 0; k < 30; k++) {
+        const middle = { x: (inside.x + outside.x) / 2, y: (inside.y + outside.y) / 2 };
+        if (this.depth(middle, moment) > 0) inside = middle;
+        else outside = middle;
+      }
+      return inside.x;
+    });
+  }
+
+  drawContacts(ctx, colors, moment) {
+    for (const c of this.recording.contactsOf(moment.frame)) {
+      const [x, y] = this.camera.screen(c.x, c.y);
+      if (this.layers.speeds) {
+        // Below the ground line, where it hides nothing.
+        const s = this.speedScale;
+        arrow(ctx, x - 8 * c.nx, y + 8 * c.ny, c.vx * s, c.vy * s, SPEED_LENGTH, colors.speed, colors.ground);
+      }
+      if (this.layers.forces) {
+        const s = this.forceScale;
+        arrow(ctx, x, y, c.fx * s, c.fy * s, FORCE_LENGTH, colors.force, colors.halo);
+      }
+    }
+  }
+
+  drawGoal(ctx, colors) {
+    if (this.goal === null) return;
+    const [x] = this.camera.screen(this.goal, 0);
+    if (x < -50 || x > this.camera.width + 50) return;
+    ctx.strokeStyle = colors.goal;
+    ctx.lineWidth = 1.4;
+    ctx.setLineDash([2, 5]);
+    ctx.beginPath();
+    ctx.moveTo(x, 0);
+    ctx.lineTo(x, this.camera.height);
+    ctx.stroke();
+    ctx.setLineDash([]);
+    label(ctx, "goal for the rear end", x + 6, 44, colors.goal, colors.halo, this.camera.width);
+  }
+
+  drawGrid(ctx, colors) {
+    const { camera } = this;
+    const step = nice(80 / camera.scale);
+    ctx.strokeStyle = colors.grid;
+    ctx.lineWidth = 1;
+    ctx.beginPath();
+    const halfWidth = camera.width / 2 / camera.scale;
+    const halfHeight = camera.height / 2 / camera.scale;
+    for (let k = Math.ceil((camera.middleX - halfWidth) / step); k * step < camera.middleX + halfWidth; k++) {
+      const x = Math.round(camera.screen(k * step, 0)[0]) + 0.5;
+      ctx.moveTo(x, 0);
+      ctx.lineTo(x, camera.height);
+    }
+    for (let k = Math.ceil((camera.middleY - halfHeight) / step); k * step < camera.middleY + halfHeight; k++) {
+      const y = Math.round(camera.screen(0, k * step)[1]) + 0.5;
+      ctx.moveTo(0, y);
+      ctx.lineTo(camera.width, y);
+    }
+    ctx.stroke();
+  }
+
+  drawScale(ctx, colors) {
+    const { camera } = this;
+    const length = nice(80 / camera.scale);
+    const pixels = length * camera.scale;
+    const y = camera.height - 12;
+    ctx.strokeStyle = colors.ink;
+    ctx.lineWidth = 1.5;
+    ctx.beginPath();
+    ctx.moveTo(12, y - 5);
+    ctx.lineTo(12, y);
+    ctx.lineTo(12 + pixels, y);
+    ctx.lineTo(12 + pixels, y - 5);
+    ctx.stroke();
+    const text = length < 1 ? `${+(1e3 * length).toPrecision(3)} mm` : `${length} m`;
+    ctx.font = FONT;
+    ctx.textAlign = "center";
+    ctx.fillStyle = colors.ink;
+    ctx.fillText(text, 12 + pixels / 2, y - 7);
+    ctx.textAlign = "left";
+  }
+}
+
+function place(ctx, moment) {
+  ctx.translate(moment.x, moment.y);
+  ctx.rotate(moment.angle);
+}
+
+function unplace(ctx, moment) {
+  ctx.rotate(-moment.angle);
+  ctx.translate(-moment.x, -moment.y);
+}
+
+// [m] Least distance inside the sides of a convex line that runs counter-clockwise; < 0 outside.
+function clearance(points, x, y) {
+  let least = Infinity;
+  for (let i = 0; i < points.length; i += 2) {
+    const j = (i + 2) % points.length;
+    const dx = points[j] - points[i];
+    const dy = points[j + 1] - points[i + 1];
+    const length = Math.hypot(dx, dy);
+    if (length < 1e-6) continue;
+    least = Math.min(least, (dx * (y - points[i + 1]) - dy * (x - points[i])) / length);
+  }
+  return least;
+}

@@ -1,0 +1,134 @@
+//! Ground that was inside a part when a track took another's place, let out without a push.
+//!
+//! The part is dented there: the overlap that it begins with is no penetration. It may not grow, and
+//! heals as the robot's own motion lets the ground out, so it never gives the robot any energy.
+
+use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use super::{Contact, LoadedContact};
+
+/// [m] A dent moves less than this in a step.
+const SAME_PLACE: f64 = 0.01;
+
+/// The dents that are left.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Dents {
+    dents: Vec<Dent>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Dent {
+    part: usize,
+    point: Vector,
+    depth: f64,
+}
+
+impl Dents {
+    /// Dents as deep as these contacts overlap.
+    pub(crate) fn of(contacts: &[Contact]) -> Self {
+        let overlapping = contacts.iter().filter(|c| c.distance < 0.0);
+        Self {
+            dents: overlapping.map(|c| Dent::of(c, -c.distance)).collect(),
+        }
+    }
+
+    /// Measures gaps from the bottom of the dents.
+    pub(crate) fn forgive(&self, contacts: &mut [Contact]) {
+        for contact in contacts {
+            contact.distance += self.depth_at(contact).unwrap_or(0.0);
+        }
+    }
+
+    /// Lets the dents heal by what the robot has truly moved: these are the contacts after a step.
+    pub(crate) fn heal(&mut self, contacts: &[LoadedContact]) {
+        if self.dents.is_empty() {
+            return;
+        }
+        let left = contacts.iter().filter_map(|l| {
+            let depth = self.depth_at(&l.contact)? - l.contact.distance.max(0.0);
+            (depth > 0.0).then(|| Dent::of(&l.contact, depth))
+        });
+        self.dents = left.collect();
+    }
+
+    /// [m] Depth of the nearest dent, if there is one at the contact.
+    fn depth_at(&self, contact: &Contact) -> Option<f64> {
+        let distance = |dent: &Dent| (dent.point - contact.point).length();
+        self.dents
+            .iter()
+            .filter(|dent| dent.part == contact.part && distance(dent) < SAME_PLACE)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .map(|dent| dent.depth)
+    }
+}
+
+impl Dent {
+    fn of(contact: &Contact, depth: f64) -> Self {
+        Self {
+            part: contact.part,
+            point: contact.point,
+            depth,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(x: f64, distance: f64) -> Contact {
+        Contact {
+            part: 0,
+            facet: 0,
+            edge: 1,
+            point: Vector::new(x, 0.0),
+            normal: Vector::Y,
+            distance,
+        }
+    }
+
+    /// The gap that is left of a contact.
+    fn gap(dents: &Dents, x: f64, distance: f64) -> f64 {
+        let mut contacts = [contact(x, distance)];
+        dents.forgive(&mut contacts);
+        contacts[0].distance
+    }
+
+    /// A step that ends with that distance.
+    fn step(dents: &mut Dents, x: f64, distance: f64) {
+        let contact = contact(x, gap(dents, x, distance));
+        dents.heal(&[LoadedContact {
+            contact,
+            normal_force: 0.0,
+            friction_force: 0.0,
+            surface_speed: 0.0,
+            normal_impulse: 0.0,
+            friction_impulse: 0.0,
+            carried_over: false,
+        }]);
+    }
+
+    #[test]
+    fn a_dent_is_no_penetration_but_may_not_grow() {
+        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
+        assert_eq!(gap(&dents, 0.0, -0.04), 0.0);
+        step(&mut dents, 0.001, -0.05);
+        assert!((gap(&dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_dent_heals_and_stays_healed() {
+        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
+        step(&mut dents, 0.0, -0.03);
+        assert!((gap(&dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
+        step(&mut dents, 0.0, 0.001);
+        assert_eq!(gap(&dents, 0.0, -0.001), -0.001);
+    }
+
+    #[test]
+    fn elsewhere_the_part_is_whole() {
+        let dents = Dents::of(&[contact(0.0, -0.04)]);
+        assert_eq!(gap(&dents, 0.1, -0.02), -0.02);
+    }
+}

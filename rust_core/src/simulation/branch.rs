@@ -1,0 +1,107 @@
+//! The same instant with something changed: another track, friction, command, or a closed belt.
+
+use super::Simulation;
+use crate::contact::Dents;
+use crate::dynamics::{DriveState, State};
+use crate::error::Error;
+use crate::monitor::Seen;
+use crate::outcome::Outcome;
+use crate::robot::Model;
+use crate::scenario::Scenario;
+use crate::terrain::Ground;
+
+/// How a closed belt fares from a stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Counterfactual {
+    /// It got away.
+    pub freed: bool,
+    /// [m] How far it got along the command.
+    pub distance: f64,
+    /// [s] How long it took to get away; infinite if it did not.
+    pub time: f64,
+    /// How it stood in the end.
+    pub outcome: Outcome,
+}
+
+impl Simulation {
+    /// The robot of `variant` in this pose, with these speeds.
+    ///
+    /// What has not changed goes on as it was, with the same bits. Another robot or track takes the
+    /// pose and the speeds over; ground that is inside it is let out without a push. Outcome,
+    /// stops and progress are counted from here.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] with the first broken rule of the variant.
+    pub fn branch(&self, variant: &Scenario) -> Result<Self, Error> {
+        variant.validate()?;
+        let ground = Ground::new(&variant.terrain)?;
+        let model = Model::new(&variant.robot)?;
+        let mut branch = self.with(variant, ground, model);
+        branch.command = variant.drive.speed;
+        if variant.robot == self.scenario.robot {
+            branch.state = self.state.clone();
+            branch.dynamics.start_from(self.dynamics.impulses());
+            branch.dents = self.dents.clone();
+        }
+        Ok(branch)
+    }
+
+    /// What a closed belt of the same envelope, force and friction does in this pose.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`] if the state became non-finite.
+    pub fn counterfactual(&self) -> Result<Counterfactual, Error> {
+        let mut belt = self.with_closed_belt();
+        let criteria = &self.scenario.criteria;
+        let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
+        let start = belt.reading().position.x;
+        let (mut distance, mut time): (f64, f64) = (0.0, f64::INFINITY);
+        while belt.time() - self.time() < criteria.escape_time && !belt.is_over() {
+            belt.step()?;
+            distance = distance.max(direction * (belt.reading().position.x - start));
+            if distance > criteria.escape_distance {
+                time = time.min(belt.time() - self.time());
+            }
+        }
+        Ok(Counterfactual {
+            freed: time.is_finite(),
+            distance,
+            time,
+            outcome: belt.outcome_now(),
+        })
+    }
+
+    /// The same instant with a closed belt round the bodies of the track.
+    pub fn with_closed_belt(&self) -> Self {
+        let model = self.dynamics.model().closed();
+        self.with(&self.scenario, self.ground.clone(), model)
+    }
+
+    /// Another model in this pose, its drives at the mean speed of these.
+    fn with(&self, scenario: &Scenario, ground: Ground, model: Model) -> Self {
+        let now = self.reading();
+        let center =
+            now.position + self.state.pose(self.dynamics.model()).rotation * model.center_of_mass;
+        let drive = DriveState {
+            spin: now.angular_velocity - now.track_speed / model.drive_radius,
+            position: now.track_position,
+            ..DriveState::default()
+        };
+        let state = State {
+            center,
+            angle: now.chassis_angle,
+            velocity: self.state.velocity_at(center),
+            angular_velocity: now.angular_velocity,
+            drives: vec![drive; model.drives],
+        };
+        let mut branch = Self::of(scenario, ground, model, state);
+        branch.step = (self.time() / branch.time_step()).round() as u64;
+        branch.command = self.command;
+        branch.set_point = self.set_point;
+        branch.dynamics.outer_force = self.dynamics.outer_force;
+        branch.monitor.seen = Seen::from(branch.time());
+        let contacts = branch.contacts_now();
+        branch.dents = Dents::of(&contacts);
+        branch
+    }
+}

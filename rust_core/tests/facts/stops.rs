@@ -1,0 +1,248 @@
+//! Why a robot stops: hand-solved cases, and what a closed belt does in its place.
+
+use crawler2d_core::{Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain, simulate};
+
+use crate::common::*;
+
+fn ends_in_a_stop(scenario: &Scenario) -> Simulation {
+    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    while !simulation.is_over() && simulation.steps() < scenario.step_count() {
+        simulation.step().expect("the state stays finite");
+    }
+    simulation
+}
+
+/// [J] Kinetic and potential energy of robot and track.
+fn energy(simulation: &Simulation) -> f64 {
+    let (now, scenario) = (simulation.reading(), simulation.scenario());
+    let robot = &scenario.robot;
+    let (sine, cosine) = libm::sincos(now.chassis_angle);
+    let [x, y] = robot.center_of_mass;
+    let arm = [cosine * x - sine * y, sine * x + cosine * y];
+    let (vx, vy) = (
+        now.velocity.x - now.angular_velocity * arm[1],
+        now.velocity.y + now.angular_velocity * arm[0],
+    );
+    let radius = robot.outline.rear_radius;
+    let circulating = robot.track_mass * radius * radius;
+    let spin = now.angular_velocity - now.track_speed / radius;
+    0.5 * robot.mass * (vx * vx + vy * vy)
+        + 0.5 * (robot.moment_of_inertia - circulating) * now.angular_velocity.powi(2)
+        + 0.5 * circulating * spin * spin
+        + robot.mass * scenario.gravity * (now.position.y + arm[1])
+}
+
+/// Robots that seize on steps and posts, with whatever depth the ground has inside them.
+fn seized(draw: &mut Draw) -> Option<Simulation> {
+    let mut scenario = engineer();
+    let tracks = [
+        line(3),
+        line(4),
+        line(5),
+        line(6),
+        circumferential(24, crawler2d_core::Wheel::Round),
+        hybrid(crawler2d_core::Wheel::Round),
+    ];
+    let i = (draw.unit() * tracks.len() as f64) as usize;
+    scenario.robot.track = tracks[i].clone();
+    scenario.robot.center_of_mass[0] = draw.between(-0.05, 0.03);
+    if draw.unit() < 0.5 {
+        scenario.robot.belly = None;
+    }
+    let (height, friction) = (draw.between(0.04, 0.12), draw.between(0.5, 1.1));
+    scenario.terrain = if draw.unit() < 0.5 {
+        step(height, friction)
+    } else {
+        Terrain::Barrier {
+            height,
+            thickness: draw.between(0.01, 0.05),
+            edge_radius: 0.0,
+            friction,
+        }
+    };
+    scenario.robot.drivetrain.max_deceleration = 1e3;
+    scenario.duration = 10.0;
+    let simulation = ends_in_a_stop(&scenario);
+    (simulation.outcome_now() == Outcome::Seized).then_some(simulation)
+}
+
+#[test]
+fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
+    let seed = 3;
+    let mut draw = Draw(seed);
+    let (mut cases, mut deepest, mut most, mut freed) = (0, 0.0_f64, f64::NEG_INFINITY, 0);
+    while cases < 60 {
+        let Some(stopped) = seized(&mut draw) else {
+            continue;
+        };
+        cases += 1;
+        let depth = stopped.diagnosis().unwrap().intrusion.unwrap().place.depth;
+        deepest = deepest.max(depth);
+        freed += u32::from(stopped.counterfactual().unwrap().freed);
+        // The belt is braked at once, so that the motor can only take energy.
+        let mut belt = stopped.with_closed_belt();
+        belt.set_speed(0.0).unwrap();
+        let (start, weight) = (energy(&belt), 21.2 * G);
+        for _ in 0..2000 {
+            belt.step().unwrap();
+            most = most.max((energy(&belt) - start) / weight);
+        }
+    }
+    println!(
+        "seed {seed}: {cases} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
+         energy for at most {:.4} mm of height; driven, {freed} of them got away",
+        1e3 * deepest,
+        1e3 * most
+    );
+    assert!(deepest > 0.02);
+    // A contact sinks in by up to 0.3 mm when a robot falls on it, and is pushed out again.
+    assert!(most < 3e-4);
+    assert!(freed > 50);
+}
+
+#[test]
+fn cases_of_a_belt_and_of_skids_are_never_seized() {
+    let mut draw = Draw(12);
+    let mut stops = 0;
+    for _ in 0..150 {
+        let mut scenario = engineer();
+        scenario.robot.track =
+            [belt(), force(), force_on_wheels()][(draw.unit() * 2.0) as usize].clone();
+        scenario.terrain = step(draw.between(0.05, 0.6), draw.between(0.2, 1.5));
+        scenario.robot.drivetrain.max_torque = draw.between(0.5, 12.0);
+        scenario.duration = 8.0;
+        let run = summary(&scenario);
+        stops += u32::from(run.outcome.is_stop());
+        assert_ne!(run.outcome, Outcome::Seized, "{scenario:?}");
+    }
+    println!("{stops} stops");
+    assert!(stops > 50);
+}
+
+/// Runs to a stop and says why.
+fn why(scenario: &Scenario) -> (Run, crawler2d_core::Diagnosis) {
+    let run = simulate(scenario, crawler2d_core::Record::summary()).unwrap();
+    let diagnosis = run
+        .diagnosis
+        .clone()
+        .unwrap_or_else(|| panic!("{}", run.outcome));
+    (run, diagnosis)
+}
+
+#[test]
+fn a_wheel_against_a_face_at_the_friction_limit_slips() {
+    // Belt against a wall, friction below that of oracle 2: both contacts slide.
+    let mut scenario = engineer();
+    scenario.terrain = step(0.3, 0.5);
+    scenario.robot.track = line(5);
+    let (_, d) = why(&scenario);
+    assert_eq!(d.outcome, Outcome::Slipping);
+    assert!(d.certified && d.imbalance.unwrap() < 1e-6);
+    assert!((d.sliding_share - 1.0).abs() < 1e-9);
+    // Pushed harder, it climbs: in the end rear wheel and wall alone bear, and both slide. Moments
+    // about the rear contact and forces along x and y give the push.
+    let (mu, g, weight) = (0.5, scenario.robot.center_of_mass[1], 21.2 * G);
+    let (length, radius) = (0.365, 0.064);
+    let behind = scenario.robot.center_of_mass[0] + 0.5 * length;
+    let lift = (mu * (length + radius) + radius) / (1.0 + mu * mu);
+    let push = weight * (behind - mu * lift) / (lift - (g + radius));
+    let found = d.escape_force.unwrap();
+    println!("escape force {found} N, by hand {push} N");
+    assert!((found / push - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn weak_motors_stall_and_more_torque_would_free_them() {
+    let mut scenario = engineer();
+    scenario.terrain = step(0.06, 0.9);
+    scenario.robot.drivetrain.max_torque = 0.8;
+    let (_, d) = why(&scenario);
+    assert_eq!(d.outcome, Outcome::Stalled);
+    assert_eq!(d.cause, [[Condition::Torque]]);
+}
+
+#[test]
+fn worked_case_of_oracle_ten_is_seized_and_astride() {
+    // A row of five, wheel 2 on the edge, wheel 3 on the top, three sliding contacts.
+    let mut scenario = slow_and_strong();
+    scenario.robot.track = line(5);
+    scenario.robot.center_of_mass = [0.1 * 0.365, 0.0];
+    scenario.terrain = step(0.100, 0.95);
+    scenario.duration = 40.0;
+    let (_, d) = why(&scenario);
+    assert_eq!(d.outcome, Outcome::Seized);
+    // Wheel 3 stands where the pocket ends, so that both its walls bear.
+    assert_eq!(d.mechanism, Some(Mechanism::Straddled));
+    let shares = d.contacts.iter().map(|c| c.normal_force / (21.2 * G));
+    for (share, statics) in shares.zip([0.184, 0.569, 0.069]) {
+        assert!(
+            (share - statics).abs() < 1e-3,
+            "{share}, by statics {statics}"
+        );
+    }
+    assert!(d.imbalance.unwrap() < 1e-6);
+}
+
+#[test]
+fn a_belly_on_a_ridge_hangs_up() {
+    let mut scenario = engineer();
+    // The belly reaches below the track, and lies on the top.
+    scenario.robot.belly = Some(vec![
+        [-0.15, -0.075],
+        [0.15, -0.075],
+        [0.15, 0.05],
+        [-0.15, 0.05],
+    ]);
+    scenario.robot.track = belt();
+    scenario.terrain = Terrain::Ridge {
+        height: 0.06,
+        edge_angle: 1.5,
+        edge_radius: 0.0,
+        friction: 0.6,
+    };
+    let (_, d) = why(&scenario);
+    assert_eq!(d.outcome, Outcome::HungUp);
+    assert!(d.mechanism.is_none());
+}
+
+#[test]
+fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
+    // The front wheel is against a wall too high for anything; a pebble lies before wheel 2.
+    let mut scenario = engineer();
+    scenario.robot.track = line(4);
+    scenario.robot.belly = None;
+    let spacing = 0.365 / 3.0;
+    // When the nose is at the wall, wheel 2 has begun to climb it.
+    let (x, pebble) = (-0.064 - spacing + 0.025, 0.010);
+    scenario.terrain = Terrain::Points {
+        points: vec![
+            [-4.0, 0.0],
+            [x - pebble, 0.0],
+            [x, pebble],
+            [x + pebble, 0.0],
+            [0.0, 0.0],
+            [0.0, 0.5],
+            [4.0, 0.5],
+        ],
+        goal: 1.0,
+        edge_radius: 0.0,
+        friction: 0.9,
+    };
+    let mut loaded = 0;
+    for friction in [0.5, 0.6, 0.7] {
+        if let Terrain::Points { friction: f, .. } = &mut scenario.terrain {
+            *f = friction;
+        }
+        let (_, d) = why(&scenario);
+        println!(
+            "friction {friction}: {} {:?} {:?} {:?}",
+            d.outcome,
+            d.mechanism,
+            d.cause,
+            d.intrusion.as_ref().map(|i| (i.place.depth, i.force))
+        );
+        loaded += u32::from(d.intrusion.is_some());
+        assert_ne!(d.outcome, Outcome::Seized);
+    }
+    assert!(loaded > 0);
+}

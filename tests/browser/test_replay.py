@@ -1,0 +1,328 @@
+"""The page of a run in a real browser: it opens, plays, and does what its controls say.
+
+`make test-browser` names the browser in CRAWLER2D_BROWSER, a path or "playwright" for its own.
+"""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Frame, Page, sync_playwright
+
+import crawler2d as c2d
+from conftest import ROBOT
+from crawler2d import _core
+from crawler2d.plotting import taut_belt
+
+STEP = c2d.terrains.step(0.075)
+ROUND = c2d.LineOfWheels(4, wheel_radius=0.0608)
+GEARED = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
+HOSTILE = "</script><img src=x onerror=\"document.title='broken'\">`${document.title='broken'}`"
+RUNS: dict[str, tuple[c2d.Robot, Any]] = {
+    "round wheels that stop": (ROBOT.with_track(ROUND), STEP),
+    "gear wheels": (ROBOT.with_track(GEARED), STEP),
+    "belt": (ROBOT, STEP),
+    "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
+    "circumferential": (
+        ROBOT.with_track(c2d.CircumferentialWheels(24, wheel_radius=0.015)),
+        c2d.terrains.barrier(0.1, 0.02),
+    ),
+}
+
+# The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
+PIXELS = """canvas => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height);
+    const context = copy.getContext("2d", { willReadFrequently: true });
+    context.drawImage(canvas, 0, 0);
+    return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+}"""
+COLOURS = f"canvas => new Set(({PIXELS})(canvas)).size"
+# Changes with any pixel.
+CHECKSUM = f"canvas => ({PIXELS})(canvas).reduce((sum, p) => (Math.imul(sum, 31) + p) | 0, 0)"
+# Two frames later everything asked for is drawn.
+DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+Open = Callable[..., Page]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    name = os.environ.get("CRAWLER2D_BROWSER", "playwright")
+    path = None if name == "playwright" else name
+    with sync_playwright() as playwright:
+        # The pages are our own, and a container's root has no sandbox.
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser: Browser, tmp_path: Path) -> Iterator[Open]:
+    """Open a page from a file; afterwards no request and no complaint may have been seen."""
+    seen: list[str] = []
+    pages: list[Page] = []
+
+    def opened(html: str, **options: Any) -> Page:
+        path = tmp_path / f"page{len(pages)}.html"
+        path.write_text(html, encoding="utf-8")
+        page = browser.new_page(viewport={"width": 1000, "height": 800}, **options)
+        pages.append(page)
+        page.on("console", lambda message: seen.append(message.text))
+        page.on("pageerror", lambda error: seen.append(str(error)))
+        page.on("request", lambda request: seen.append(request.url))
+        page.goto(path.as_uri())
+        page.evaluate(DRAWN)
+        seen.remove(path.as_uri())
+        return page
+
+    yield opened
+    assert [text for text in seen if text not in ("about:srcdoc", "data:,")] == []
+    for page in pages:
+        page.close()
+
+
+def simulated(name: str) -> c2d.Run:
+    robot, terrain = RUNS[name]
+    return c2d.simulate(robot, terrain, duration=4.0)
+
+
+@pytest.fixture(scope="module")
+def stopped() -> c2d.Run:
+    return simulated("round wheels that stop")
+
+
+def checksum(page: Page | Frame, canvas: str = "#scene") -> int:
+    page.evaluate(DRAWN)
+    return int(page.eval_on_selector(canvas, CHECKSUM))
+
+
+def clock(page: Page | Frame) -> float:
+    page.evaluate(DRAWN)
+    return float(page.inner_text("#clock").split(" / ")[0])
+
+
+@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_shows_robot_and_strip(open_page: Open, name: str, scheme: str) -> None:
+    page = open_page(simulated(name).to_html(time=1.0), color_scheme=scheme)
+    assert page.eval_on_selector("#scene", COLOURS) > 20
+    assert page.eval_on_selector("#strip", COLOURS) > 10
+    assert clock(page) == 1.0
+    # What moves is seen to move.
+    before = checksum(page)
+    page.keyboard.press("ArrowRight")
+    assert checksum(page) != before
+
+
+def test_dark_is_dark_and_light_is_light(open_page: Open, stopped: c2d.Run) -> None:
+    def brightness(scheme: str) -> list[float]:
+        page = open_page(stopped.to_html(), color_scheme=scheme)
+        page.evaluate(DRAWN)
+        colors = page.evaluate(
+            """() => [getComputedStyle(document.body).backgroundColor,
+                getComputedStyle(document.body).color]"""
+        )
+        return [sum(float(part) for part in c[4:-1].split(",")) / 3 for c in colors]
+
+    light, dark = brightness("light"), brightness("dark")
+    assert light[0] - light[1] > 150
+    assert dark[1] - dark[0] > 150
+
+
+def test_a_change_of_the_scheme_redraws_the_picture(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html(), color_scheme="light")
+    before = checksum(page)
+    page.emulate_media(color_scheme="dark")
+    assert checksum(page) != before
+
+
+def test_playing_goes_on_in_time_until_it_is_paused(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html(time=0.5))
+    page.click("#play")
+    assert page.get_attribute("#play", "aria-label") == "pause"
+    page.wait_for_timeout(400)
+    page.click("#play")
+    assert page.get_attribute("#play", "aria-label") == "play"
+    paused = clock(page)
+    assert 0.5 < paused < 3.9
+    page.wait_for_timeout(100)
+    assert clock(page) == paused
+
+
+def test_playing_stops_at_the_end_and_starts_again_from_there(
+    open_page: Open, stopped: c2d.Run
+) -> None:
+    page = open_page(stopped.to_html())
+    assert clock(page) == stopped.time[-1]
+    page.select_option("#speed", "10")
+    page.click("#play")
+    page.wait_for_selector("#play[aria-label=pause]")
+    page.wait_for_selector("#play[aria-label=play]")
+    assert clock(page) == stopped.time[-1]
+
+
+def test_the_scrub_bar_and_the_strip_set_the_time(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html())
+    page.fill("#scrub", "150")
+    assert clock(page) == pytest.approx(stopped.time[150], abs=5e-3)
+    box = page.locator("#strip").bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 30)
+    assert 1.5 < clock(page) < 2.5
+    assert page.get_attribute("#scrub", "aria-valuetext") == f"{clock(page):.2f} seconds"
+
+
+def test_wheel_drag_and_double_click_move_the_view(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html())
+    box = page.locator("#scene").bounding_box()
+    assert box is not None
+    x, y = box["x"] + 400, box["y"] + 200
+    first = checksum(page)
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -300)
+    page.wait_for_timeout(100)
+    zoomed = checksum(page)
+    assert zoomed != first
+    page.mouse.down()
+    page.mouse.move(x + 60, y + 30)
+    page.mouse.up()
+    assert checksum(page) != zoomed
+    page.mouse.dblclick(x, y)
+    assert checksum(page) == first
+
+
+def test_the_view_follows_the_robot(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html(time=0.0))
+    still = checksum(page)
+    page.check("#follow")
+    followed = checksum(page)
+    assert followed != still
+    page.uncheck("#follow")
+    page.click("#reset")
+    assert checksum(page) == still
+
+
+def test_keys_do_what_the_page_says(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html())
+    page.keyboard.press("Home")
+    assert clock(page) == 0.0
+    page.keyboard.press("ArrowRight")
+    assert clock(page) == 0.01
+    page.keyboard.press("Shift+ArrowRight")
+    assert clock(page) == 0.11
+    page.keyboard.press("ArrowLeft")
+    assert clock(page) == 0.10
+    page.keyboard.press("End")
+    assert clock(page) == stopped.time[-1]
+    first = checksum(page)
+    page.keyboard.press("+")
+    assert checksum(page) != first
+    page.keyboard.press("0")
+    assert checksum(page) == first
+    page.keyboard.press("f")
+    assert page.is_checked("#follow")
+    page.keyboard.press("Home")
+    page.keyboard.press("Space")
+    page.wait_for_timeout(300)
+    page.keyboard.press("Space")
+    assert 0.0 < clock(page) < stopped.time[-1]
+
+
+def test_keys_work_once_where_a_control_has_the_focus(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html(time=1.0))
+    page.focus("#scrub")
+    page.keyboard.press("ArrowRight")
+    assert clock(page) == 1.01
+    page.focus("#play")
+    page.keyboard.press("Space")
+    assert page.get_attribute("#play", "aria-label") == "pause"
+    page.keyboard.press("Space")
+    assert page.get_attribute("#play", "aria-label") == "play"
+
+
+@pytest.mark.parametrize("layer", ["forces", "speeds", "envelope"])
+def test_every_layer_can_be_left_out(
+    open_page: Open, stopped: c2d.Run, layer: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    geometry = _core.geometry(stopped.scenario.to_json())
+    belt = {"envelope": taut_belt(geometry["circles"])}
+    monkeypatch.setattr(_core, "geometry", lambda _: belt | geometry)
+    page = open_page(stopped.to_html())
+    first = checksum(page)
+    page.uncheck(f"[data-layer={layer}]")
+    assert checksum(page) != first
+    page.check(f"[data-layer={layer}]")
+    assert checksum(page) == first
+
+
+def test_the_sentence_of_the_diagnosis_is_shown(open_page: Open) -> None:
+    run = simulated("round wheels that stop")
+    vars(run)["diagnosis"] = "The <b>edge</b> is held between wheels 2 and 1."
+    page = open_page(run.to_html())
+    assert page.inner_text(".sentence") == "The <b>edge</b> is held between wheels 2 and 1."
+
+
+def test_a_hostile_name_is_shown_and_does_nothing(open_page: Open, stopped: c2d.Run) -> None:
+    scenario = stopped.scenario.replace({"robot.name": HOSTILE, "duration": 1.0})
+    run = c2d.simulate(scenario)
+    page = open_page(run.to_html())
+    assert page.title() == " ".join(run.title.split())
+    assert page.inner_text("h1").startswith("</script><img")
+    assert page.locator("img").count() == 0
+    assert page.eval_on_selector("#scene", COLOURS) > 20
+
+
+def test_a_notebook_plays_the_run_in_its_frame(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(f"<!doctype html><title>book</title><p>before</p>{stopped._repr_html_()}")
+    frame = page.frames[1]
+    frame.wait_for_selector("#play")
+    assert frame.eval_on_selector("#scene", COLOURS) > 20
+    # The wheel is the notebook's until the picture is clicked.
+    first = checksum(frame)
+    box = page.locator("iframe").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 300, box["y"] + 300)
+    page.mouse.wheel(0, -100)
+    page.wait_for_timeout(100)
+    assert checksum(frame) == first
+    frame.click("#scene")
+    page.mouse.wheel(0, -100)
+    page.wait_for_timeout(100)
+    assert checksum(frame) != first
+    frame.click("#play")
+    page.wait_for_timeout(200)
+    frame.click("#play")
+    assert 0.0 < clock(frame) < stopped.time[-1]
+
+
+def test_a_frame_cannot_reach_the_notebook(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(f"<!doctype html><title>book</title>{stopped._repr_html_()}")
+    reach = "() => { try { return window.parent.document.title } catch (e) { return e.name } }"
+    assert page.frames[1].evaluate(reach) == "SecurityError"
+
+
+@pytest.mark.parametrize("width", [360, 700, 1600])
+def test_the_page_fits_every_width(open_page: Open, stopped: c2d.Run, width: int) -> None:
+    page = open_page(stopped.to_html())
+    page.set_viewport_size({"width": width, "height": 800})
+    page.evaluate(DRAWN)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    canvas = page.evaluate("[scene.clientWidth, scene.width / devicePixelRatio]")
+    assert canvas[0] == pytest.approx(canvas[1], abs=1)
+
+
+def test_every_control_has_a_name(open_page: Open, stopped: c2d.Run) -> None:
+    page = open_page(stopped.to_html())
+    unnamed = """() => [...document.querySelectorAll("button, input, select, canvas")].filter(e =>
+        !(e.ariaLabel || e.innerText?.trim() || e.labels?.[0]?.innerText.trim())).length"""
+    assert page.evaluate(unnamed) == 0
+
+
+def test_runs_of_one_sample_and_without_contacts_open(open_page: Open) -> None:
+    for duration in (0.0, 0.5):
+        run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=duration, gravity=0.0)
+        page = open_page(run.to_html())
+        assert page.eval_on_selector("#scene", COLOURS) > 10
+        assert page.eval_on_selector("#strip", COLOURS) > 2
