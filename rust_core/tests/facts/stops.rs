@@ -246,3 +246,67 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
     }
     assert!(loaded > 0);
 }
+
+/// [m] How far the robot moves within a second under a push of `share` of the escape force.
+fn moves_under(stopped: &Simulation, force: f64) -> f64 {
+    let mut pushed = stopped.branch(stopped.scenario()).unwrap();
+    let start = pushed.reading().position;
+    pushed.set_push(force).unwrap();
+    let mut farthest: f64 = 0.0;
+    for _ in 0..1000 {
+        pushed.step().unwrap();
+        farthest = farthest.max((pushed.reading().position - start).length());
+    }
+    farthest
+}
+
+#[test]
+fn a_seized_robot_gives_way_to_a_push_beyond_its_escape_force() {
+    let seed = 21;
+    let mut draw = Draw(seed);
+    let wanted = if std::env::var_os("CRAWLER2D_SOAK").is_some() {
+        200
+    } else {
+        30
+    };
+    let (mut cases, mut right, mut within_free, mut wedged, mut rattling) = (0, 0, 0, 0, 0);
+    while cases < wanted {
+        let Some(stopped) = seized(&mut draw) else {
+            continue;
+        };
+        let d = stopped.diagnosis().unwrap();
+        let (pinned, free) = (d.escape_force.unwrap(), d.free_escape_force.unwrap());
+        if !d.stationary {
+            rattling += 1;
+        }
+        if pinned.is_infinite() {
+            wedged += 1;
+            continue;
+        }
+        cases += 1;
+        let (more, less) = (
+            moves_under(&stopped, 1.1 * pinned),
+            moves_under(&stopped, 0.9 * pinned),
+        );
+        let ok = more > 5e-3 && less <= 5e-3;
+        right += u32::from(ok);
+        within_free += u32::from(moves_under(&stopped, (0.9 * free).min(1e5)) <= 5e-3);
+        if !ok {
+            println!(
+                "{:?} {:?}: {pinned:.1} N (free {free:.1} N), {:.2} mm at 1.1, {:.2} mm at 0.9, stationary {} {:?} stalled {}",
+                stopped.scenario().robot.track,
+                stopped.scenario().terrain,
+                1e3 * more,
+                1e3 * less,
+                d.stationary,
+                d.mechanism,
+                d.stalled_share
+            );
+        }
+    }
+    println!(
+        "seed {seed}: of {cases} seized robots {right} move under 1.1 times the pinned escape force and not under 0.9; \
+         {within_free} hold 0.9 times the free one; {wedged} more are wedged; {rattling} rattle"
+    );
+    assert!(f64::from(right) >= 0.95 * f64::from(cases));
+}
