@@ -1,7 +1,8 @@
-//! Contacts of the convex hull of discs, a belt, with a profile: exact, and as good when the ground
-//! reaches deep inside.
+//! Contacts of the convex hull of discs with a profile, a belt's or a polygon's: exact, and as good
+//! when the ground reaches deep inside.
 //!
-//! A smooth hull meets a polyline in two ways only: an arc bears on a face, or a vertex on the hull.
+//! A hull meets a polyline in two ways only: an arc, or a corner, bears on a face, or a vertex on the
+//! hull.
 
 use rapier2d_f64::math::{Pose, Vector};
 
@@ -17,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 /// [m] Ground that is deeper inside did not get there by sinking in.
 const SHALLOW: f64 = 1e-3;
 
-/// A part that is the hull of discs.
+/// A part that is the hull of discs, or of points.
 pub(super) struct HullContact {
     part: usize,
     hull: Envelope,
@@ -28,13 +29,15 @@ pub(super) struct HullContact {
 impl HullContact {
     /// That of a part, if it is such a hull.
     pub(super) fn of(index: usize, part: &Part) -> Option<Self> {
-        let Shape::Hull { discs } = &part.shape else {
-            return None;
+        let discs = match &part.shape {
+            Shape::Hull { discs } => discs.clone(),
+            Shape::Polygon { corners } => corners.iter().map(|c| Disc::point(*c)).collect(),
+            Shape::Disc { .. } | Shape::Gear { .. } => return None,
         };
-        let hull = Envelope::new(discs);
+        let hull = Envelope::new(&discs);
         Some(Self {
             part: index,
-            discs: hull.discs_outside(discs),
+            discs: hull.discs_outside(&discs),
             hull,
         })
     }
@@ -63,7 +66,7 @@ impl HullContact {
         }
     }
 
-    /// An arc on a face, its centre outside.
+    /// An arc on a face, its centre outside, or a corner on it.
     fn on_face(
         &self,
         profile: &Profile,
@@ -79,7 +82,7 @@ impl HullContact {
         let spoke = center - a;
         let (height, foot) = (spoke.dot(normal), spoke.dot(along));
         let distance = height - radius;
-        if height <= 0.0 || distance >= prediction || !(0.0..=length).contains(&foot) {
+        if height <= -SHALLOW || distance >= prediction || !(0.0..=length).contains(&foot) {
             return None;
         }
         let on_ground = a + along * foot;

@@ -8,6 +8,7 @@ use rapier2d_f64::math::{Pose, Vector};
 
 use super::{Contact, LoadedContact};
 use crate::outline::cut::{self, Piece};
+use crate::outline::search::maximise;
 use crate::outline::{Disc, Envelope};
 use crate::robot::Part;
 use crate::terrain::Profile;
@@ -67,6 +68,8 @@ pub struct Intrusion {
     pub y: f64,
     /// [m^2] Area of the piece.
     pub area: f64,
+    /// [m] Stretches of the envelope that bound it, as ways along it.
+    rim: Vec<(f64, f64)>,
     /// Stretches of the profile that bound it, as facet plus share of the facet.
     stretches: Vec<(f64, f64)>,
 }
@@ -110,11 +113,6 @@ impl TrackEnvelope {
         self.points_under(profile, pose)
             .filter(stands_out)
             .any(inside)
-    }
-
-    /// The outward normal, in the chassis frame, of the root belt where it lies nearest to a point.
-    pub(crate) fn outward_at(&self, point: Vector) -> Vector {
-        self.roots.hull.outward_at(point)
     }
 
     /// Every piece of the ground inside the envelope, from the left.
@@ -184,10 +182,8 @@ impl TrackEnvelope {
             if edges.last() != Some(&id) {
                 edges.push(id);
             }
-            let depth = self
-                .tips
-                .hull
-                .depth(pose.inverse_transform_point(profile.points[i]));
+            let point = pose.inverse_transform_point(profile.points[i]);
+            let depth = self.tips.hull.depth(point);
             if profile.edges[id as usize].angle > 0.0 && depth > edge.0 + SAME_DEPTH {
                 edge = (depth, id);
             }
@@ -196,9 +192,28 @@ impl TrackEnvelope {
             edges,
             edge: edge.1,
             area: piece.area(&self.tips.hull).max(0.0),
+            rim: piece.rim().collect(),
             stretches: piece.chords().map(|c| c.span).collect(),
             ..self.at(pose, deepest, root)
         }
+    }
+
+    /// The outward normal, in the chassis frame, of a belt that would pass over an intrusion at a
+    /// point of it: that of the envelope where it is nearest on the side from which the ground came.
+    pub(crate) fn outward_at(&self, intrusion: &Intrusion, point: Vector) -> Vector {
+        /// Cuts of a stretch; between two of them the distance has one least value.
+        const CUTS: usize = 64;
+
+        let hull = &self.tips.hull;
+        let nearness = |way: f64| -(hull.point_at(way) - point).length();
+        let cuts = intrusion.rim.iter().flat_map(|(from, to)| {
+            let cut = (to - from).rem_euclid(hull.length()) / CUTS as f64;
+            (0..CUTS).map(move |i| (from + cut * i as f64, from + cut * (i + 1) as f64))
+        });
+        let nearest = cuts
+            .map(|(from, to)| maximise(from, to, nearness))
+            .max_by(|a, b| nearness(*a).total_cmp(&nearness(*b)));
+        hull.outward_at(hull.point_at(nearest.unwrap_or_default()))
     }
 
     /// The whole envelope inside the ground.
@@ -226,6 +241,7 @@ impl TrackEnvelope {
             x: place.x,
             y: place.y,
             area: 0.0,
+            rim: vec![(0.0, 0.0)],
             stretches: Vec::new(),
         }
     }

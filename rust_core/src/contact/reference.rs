@@ -151,7 +151,6 @@ fn solids_of(part: &Part) -> Vec<Solid> {
         Shape::Disc { center, radius } => {
             on_chassis(SharedShape::ball(*radius), Pose::from_translation(*center))
         }
-        Shape::Hull { .. } => Vec::new(),
         Shape::Gear { center, gear } => {
             let place = Pose::from_translation(*center);
             let root = solid(SharedShape::ball(gear.root_radius), place, None);
@@ -162,7 +161,8 @@ fn solids_of(part: &Part) -> Vec<Solid> {
             });
             std::iter::once(root).chain(grousers).collect()
         }
-        Shape::Polygon { corners } => on_chassis(polygon(corners.clone()), Pose::identity()),
+        // Their contacts are our own: see `HullContact`.
+        Shape::Hull { .. } | Shape::Polygon { .. } => Vec::new(),
     }
 }
 

@@ -11,6 +11,8 @@ use crate::robot::Model;
 
 /// Multiple of the weight beyond which a force counts as without limit.
 const WITHOUT_LIMIT: f64 = 1e3;
+/// Share of its limit that a motor at its limit has at least.
+const AT_LIMIT: f64 = 0.98;
 /// Of a slack that rounding makes, the escape force must not feed.
 const SLACK: f64 = 1e-8;
 
@@ -22,6 +24,8 @@ pub(super) struct Statics {
     closed: Vec<Support>,
     /// For each drive: +1 or -1, as commanded, if its motor bears against the ground; else 0.
     motors: Vec<f64>,
+    /// For each drive: the sign of the force of a motor that stands at its limit; else 0.
+    stalled: Vec<f64>,
     /// Largest force of a motor, in weights.
     torque: f64,
     /// [m] Moments count as forces at this lever.
@@ -86,18 +90,41 @@ impl Condition {
 /// What the drives do in an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Drives {
-    /// As was seen.
+    /// As was seen, motors within their limits.
     AsFound,
+    /// As was seen, motors that stand at their limit held to it.
+    Hold,
     /// All turn as commanded, and the surfaces slide.
     Turn,
     /// All stand, their motors at the limit.
     Stand,
 }
 
-/// Columns of a linear program: what a unit of each force does, and its bounds.
+/// Columns of a linear program: what a unit of each force does, its bounds, whose it is.
+#[derive(Clone, Default)]
 struct Forces {
     columns: Vec<Vec<f64>>,
     bounds: Vec<(f64, f64)>,
+    sources: Vec<Source>,
+}
+
+/// Whose a force is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    Support(usize),
+    Motor(usize),
+    Outside,
+}
+
+/// The largest push that can be balanced, and how.
+#[derive(Clone, Debug)]
+pub(super) struct Push {
+    /// The push in weights; infinite if any can be balanced.
+    pub force: f64,
+    /// Supports that bear then.
+    pub bearing: Vec<usize>,
+    /// Drives with the forces of their motors, in weights.
+    motors: Vec<(usize, f64)>,
 }
 
 impl Statics {
@@ -107,6 +134,7 @@ impl Statics {
         model: &Model,
         angle: f64,
         (supports, closed): (Vec<Support>, Vec<Support>),
+        stalled: Vec<f64>,
         (command, torque, lever): (f64, f64, f64),
     ) -> Self {
         let bears = |k: usize| {
@@ -129,6 +157,7 @@ impl Statics {
             supports,
             closed,
             motors,
+            stalled,
             torque,
             lever,
             radius: model.drive_radius,
@@ -142,19 +171,48 @@ impl Statics {
         self.forces(Drives::AsFound, &[]).imbalance()
     }
 
-    /// The largest push along the command at the centre of mass that can be balanced, in weights;
-    /// infinite if any can. Contacts slide as they do, or not at all where `free`.
-    pub(super) fn escape(&self, direction: f64, free: bool) -> Option<f64> {
-        let forces = if free {
-            let mut gripping = self.clone();
-            for support in &mut gripping.supports {
-                support.slides = 0.0;
-            }
-            gripping.forces(Drives::AsFound, &[])
-        } else {
-            self.forces(Drives::AsFound, &[])
+    /// The largest push along `direction` at the centre of mass that can be balanced; None if none
+    /// can. Contacts slide and motors push as they do; but a push may load a surface until its motor
+    /// cannot turn it, and then it holds by sticking.
+    pub(super) fn escape(&self, direction: f64, tolerance: f64) -> Option<Push> {
+        let mut statics = self.clone();
+        let largest = |statics: &Self| {
+            let forces = statics.forces(Drives::Hold, &[]);
+            forces.largest_push(direction, tolerance)
         };
-        forces.largest_push(direction)
+        let mut most = largest(&statics)?;
+        while statics.stall(&most) {
+            match largest(&statics) {
+                Some(push) if push.force > most.force => most = push,
+                _ => break,
+            }
+        }
+        Some(most)
+    }
+
+    /// Lets those drives stand that turn at their limit under a push; false if there is none.
+    fn stall(&mut self, push: &Push) -> bool {
+        let mut any = false;
+        for (k, force) in &push.motors {
+            if self.stalled[*k] == 0.0 && force.abs() > self.torque * (1.0 - 1e-6) {
+                self.stalled[*k] = force.signum();
+                let on_it = self.supports.iter_mut().filter(|s| s.drive == Some(*k));
+                on_it.for_each(|support| support.slides = 0.0);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// The same if every contact and every motor could hold within its limits.
+    pub(super) fn free_escape(&self, direction: f64, tolerance: f64) -> Option<Push> {
+        let mut gripping = self.clone();
+        for support in &mut gripping.supports {
+            support.slides = 0.0;
+        }
+        gripping
+            .forces(Drives::AsFound, &[])
+            .largest_push(direction, tolerance)
     }
 
     /// The smallest sets of conditions whose relaxation leaves no equilibrium within `tolerance`,
@@ -179,7 +237,7 @@ impl Statics {
             imbalance.is_none_or(|imbalance| imbalance <= tolerance)
         };
         // What a motor at its limit held is no longer held as it was found.
-        let as_found = !relaxed.contains(&Condition::Torque) && balanced(Drives::AsFound);
+        let as_found = !relaxed.contains(&Condition::Torque) && balanced(Drives::Hold);
         !as_found && !balanced(Drives::Turn) && !balanced(Drives::Stand)
     }
 
@@ -200,15 +258,13 @@ impl Statics {
         } else {
             1.0
         };
-        let mut forces = Forces {
-            columns: Vec::new(),
-            bounds: Vec::new(),
-        };
-        for support in self.supports.iter().filter(stays).chain(closed) {
+        let mut forces = Forces::default();
+        let bearing = self.supports.iter().filter(stays).chain(closed);
+        for (i, support) in bearing.enumerate() {
             let motor = support.drive.map_or(0.0, |k| self.motors[k]);
             let slides = match drives {
                 _ if motor == 0.0 => support.slides,
-                Drives::AsFound => support.slides,
+                Drives::AsFound | Drives::Hold => support.slides,
                 Drives::Turn => support.slip_at(motor),
                 Drives::Stand => 0.0,
             };
@@ -220,7 +276,7 @@ impl Statics {
             };
             for side in sides {
                 let column = self.column(support, side * friction);
-                forces.push(column, (0.0, f64::INFINITY));
+                forces.push(Source::Support(i), column, (0.0, f64::INFINITY));
             }
         }
         let torque = if without(Condition::Torque) {
@@ -231,15 +287,17 @@ impl Statics {
         for (k, motor) in self.motors.iter().enumerate().filter(|(_, m)| **m != 0.0) {
             let bounds = match drives {
                 Drives::Stand => (motor * torque, motor * torque),
+                Drives::Hold if self.stalled[k] > 0.0 => (AT_LIMIT * torque, torque),
+                Drives::Hold if self.stalled[k] < 0.0 => (-torque, -AT_LIMIT * torque),
                 _ => (-torque, torque),
             };
-            forces.push(self.motor_column(k), bounds);
+            forces.push(Source::Motor(k), self.motor_column(k), bounds);
         }
         if let Some((x, y, lever)) = self.push {
             let mut column = self.zero();
             (column[0], column[1], column[2]) = (x, y, lever / self.lever);
             column[3] = 1.0;
-            forces.push(column, (-WITHOUT_LIMIT, WITHOUT_LIMIT));
+            forces.push(Source::Outside, column, (-WITHOUT_LIMIT, WITHOUT_LIMIT));
         }
         forces
     }
@@ -272,7 +330,7 @@ impl Statics {
 
 impl Support {
     /// Sign of the slip of a surface whose drive turns that way.
-    fn slip_at(&self, motor: f64) -> f64 {
+    pub(super) fn slip_at(&self, motor: f64) -> f64 {
         // A surface speed of 1 moves the surface by -drive_lever / drive_radius.
         -self.tangent.drive_lever * motor
     }
@@ -296,23 +354,23 @@ impl Support {
 }
 
 impl Forces {
-    fn push(&mut self, column: Vec<f64>, bounds: (f64, f64)) {
+    fn push(&mut self, source: Source, column: Vec<f64>, bounds: (f64, f64)) {
         self.columns.push(column);
         self.bounds.push(bounds);
+        self.sources.push(source);
     }
 
-    /// Both ways of every balance with the weight; `slack` is that of the last variable.
-    fn rows(&self, last: &[f64], slack: (f64, f64)) -> Rows {
+    /// Both ways of every balance with the weight, to within `slack.0` of the last variable and
+    /// `slack.1` besides.
+    fn rows(&self, slack: (f64, f64)) -> Rows {
         let n = self.columns.len();
         let mut rows = Rows::default();
-        let size = last.len();
-        for i in 0..size {
+        for i in 0..self.size() {
             let weight = if i == 1 { 1.0 } else { 0.0 };
-            let row: Vec<f64> = self.columns.iter().map(|c| c[i]).collect();
-            for (sign, missed) in [(1.0, -slack.0), (-1.0, -slack.0)] {
-                let mut signed: Vec<f64> = row.iter().map(|v| sign * v).collect();
-                signed.push(sign * last[i] + missed);
-                rows.push(signed, sign * weight + slack.1);
+            for sign in [1.0, -1.0] {
+                let mut row: Vec<f64> = self.columns.iter().map(|c| sign * c[i]).collect();
+                row.push(-slack.0);
+                rows.push(row, sign * weight + slack.1);
             }
         }
         for (j, (low, high)) in self.bounds.iter().enumerate() {
@@ -341,24 +399,45 @@ impl Forces {
     }
 
     fn imbalance(&self) -> Option<f64> {
-        let rows = self.rows(&vec![0.0; self.size()], (1.0, 0.0));
+        let rows = self.rows((1.0, 0.0));
         let found = rows.minimise(&self.cost(1.0))?;
         found.last().map(|t| t.max(0.0))
     }
 
-    fn largest_push(&self, direction: f64) -> Option<f64> {
-        let missed = self.imbalance()?;
+    fn largest_push(&self, direction: f64, tolerance: f64) -> Option<Push> {
+        /// A support with a smaller share of the weight does not bear.
+        const BEARS: f64 = 1e-6;
+
+        let n = self.columns.len();
+        let mut pushed = self.clone();
         let mut push = vec![0.0; self.size()];
         push[0] = direction;
-        let mut rows = self.rows(&push, (0.0, missed + SLACK));
-        let mut cap = vec![0.0; self.columns.len()];
-        cap.push(1.0);
-        rows.push(cap, WITHOUT_LIMIT);
-        let found = *rows.minimise(&self.cost(-1.0))?.last()?;
-        Some(if found > 0.999 * WITHOUT_LIMIT {
-            f64::INFINITY
-        } else {
-            found.max(0.0)
+        pushed.push(Source::Outside, push, (0.0, WITHOUT_LIMIT));
+        let missed = pushed.imbalance().filter(|missed| *missed <= tolerance)?;
+        let rows = pushed.rows((0.0, missed + SLACK));
+        let mut cost = pushed.cost(0.0);
+        cost[n] = -1.0;
+        let found = rows.minimise(&cost)?;
+        let mut bearing: Vec<usize> = (0..n)
+            .filter(|j| found[*j] > BEARS)
+            .filter_map(|j| match self.sources[j] {
+                Source::Support(i) => Some(i),
+                _ => None,
+            })
+            .collect();
+        bearing.dedup();
+        let motors = (0..n).filter_map(|j| match self.sources[j] {
+            Source::Motor(k) => Some((k, found[j])),
+            _ => None,
+        });
+        Some(Push {
+            force: if found[n] > 0.999 * WITHOUT_LIMIT {
+                f64::INFINITY
+            } else {
+                found[n].max(0.0)
+            },
+            bearing,
+            motors: motors.collect(),
         })
     }
 }
@@ -398,6 +477,7 @@ mod tests {
             supports,
             closed: Vec::new(),
             motors: vec![0.0],
+            stalled: vec![0.0],
             torque: 0.0,
             lever: 1.0,
             radius: 1.0,
@@ -424,7 +504,7 @@ mod tests {
             for friction in [0.0_f64, 0.3, 0.4] {
                 let block = notch(slope, friction);
                 assert!(block.imbalance().unwrap() < 1e-8);
-                let push = block.escape(1.0, true).unwrap();
+                let push = block.free_escape(1.0, 1e-3).unwrap().force;
                 let expected = libm::tan(slope + friction.atan());
                 assert!((push / expected - 1.0).abs() < 1e-5, "{push} {expected}");
             }
@@ -433,7 +513,7 @@ mod tests {
 
     #[test]
     fn a_block_is_wedged_where_slope_and_friction_angle_make_a_right_angle() {
-        let push = notch(0.9, 1.0).escape(1.0, true).unwrap();
+        let push = notch(0.9, 1.0).free_escape(1.0, 1e-3).unwrap().force;
         assert!(push.is_infinite());
     }
 
@@ -445,13 +525,13 @@ mod tests {
         for support in &mut block.supports {
             support.slides = 1.0;
         }
-        let push = block.escape(1.0, false).unwrap();
+        let push = block.escape(1.0, 1e-3).unwrap().force;
         assert!((push / libm::tan(slope + friction.atan()) - 1.0).abs() < 1e-5);
         // Sliding down it, friction helps the push.
         for support in &mut block.supports {
             support.slides = -1.0;
         }
-        let push = block.escape(1.0, false).unwrap();
+        let push = block.escape(1.0, 1e-3).unwrap().force;
         assert!((push / libm::tan(slope - friction.atan()) - 1.0).abs() < 1e-5);
     }
 

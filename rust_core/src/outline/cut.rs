@@ -102,8 +102,8 @@ impl Piece<'_> {
         self.0.iter().copied()
     }
 
-    /// Stretches of the envelope that bound it, as pairs of ways.
-    fn rim(&self) -> impl Iterator<Item = (f64, f64)> {
+    /// Stretches of the envelope that bound it, as pairs of ways [m].
+    pub(crate) fn rim(&self) -> impl Iterator<Item = (f64, f64)> {
         let following = self.0.iter().cycle().skip(1);
         self.0
             .iter()

@@ -5,7 +5,7 @@ mod envelope;
 mod gear;
 mod hull;
 mod layout;
-mod search;
+pub(crate) mod search;
 mod stretch;
 
 use rapier2d_f64::math::Vector;
@@ -23,6 +23,16 @@ pub struct Disc {
     pub center: Vector,
     /// [m] Radius.
     pub radius: f64,
+}
+
+impl Disc {
+    /// A disc of no size.
+    pub(crate) fn point(center: Vector) -> Self {
+        Self {
+            center,
+            radius: 0.0,
+        }
+    }
 }
 
 /// The end discs of an outline, rear first.

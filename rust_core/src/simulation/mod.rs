@@ -262,6 +262,7 @@ impl Simulation {
             command: self.command,
             set_point: self.set_point,
             half_length: 0.5 * self.scenario.robot.outline.axle_distance,
+            drive_positions: self.state.drives.iter().map(|d| d.position).collect(),
         };
         Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
     }

@@ -1,0 +1,117 @@
+//! The push that a stop gives way to.
+//!
+//! A robot that is pushed may slip a little and catch again: what holds it is the largest push that
+//! can be balanced on its way through the next millimetres. On that way it is settled on the ground
+//! as far as its weight lets it down, surfaces slide as they did, and motors push as they did.
+
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+
+use super::linear_program::Rows;
+use super::scene::Scene;
+use super::signals::Stance;
+use super::statics::{Push, Role, Statics, Support};
+use crate::contact::{Contact, ReferenceContact};
+use crate::plane::{cross, right_of};
+
+/// [m] Where the robot is looked at on its way, beyond where it stands.
+const WAY: [f64; 6] = [2e-4, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3];
+/// [m] Surfaces closer than this bear.
+const BEARS: f64 = 1e-5;
+/// [m] Contacts farther away than this play no part in one round of settling.
+const REACH: f64 = 5e-3;
+/// Rounds of settling at most; gaps are linear in the pose but for its square.
+const ROUNDS: usize = 8;
+
+/// The largest push along the command that can be balanced on the way, in weights; None if no push
+/// and no rest can.
+pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f64) -> Option<f64> {
+    let direction = scene.direction();
+    let first = here.escape(direction, tolerance)?;
+    let mut largest = first.force;
+    let parts = |push: &Push, part: &dyn Fn(usize) -> usize| {
+        let mut parts: Vec<usize> = push.bearing.iter().map(|i| part(*i)).collect();
+        parts.sort_unstable();
+        parts
+    };
+    let bearing = parts(&first, &|i| stance.bearings[i].contact.part);
+    let mut finder = ReferenceContact::new(&scene.model.parts, scene.profile);
+    let mut pose = Pose::new(stance.position, stance.angle);
+    for way in WAY {
+        if largest.is_infinite() {
+            break;
+        }
+        pose.translation.x = stance.position.x + direction * way;
+        let Some(contacts) = settle(scene, &mut finder, &mut pose) else {
+            break;
+        };
+        let supports = contacts
+            .iter()
+            .map(|contact| moving(scene, stance, pose, contact))
+            .collect();
+        let there = scene.balance(pose, stance, supports, Vec::new());
+        match there.escape(direction, tolerance) {
+            Some(push) if parts(&push, &|i| contacts[i].part) == bearing => {
+                largest = largest.max(push.force);
+            }
+            // Nothing holds it there, or others do: then it does not get there by slipping.
+            _ => break,
+        }
+    }
+    Some(largest)
+}
+
+/// A contact of a robot that is on its way along the command.
+fn moving(scene: &Scene, stance: &Stance, pose: Pose, contact: &Contact) -> Support {
+    let drive = scene.model.parts[contact.part].drive;
+    let mut support = scene.support(pose, contact, 0.0, Role::Track);
+    support.slides = match drive {
+        Some(k) if scene.is_moving(stance.drives[k].speed) => {
+            support.slip_at(stance.drives[k].speed)
+        }
+        // A surface that stands rolls on, and its motor pushes as it did.
+        Some(_) => 0.0,
+        None => right_of(contact.normal).x * scene.direction(),
+    };
+    support
+}
+
+/// Lets the robot down at its x as far as the ground lets it; its contacts there, or None if it does
+/// not come to rest.
+fn settle(scene: &Scene, finder: &mut ReferenceContact, pose: &mut Pose) -> Option<Vec<Contact>> {
+    /// [m], [rad] Farthest that a round moves it.
+    const FARTHEST: [f64; 2] = [2e-3, 0.02];
+
+    let mut contacts = Vec::new();
+    for _ in 0..ROUNDS {
+        finder.find(*pose, &scene.drive_positions, REACH, &mut contacts);
+        let center = pose.transform_point(scene.model.center_of_mass);
+        // Variables: rise of the centre of mass [m], turn about it [rad].
+        let mut rows = Rows::default();
+        for contact in &contacts {
+            let lever = cross(contact.point - center, contact.normal);
+            rows.push(vec![-contact.normal.y, -lever], contact.distance);
+        }
+        for (i, most) in FARTHEST.into_iter().enumerate() {
+            for sign in [-1.0, 1.0] {
+                let mut row = vec![0.0; 2];
+                row[i] = sign;
+                rows.push(row, most);
+            }
+        }
+        let [rise, turn] = rows.minimise(&[1.0, 0.0])?[..] else {
+            return None;
+        };
+        let turned = Rotation::new(turn);
+        let moved = center + Vector::new(0.0, rise) + turned * (pose.translation - center);
+        // The frame keeps its x, the centre of mass does not quite.
+        *pose = Pose::from_parts(
+            Vector::new(pose.translation.x, moved.y),
+            turned * pose.rotation,
+        );
+        if rise.abs() + turn.abs() * scene.half_length < 0.1 * BEARS {
+            contacts.retain(|c| c.distance < BEARS);
+            return Some(contacts);
+        }
+    }
+    None
+}

@@ -1,0 +1,274 @@
+//! A stop in its surroundings: which ground is inside the track, what bears, what could hold it.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::mechanism::Facts;
+use super::signals::{Bearing, DriveMean, Stance};
+use super::statics::{Condition, Role, Statics, Support};
+use super::{LoadedIntrusion, StopContact};
+use crate::contact::{Contact, Intrusion, TrackEnvelope};
+use crate::dynamics::{Direction, Levers};
+use crate::plane::{left_of, right_of};
+use crate::robot::{BodyKind, Model};
+use crate::scenario::SeizureCriteria;
+use crate::terrain::Profile;
+
+/// What a diagnosis looks at besides the stop.
+pub(crate) struct Scene<'a> {
+    pub model: &'a Model,
+    pub profile: &'a Profile,
+    pub envelope: &'a TrackEnvelope,
+    pub criteria: &'a SeizureCriteria,
+    pub gravity: f64,
+    /// [m/s] What the drivetrain is to do.
+    pub command: f64,
+    /// [m/s] What it is to do now, within its acceleration.
+    pub set_point: f64,
+    /// [m] Half the distance of the end axles.
+    pub half_length: f64,
+    /// [m] How far the surface of each drive has run.
+    pub drive_positions: Vec<f64>,
+}
+
+impl Scene<'_> {
+    pub(super) fn direction(&self) -> f64 {
+        if self.command < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Ground inside the track with the forces on it.
+    pub(super) fn pockets(&self, pose: Pose, bearings: &[Bearing]) -> Vec<LoadedIntrusion> {
+        let found = self.envelope.intrusions(self.profile, pose);
+        let with_force = found.into_iter().filter(|i| i.edge >= 0).map(|place| {
+            let on_it = bearings
+                .iter()
+                .filter(|b| place.bears(self.profile, &b.contact));
+            let force = on_it.map(|b| b.normal_force).sum();
+            LoadedIntrusion { place, force }
+        });
+        with_force.collect()
+    }
+
+    /// The coefficient of friction of a part on the ground.
+    pub(super) fn friction(&self, contact: &Contact) -> f64 {
+        let limit = self.model.parts[contact.part].friction_limit;
+        limit.min(self.profile.friction)
+    }
+
+    /// Whether a surface speed [m/s] is more than the creep of a contact that sticks.
+    pub(super) fn is_moving(&self, speed: f64) -> bool {
+        speed.abs() > self.criteria.sliding_speed * self.set_point.abs()
+    }
+
+    pub(super) fn slides(&self, bearing: &Bearing) -> bool {
+        /// Share of the friction cone that a contact in rattle must have used, in the mean.
+        const AT_LIMIT: f64 = 0.95;
+
+        let limit = self.friction(&bearing.contact) * bearing.normal_force;
+        self.is_moving(bearing.slip) && bearing.friction_force.abs() >= AT_LIMIT * limit
+    }
+
+    /// What the mechanism is read from.
+    pub(super) fn facts(&self, stance: &Stance, pocket: Option<&LoadedIntrusion>) -> Facts {
+        let contacts: Vec<StopContact> = stance
+            .bearings
+            .iter()
+            .filter(|b| b.normal_force > 0.0)
+            .map(|b| StopContact {
+                body: b.contact.part,
+                kind: self.model.parts[b.contact.part].kind,
+                segment: b.contact.facet,
+                edge: b.contact.edge,
+                point: b.contact.point,
+                normal: b.contact.normal,
+                normal_force: b.normal_force,
+                friction_force: b.friction_force,
+                surface_speed: b.slip,
+                slides: self.slides(b),
+                in_pocket: pocket.is_some_and(|p| p.place.bears(self.profile, &b.contact)),
+            })
+            .collect();
+        let sum = |of: &dyn Fn(&StopContact) -> f64| contacts.iter().map(of).sum::<f64>();
+        let normal = sum(&|c| c.normal_force).max(f64::MIN_POSITIVE);
+        let lift = |c: &StopContact| {
+            let force = c.normal * c.normal_force + right_of(c.normal) * c.friction_force;
+            force.y.max(0.0)
+        };
+        let all_lift = sum(&lift).max(f64::MIN_POSITIVE);
+        let on = |is: bool, value: f64| if is { value } else { 0.0 };
+        let motors = &stance.drives[..self.model.motors.min(stance.drives.len())];
+        let stalled = motors
+            .iter()
+            .filter(|d| !self.is_moving(d.speed) && self.is_at_limit(d))
+            .count();
+        Facts {
+            belly_share: sum(&|c| on(c.kind == BodyKind::Belly, lift(c))) / all_lift,
+            sliding_share: sum(&|c| on(c.slides, c.normal_force)) / normal,
+            stalled_share: stalled as f64 / self.model.motors.max(1) as f64,
+            flank: self.bears_on_a_flank(stance, &contacts),
+            contacts,
+        }
+    }
+
+    /// Whether a surface in the pocket would move into the ground if its drive turned as commanded:
+    /// a grouser's flank.
+    pub(super) fn bears_on_a_flank(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
+        /// Share of the surface speed along the normal that a round wheel, but for rounding, lacks.
+        const INTO_GROUND: f64 = 0.05;
+
+        let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
+        bearing.zip(contacts).any(|(bearing, contact)| {
+            // A surface speed of 1 moves the surface by -drive_lever / drive_radius along the normal.
+            let into_ground = self.levers(stance, &bearing.contact).normal.drive_lever;
+            contact.in_pocket
+                && self.direction() * into_ground > INTO_GROUND * self.model.drive_radius
+        })
+    }
+
+    pub(super) fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
+        let pose = Pose::new(stance.position, stance.angle);
+        let center = pose.transform_point(self.model.center_of_mass);
+        Levers::new(contact, (center, stance.angle), self.model)
+    }
+
+    /// The conditions that this stop has at all.
+    pub(super) fn conditions(
+        &self,
+        stance: &Stance,
+        facts: &Facts,
+        is_pocket: bool,
+    ) -> Vec<Condition> {
+        let has = |condition: &Condition| match condition {
+            Condition::Pocket => is_pocket,
+            Condition::Belly => facts.belly_share > self.criteria.intrusion_load,
+            Condition::Torque => stance
+                .drives
+                .iter()
+                .take(self.model.motors)
+                .any(|d| self.is_at_limit(d)),
+            Condition::Friction => facts.contacts.iter().any(|c| c.slides),
+        };
+        Condition::ALL.into_iter().filter(has).collect()
+    }
+
+    /// The statics of a stop; None without a weight. At the tips, every loaded intrusion is a pocket;
+    /// else those that reach below the root circles.
+    pub(super) fn statics(
+        &self,
+        pose: Pose,
+        stance: &Stance,
+        pockets: &[LoadedIntrusion],
+        at_tips: bool,
+    ) -> Option<Statics> {
+        let weight = self.model.mass * self.gravity;
+        if weight <= 0.0 {
+            return None;
+        }
+        let deep: Vec<&LoadedIntrusion> = pockets
+            .iter()
+            .filter(|p| at_tips || p.place.root_depth > self.criteria.intrusion_depth)
+            .collect();
+        let supports = stance
+            .bearings
+            .iter()
+            .map(|b| {
+                let slides = if self.slides(b) { b.slip.signum() } else { 0.0 };
+                self.support(pose, &b.contact, slides, self.role(&b.contact, &deep))
+            })
+            .collect();
+        let closed = deep
+            .iter()
+            .map(|p| self.closed(pose, stance, &p.place))
+            .collect();
+        Some(self.balance(pose, stance, supports, closed))
+    }
+
+    /// The statics of supports in a pose.
+    pub(super) fn balance(
+        &self,
+        pose: Pose,
+        stance: &Stance,
+        supports: Vec<Support>,
+        closed: Vec<Support>,
+    ) -> Statics {
+        let weight = self.model.mass * self.gravity;
+        let stands = |d: &DriveMean| {
+            let stands = self.is_at_limit(d) && !self.is_moving(d.speed);
+            if stands { d.force.signum() } else { 0.0 }
+        };
+        Statics::new(
+            self.model,
+            pose.rotation.angle(),
+            (supports, closed),
+            stance.drives.iter().map(stands).collect(),
+            (
+                self.direction(),
+                self.model.drive_force / weight,
+                self.half_length,
+            ),
+        )
+    }
+
+    /// A contact as a support; `slides` is the sign of its slip, 0 while it sticks.
+    pub(super) fn support(
+        &self,
+        pose: Pose,
+        contact: &Contact,
+        slides: f64,
+        role: Role,
+    ) -> Support {
+        let center = pose.transform_point(self.model.center_of_mass);
+        let levers = Levers::new(contact, (center, pose.rotation.angle()), self.model);
+        let drive = self.model.parts[contact.part].drive;
+        Support::new(&levers, drive, (self.friction(contact), slides), role)
+    }
+
+    /// Whether a motor is at its torque limit, in the mean.
+    fn is_at_limit(&self, drive: &DriveMean) -> bool {
+        drive.force.abs() >= self.criteria.torque_limit * self.model.drive_force
+    }
+
+    pub(super) fn role(&self, contact: &Contact, pockets: &[&LoadedIntrusion]) -> Role {
+        let bears = |p: &&LoadedIntrusion| p.place.bears(self.profile, contact);
+        if pockets.iter().any(bears) {
+            Role::Pocket
+        } else if self.model.parts[contact.part].kind == BodyKind::Belly {
+            Role::Belly
+        } else {
+            Role::Track
+        }
+    }
+
+    /// What would bear on an intrusion if a belt closed the pocket, at its edge. The belt runs as the
+    /// faster of the bodies on either side.
+    fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
+        let edge = &self.profile.edges[place.edge as usize];
+        let point = Vector::new(edge.x, edge.y);
+        let within = pose.inverse_transform_point(point);
+        let normal = -(pose.rotation * self.envelope.outward_at(place, within));
+        let arm = point - pose.transform_point(self.model.center_of_mass);
+        let speed = |k: usize| stance.drives[k].speed;
+        let drives = place.bodies.map(|body| self.model.parts[body].drive);
+        let drive = drives.into_iter().flatten().reduce(|a, b| {
+            if speed(b).abs() > speed(a).abs() {
+                b
+            } else {
+                a
+            }
+        });
+        let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
+        let slides = drive.map_or(0.0, speed);
+        let friction = self.model.parts[place.bodies[0]].friction_limit;
+        Support {
+            normal: Direction::new(normal, arm, motion, self.model),
+            tangent: Direction::new(right_of(normal), arm, motion, self.model),
+            drive,
+            friction: friction.min(self.profile.friction),
+            slides: if self.is_moving(slides) {
+                right_of(normal).dot(motion) * slides
+            } else {
+                0.0
+            },
+            role: Role::Track,
+        }
+    }
+}
