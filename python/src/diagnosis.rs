@@ -66,6 +66,7 @@ fn intrusion<'py>(py: Python<'py>, i: &LoadedIntrusion) -> PyResult<Bound<'py, P
     Ok(result)
 }
 
+#[allow(clippy::cast_possible_wrap)] // indices are small
 fn contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     let whole = |value: fn(&StopContact) -> i64| {

@@ -146,7 +146,7 @@ mod _core {
                 let work = scope.spawn(|| errors::guarded(|| call(&cancel)));
                 while !work.is_finished() {
                     std::thread::sleep(PAUSE);
-                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                    if let Err(error) = Python::attach(Python::check_signals) {
                         cancel.store(true, Ordering::Relaxed);
                         signal = Some(error);
                     }

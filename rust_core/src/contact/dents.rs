@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn a_dent_is_no_penetration_but_may_not_grow() {
         let mut dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert_eq!(gap(&dents, 0.0, -0.04), 0.0);
+        assert!(gap(&dents, 0.0, -0.04).abs() < 1e-15);
         step(&mut dents, 0.001, -0.05);
         assert!((gap(&dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
     }
@@ -123,12 +123,12 @@ mod tests {
         step(&mut dents, 0.0, -0.03);
         assert!((gap(&dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
         step(&mut dents, 0.0, 0.001);
-        assert_eq!(gap(&dents, 0.0, -0.001), -0.001);
+        assert!((gap(&dents, 0.0, -0.001) + 0.001).abs() < 1e-15);
     }
 
     #[test]
     fn elsewhere_the_part_is_whole() {
         let dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert_eq!(gap(&dents, 0.1, -0.02), -0.02);
+        assert!((gap(&dents, 0.1, -0.02) + 0.02).abs() < 1e-15);
     }
 }

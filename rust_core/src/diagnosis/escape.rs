@@ -6,10 +6,11 @@
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
+use super::forces::Push;
 use super::linear_program::Rows;
 use super::scene::Scene;
 use super::signals::Stance;
-use super::statics::{Push, Role, Statics, Support};
+use super::statics::{Role, Statics, Support};
 use crate::contact::{Contact, ReferenceContact};
 use crate::plane::{cross, right_of};
 

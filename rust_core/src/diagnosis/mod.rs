@@ -4,6 +4,7 @@
 //! the envelope decide. docs/decisions/0005 says how, docs/conventions.md what the words mean.
 
 mod escape;
+mod forces;
 mod linear_program;
 mod mechanism;
 mod scene;

@@ -5,16 +5,15 @@
 //! about the centre of mass, and the torque of each drive must balance; how far the best choice of
 //! forces misses that is the imbalance. A condition that holds the robot is found by relaxing it.
 
-use super::linear_program::Rows;
+#[cfg(test)]
+mod tests;
+
+use super::forces::{Forces, Push, Source, WITHOUT_LIMIT};
 use crate::dynamics::{Direction, Levers, push_axis};
 use crate::robot::Model;
 
-/// Multiple of the weight beyond which a force counts as without limit.
-const WITHOUT_LIMIT: f64 = 1e3;
 /// Share of its limit that a motor at its limit has at least.
 const AT_LIMIT: f64 = 0.98;
-/// Of a slack that rounding makes, the escape force must not feed.
-const SLACK: f64 = 1e-8;
 
 /// A stop as forces that could be.
 #[derive(Clone, Debug)]
@@ -98,33 +97,6 @@ enum Drives {
     Turn,
     /// All stand, their motors at the limit.
     Stand,
-}
-
-/// Columns of a linear program: what a unit of each force does, its bounds, whose it is.
-#[derive(Clone, Default)]
-struct Forces {
-    columns: Vec<Vec<f64>>,
-    bounds: Vec<(f64, f64)>,
-    sources: Vec<Source>,
-}
-
-/// Whose a force is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Source {
-    Support(usize),
-    Motor(usize),
-    Outside,
-}
-
-/// The largest push that can be balanced, and how.
-#[derive(Clone, Debug)]
-pub(super) struct Push {
-    /// The push in weights; infinite if any can be balanced.
-    pub force: f64,
-    /// Supports that bear then.
-    pub bearing: Vec<usize>,
-    /// Drives with the forces of their motors, in weights.
-    motors: Vec<(usize, f64)>,
 }
 
 impl Statics {
@@ -353,228 +325,7 @@ impl Support {
     }
 }
 
-impl Forces {
-    fn push(&mut self, source: Source, column: Vec<f64>, bounds: (f64, f64)) {
-        self.columns.push(column);
-        self.bounds.push(bounds);
-        self.sources.push(source);
-    }
-
-    /// Both ways of every balance with the weight, to within `slack.0` of the last variable and
-    /// `slack.1` besides.
-    fn rows(&self, slack: (f64, f64)) -> Rows {
-        let n = self.columns.len();
-        let mut rows = Rows::default();
-        for i in 0..self.size() {
-            let weight = if i == 1 { 1.0 } else { 0.0 };
-            for sign in [1.0, -1.0] {
-                let mut row: Vec<f64> = self.columns.iter().map(|c| sign * c[i]).collect();
-                row.push(-slack.0);
-                rows.push(row, sign * weight + slack.1);
-            }
-        }
-        for (j, (low, high)) in self.bounds.iter().enumerate() {
-            for (sign, bound) in [(-1.0, -low), (1.0, *high)] {
-                if bound.is_finite() {
-                    let mut row = vec![0.0; n + 1];
-                    row[j] = sign;
-                    rows.push(row, bound);
-                }
-            }
-        }
-        let mut row = vec![0.0; n + 1];
-        row[n] = -1.0;
-        rows.push(row, 0.0);
-        rows
-    }
-
-    fn size(&self) -> usize {
-        self.columns.first().map_or(3, Vec::len)
-    }
-
-    fn cost(&self, of_last: f64) -> Vec<f64> {
-        let mut cost = vec![0.0; self.columns.len()];
-        cost.push(of_last);
-        cost
-    }
-
-    fn imbalance(&self) -> Option<f64> {
-        let rows = self.rows((1.0, 0.0));
-        let found = rows.minimise(&self.cost(1.0))?;
-        found.last().map(|t| t.max(0.0))
-    }
-
-    fn largest_push(&self, direction: f64, tolerance: f64) -> Option<Push> {
-        /// A support with a smaller share of the weight does not bear.
-        const BEARS: f64 = 1e-6;
-
-        let n = self.columns.len();
-        let mut pushed = self.clone();
-        let mut push = vec![0.0; self.size()];
-        push[0] = direction;
-        pushed.push(Source::Outside, push, (0.0, WITHOUT_LIMIT));
-        let missed = pushed.imbalance().filter(|missed| *missed <= tolerance)?;
-        let rows = pushed.rows((0.0, missed + SLACK));
-        let mut cost = pushed.cost(0.0);
-        cost[n] = -1.0;
-        let found = rows.minimise(&cost)?;
-        let mut bearing: Vec<usize> = (0..n)
-            .filter(|j| found[*j] > BEARS)
-            .filter_map(|j| match self.sources[j] {
-                Source::Support(i) => Some(i),
-                _ => None,
-            })
-            .collect();
-        bearing.dedup();
-        let motors = (0..n).filter_map(|j| match self.sources[j] {
-            Source::Motor(k) => Some((k, found[j])),
-            _ => None,
-        });
-        Some(Push {
-            force: if found[n] > 0.999 * WITHOUT_LIMIT {
-                f64::INFINITY
-            } else {
-                found[n].max(0.0)
-            },
-            bearing,
-            motors: motors.collect(),
-        })
-    }
-}
-
 fn subset(given: &[Condition], bits: u32) -> Vec<Condition> {
     let chosen = |(i, c): (usize, &Condition)| (bits & (1 << i) != 0).then_some(*c);
     given.iter().enumerate().filter_map(chosen).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use rapier2d_f64::math::Vector;
-
-    use super::*;
-    use crate::plane::right_of;
-
-    /// A support of a block whose normal passes through the centre of mass `arm` behind it, or does
-    /// not: `lever` is that of the normal.
-    fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Support {
-        let direction = |unit, lever| Direction {
-            unit,
-            lever,
-            drive_lever: 0.0,
-        };
-        Support {
-            normal: direction(normal, lever),
-            tangent: direction(right_of(normal), of_tangent),
-            drive: None,
-            friction,
-            slides: 0.0,
-            role: Role::Track,
-        }
-    }
-
-    fn block(supports: Vec<Support>) -> Statics {
-        Statics {
-            supports,
-            closed: Vec::new(),
-            motors: vec![0.0],
-            stalled: vec![0.0],
-            torque: 0.0,
-            lever: 1.0,
-            radius: 1.0,
-            push: None,
-        }
-    }
-
-    /// A small block in a notch whose walls rise at `slope` [rad] on both sides.
-    fn notch(slope: f64, friction: f64) -> Statics {
-        let (s, c) = libm::sincos(slope);
-        let wall = |side: f64| support(Vector::new(side * s, c), [0.0, 0.0], friction);
-        block(vec![wall(1.0), wall(-1.0)])
-    }
-
-    #[test]
-    fn nothing_below_leaves_the_whole_weight_unbalanced() {
-        let imbalance = block(Vec::new()).imbalance().unwrap();
-        assert!((imbalance - 1.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn a_block_in_a_notch_gives_way_where_its_other_wall_is_unloaded() {
-        for slope in [0.2, 0.5, 0.9] {
-            for friction in [0.0_f64, 0.3, 0.4] {
-                let block = notch(slope, friction);
-                assert!(block.imbalance().unwrap() < 1e-8);
-                let push = block.free_escape(1.0, 1e-3).unwrap().force;
-                let expected = libm::tan(slope + friction.atan());
-                assert!((push / expected - 1.0).abs() < 1e-5, "{push} {expected}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_block_is_wedged_where_slope_and_friction_angle_make_a_right_angle() {
-        let push = notch(0.9, 1.0).free_escape(1.0, 1e-3).unwrap().force;
-        assert!(push.is_infinite());
-    }
-
-    #[test]
-    fn walls_that_slide_hold_with_their_friction_at_its_limit() {
-        // The block is on its way up the front wall, whose friction points down it.
-        let (slope, friction) = (0.5, 0.3_f64);
-        let mut block = notch(slope, friction);
-        for support in &mut block.supports {
-            support.slides = 1.0;
-        }
-        let push = block.escape(1.0, 1e-3).unwrap().force;
-        assert!((push / libm::tan(slope + friction.atan()) - 1.0).abs() < 1e-5);
-        // Sliding down it, friction helps the push.
-        for support in &mut block.supports {
-            support.slides = -1.0;
-        }
-        let push = block.escape(1.0, 1e-3).unwrap().force;
-        assert!((push / libm::tan(slope - friction.atan()) - 1.0).abs() < 1e-5);
-    }
-
-    #[test]
-    fn a_plank_tips_where_its_weight_leaves_the_base() {
-        // Two supports to the left of the centre of mass cannot carry it, whatever their friction.
-        let up = Vector::new(0.0, 1.0);
-        let plank = |x: [f64; 2]| block(x.map(|x| support(up, [x, 0.0], 1.0)).to_vec());
-        assert!(plank([-1.0, 0.5]).imbalance().unwrap() < 1e-8);
-        assert!(plank([-1.0, -0.5]).imbalance().unwrap() > 0.1);
-    }
-
-    #[test]
-    fn the_belly_is_the_cause_if_nothing_else_bears() {
-        let up = Vector::new(0.0, 1.0);
-        let mut belly = support(up, [0.0, 0.0], 0.5);
-        belly.role = Role::Belly;
-        let hung = block(vec![belly]);
-        let cause = hung.cause(1e-3, &Condition::ALL);
-        assert_eq!(cause, [[Condition::Belly]]);
-    }
-
-    #[test]
-    fn a_block_that_nothing_given_would_free_has_no_cause() {
-        let cause = notch(0.3, 0.5).cause(1e-3, &Condition::ALL);
-        assert!(cause.is_empty());
-    }
-
-    #[test]
-    fn a_pocket_is_the_cause_if_what_would_bear_in_its_place_cannot_hold() {
-        // In a pocket between two walls; closed, its ground would bear from below and slide.
-        let mut held = notch(0.7, 0.2);
-        held.supports.iter_mut().for_each(|s| s.role = Role::Pocket);
-        let mut below = support(Vector::new(0.0, 1.0), [0.0, 0.0], 0.2);
-        below.slides = -1.0;
-        held.closed = vec![below];
-        assert_eq!(
-            held.cause(1e-3, &[Condition::Pocket]),
-            [[Condition::Pocket]]
-        );
-        // A wall before the robot would hold it all the same.
-        held.supports
-            .push(support(Vector::new(-1.0, 0.0), [0.0, 0.0], 0.2));
-        assert!(held.cause(1e-3, &[Condition::Pocket]).is_empty());
-    }
 }

@@ -72,6 +72,7 @@ impl Simulation {
     }
 
     /// The same instant with a closed belt round the bodies of the track.
+    #[must_use]
     pub fn with_closed_belt(&self) -> Self {
         let model = self.dynamics.model().closed();
         self.with(&self.scenario, self.ground.clone(), model)

@@ -1,0 +1,124 @@
+//! Forces that could balance a stop: what a unit of each does, and the best choice of all.
+
+use super::linear_program::Rows;
+
+/// Multiple of the weight beyond which a force counts as without limit.
+pub(super) const WITHOUT_LIMIT: f64 = 1e3;
+/// Share of the weight by which a balance may miss besides: rounding, far below what a push feels.
+const SLACK: f64 = 1e-8;
+
+/// Columns of a linear program: what a unit of each force does, its bounds, whose it is.
+#[derive(Clone, Default)]
+pub(super) struct Forces {
+    columns: Vec<Vec<f64>>,
+    bounds: Vec<(f64, f64)>,
+    sources: Vec<Source>,
+}
+
+/// Whose a force is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    Support(usize),
+    Motor(usize),
+    Outside,
+}
+
+/// The largest push that can be balanced, and how.
+#[derive(Clone, Debug)]
+pub(super) struct Push {
+    /// The push in weights; infinite if any can be balanced.
+    pub force: f64,
+    /// Supports that bear then.
+    pub bearing: Vec<usize>,
+    /// Drives with the forces of their motors, in weights.
+    pub motors: Vec<(usize, f64)>,
+}
+
+impl Forces {
+    pub(super) fn push(&mut self, source: Source, column: Vec<f64>, bounds: (f64, f64)) {
+        self.columns.push(column);
+        self.bounds.push(bounds);
+        self.sources.push(source);
+    }
+
+    /// Both ways of every balance with the weight; the forces, and as the last variable the imbalance.
+    /// A balance may miss by `slack.0` times that, and by `slack.1` besides.
+    fn rows(&self, slack: (f64, f64)) -> Rows {
+        let n = self.columns.len();
+        let mut rows = Rows::default();
+        for i in 0..self.size() {
+            let weight = if i == 1 { 1.0 } else { 0.0 };
+            for sign in [1.0, -1.0] {
+                let mut row: Vec<f64> = self.columns.iter().map(|c| sign * c[i]).collect();
+                row.push(-slack.0);
+                rows.push(row, sign * weight + slack.1);
+            }
+        }
+        for (j, (low, high)) in self.bounds.iter().enumerate() {
+            for (sign, bound) in [(-1.0, -low), (1.0, *high)] {
+                if bound.is_finite() {
+                    let mut row = vec![0.0; n + 1];
+                    row[j] = sign;
+                    rows.push(row, bound);
+                }
+            }
+        }
+        let mut row = vec![0.0; n + 1];
+        row[n] = -1.0;
+        rows.push(row, 0.0);
+        rows
+    }
+
+    fn size(&self) -> usize {
+        self.columns.first().map_or(3, Vec::len)
+    }
+
+    fn cost(&self, of_last: f64) -> Vec<f64> {
+        let mut cost = vec![0.0; self.columns.len()];
+        cost.push(of_last);
+        cost
+    }
+
+    pub(super) fn imbalance(&self) -> Option<f64> {
+        let rows = self.rows((1.0, 0.0));
+        let found = rows.minimise(&self.cost(1.0))?;
+        found.last().map(|t| t.max(0.0))
+    }
+
+    pub(super) fn largest_push(&self, direction: f64, tolerance: f64) -> Option<Push> {
+        /// A support with a smaller share of the weight does not bear.
+        const BEARS: f64 = 1e-6;
+
+        let n = self.columns.len();
+        let mut pushed = self.clone();
+        let mut push = vec![0.0; self.size()];
+        push[0] = direction;
+        pushed.push(Source::Outside, push, (0.0, WITHOUT_LIMIT));
+        let missed = pushed.imbalance().filter(|missed| *missed <= tolerance)?;
+        let rows = pushed.rows((0.0, missed + SLACK));
+        let mut cost = pushed.cost(0.0);
+        cost[n] = -1.0;
+        let found = rows.minimise(&cost)?;
+        let mut bearing: Vec<usize> = (0..n)
+            .filter(|j| found[*j] > BEARS)
+            .filter_map(|j| match self.sources[j] {
+                Source::Support(i) => Some(i),
+                _ => None,
+            })
+            .collect();
+        bearing.dedup();
+        let motors = (0..n).filter_map(|j| match self.sources[j] {
+            Source::Motor(k) => Some((k, found[j])),
+            _ => None,
+        });
+        Some(Push {
+            force: if found[n] > 0.999 * WITHOUT_LIMIT {
+                f64::INFINITY
+            } else {
+                found[n].max(0.0)
+            },
+            bearing,
+            motors: motors.collect(),
+        })
+    }
+}

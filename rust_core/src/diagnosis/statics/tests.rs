@@ -1,0 +1,128 @@
+use rapier2d_f64::math::Vector;
+
+use super::*;
+use crate::plane::right_of;
+
+/// A support of a block whose normal passes through the centre of mass `arm` behind it, or does
+/// not: `lever` is that of the normal.
+fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Support {
+    let direction = |unit, lever| Direction {
+        unit,
+        lever,
+        drive_lever: 0.0,
+    };
+    Support {
+        normal: direction(normal, lever),
+        tangent: direction(right_of(normal), of_tangent),
+        drive: None,
+        friction,
+        slides: 0.0,
+        role: Role::Track,
+    }
+}
+
+fn block(supports: Vec<Support>) -> Statics {
+    Statics {
+        supports,
+        closed: Vec::new(),
+        motors: vec![0.0],
+        stalled: vec![0.0],
+        torque: 0.0,
+        lever: 1.0,
+        radius: 1.0,
+        push: None,
+    }
+}
+
+/// A small block in a notch whose walls rise at `slope` [rad] on both sides.
+fn notch(slope: f64, friction: f64) -> Statics {
+    let (s, c) = libm::sincos(slope);
+    let wall = |side: f64| support(Vector::new(side * s, c), [0.0, 0.0], friction);
+    block(vec![wall(1.0), wall(-1.0)])
+}
+
+#[test]
+fn nothing_below_leaves_the_whole_weight_unbalanced() {
+    let imbalance = block(Vec::new()).imbalance().unwrap();
+    assert!((imbalance - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_block_in_a_notch_gives_way_where_its_other_wall_is_unloaded() {
+    for slope in [0.2, 0.5, 0.9] {
+        for friction in [0.0_f64, 0.3, 0.4] {
+            let block = notch(slope, friction);
+            assert!(block.imbalance().unwrap() < 1e-8);
+            let push = block.free_escape(1.0, 1e-3).unwrap().force;
+            let expected = libm::tan(slope + friction.atan());
+            assert!((push / expected - 1.0).abs() < 1e-5, "{push} {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_block_is_wedged_where_slope_and_friction_angle_make_a_right_angle() {
+    let push = notch(0.9, 1.0).free_escape(1.0, 1e-3).unwrap().force;
+    assert!(push.is_infinite());
+}
+
+#[test]
+fn walls_that_slide_hold_with_their_friction_at_its_limit() {
+    // The block is on its way up the front wall, whose friction points down it.
+    let (slope, friction) = (0.5, 0.3_f64);
+    let mut block = notch(slope, friction);
+    for support in &mut block.supports {
+        support.slides = 1.0;
+    }
+    let push = block.escape(1.0, 1e-3).unwrap().force;
+    assert!((push / libm::tan(slope + friction.atan()) - 1.0).abs() < 1e-5);
+    // Sliding down it, friction helps the push.
+    for support in &mut block.supports {
+        support.slides = -1.0;
+    }
+    let push = block.escape(1.0, 1e-3).unwrap().force;
+    assert!((push / libm::tan(slope - friction.atan()) - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn a_plank_tips_where_its_weight_leaves_the_base() {
+    // Two supports to the left of the centre of mass cannot carry it, whatever their friction.
+    let up = Vector::new(0.0, 1.0);
+    let plank = |x: [f64; 2]| block(x.map(|x| support(up, [x, 0.0], 1.0)).to_vec());
+    assert!(plank([-1.0, 0.5]).imbalance().unwrap() < 1e-8);
+    assert!(plank([-1.0, -0.5]).imbalance().unwrap() > 0.1);
+}
+
+#[test]
+fn the_belly_is_the_cause_if_nothing_else_bears() {
+    let up = Vector::new(0.0, 1.0);
+    let mut belly = support(up, [0.0, 0.0], 0.5);
+    belly.role = Role::Belly;
+    let hung = block(vec![belly]);
+    let cause = hung.cause(1e-3, &Condition::ALL);
+    assert_eq!(cause, [[Condition::Belly]]);
+}
+
+#[test]
+fn a_block_that_nothing_given_would_free_has_no_cause() {
+    let cause = notch(0.3, 0.5).cause(1e-3, &Condition::ALL);
+    assert!(cause.is_empty());
+}
+
+#[test]
+fn a_pocket_is_the_cause_if_what_would_bear_in_its_place_cannot_hold() {
+    // In a pocket between two walls; closed, its ground would bear from below and slide.
+    let mut held = notch(0.7, 0.2);
+    held.supports.iter_mut().for_each(|s| s.role = Role::Pocket);
+    let mut below = support(Vector::new(0.0, 1.0), [0.0, 0.0], 0.2);
+    below.slides = -1.0;
+    held.closed = vec![below];
+    assert_eq!(
+        held.cause(1e-3, &[Condition::Pocket]),
+        [[Condition::Pocket]]
+    );
+    // A wall before the robot would hold it all the same.
+    held.supports
+        .push(support(Vector::new(-1.0, 0.0), [0.0, 0.0], 0.2));
+    assert!(held.cause(1e-3, &[Condition::Pocket]).is_empty());
+}
