@@ -146,7 +146,10 @@ mod _core {
                 let work = scope.spawn(|| errors::guarded(|| call(&cancel)));
                 while !work.is_finished() {
                     std::thread::sleep(PAUSE);
-                    if let Err(error) = Python::attach(Python::check_signals) {
+                    #[allow(clippy::redundant_closure_for_method_calls)]
+                    // its lifetime is not general
+                    let looked = Python::attach(|py| py.check_signals());
+                    if let Err(error) = looked {
                         cancel.store(true, Ordering::Relaxed);
                         signal = Some(error);
                     }
