@@ -2,7 +2,7 @@
 //! statics predicts, with the forces it predicts.
 
 use crate::common::*;
-use crawler2d_core::{Run, Scenario};
+use crawler2d_core::{Mechanism, Outcome, Run, Scenario};
 
 /// A row of equal, turning wheels before a step; lengths [m].
 #[derive(Clone, Copy, Debug)]
@@ -347,6 +347,7 @@ fn stops_on_three_sliding_contacts_are_the_candidates_of_statics() {
     let mut draw = Draw(seed);
     let (cells, mut cleared, mut stops, mut noses, mut rattles) =
         (200, 0, Vec::new(), Vec::new(), 0);
+    let (mut called_seized, mut astride, mut imbalance) = (0, 0, 0.0_f64);
     for _ in 0..cells {
         let row = drawn(&mut draw);
         let run = run(&row.scenario());
@@ -355,8 +356,17 @@ fn stops_on_three_sliding_contacts_are_the_candidates_of_statics() {
                 Stop::Candidate {
                     angle_off,
                     share_off,
-                } => stops.push((angle_off.to_degrees(), share_off)),
-                Stop::Nose { share_off } => noses.push(share_off),
+                } => {
+                    stops.push((angle_off.to_degrees(), share_off));
+                    let why = run.diagnosis.as_ref().expect("it stopped");
+                    called_seized += u32::from(outcome == Outcome::Seized);
+                    astride += u32::from(why.mechanism == Some(Mechanism::Straddled));
+                    imbalance = imbalance.max(why.imbalance.expect("there is a weight"));
+                }
+                Stop::Nose { share_off } => {
+                    noses.push(share_off);
+                    assert_eq!(outcome, Outcome::Slipping);
+                }
                 Stop::Rattle => rattles += 1,
             },
             _ => cleared += 1,
@@ -373,8 +383,14 @@ fn stops_on_three_sliding_contacts_are_the_candidates_of_statics() {
         stops.len(),
         noses.len()
     );
+    println!(
+        "of these stops {called_seized} are called seized, {astride} of them astride; imbalance at most {imbalance:.0e} \
+         of the weight"
+    );
     assert!(rattles < 8);
     assert!(stops.len() > 15);
+    assert_eq!(called_seized as usize, stops.len());
+    assert!(imbalance < 1e-6);
     assert!(angle < 0.3 && share < 0.05 && nose < 0.01);
 }
 

@@ -101,13 +101,12 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
 }
 
 #[test]
-fn cases_of_a_belt_and_of_skids_are_never_seized() {
+fn belts_and_skids_are_never_seized() {
     let mut draw = Draw(12);
     let mut stops = 0;
     for _ in 0..150 {
         let mut scenario = engineer();
-        scenario.robot.track =
-            [belt(), force(), force_on_wheels()][(draw.unit() * 2.0) as usize].clone();
+        scenario.robot.track = if draw.unit() < 0.5 { belt() } else { force() };
         scenario.terrain = step(draw.between(0.05, 0.6), draw.between(0.2, 1.5));
         scenario.robot.drivetrain.max_torque = draw.between(0.5, 12.0);
         scenario.duration = 8.0;
