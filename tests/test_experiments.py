@@ -1,6 +1,7 @@
 """The study: what it draws, counts and writes, on a few runs."""
 
 import csv
+import html
 import itertools
 import math
 from dataclasses import fields, replace
@@ -13,10 +14,12 @@ import xarray as xr
 import crawler2d as c2d
 from conftest import ROBOT
 from crawler2d.experiments import __main__ as command
-from crawler2d.experiments import plot, report, tables
+from crawler2d.experiments import plot, report, stops_report, tables
 from crawler2d.experiments.__main__ import main
-from crawler2d.experiments.models import study_models
+from crawler2d.experiments.models import gear_pairs, study_models
 from crawler2d.experiments.public_model import posts, public_wheel_model
+from crawler2d.experiments.replays import write_replays
+from crawler2d.experiments.stops import FIGURES, gear_against_round, stops
 from crawler2d.experiments.sweeps import QUICK, Design, Study, robots_of_the_study
 from crawler2d.robot import Robot
 from crawler2d.scenario import Scenario
@@ -41,29 +44,35 @@ def study(design: Design = TINY) -> Study:
 def table() -> xr.Dataset:
     """Two models on four heights, ten runs a cell, with outcomes that are made up."""
     outcomes = np.full((2, 4, 10), "cleared", dtype=object)
-    outcomes[0, 1, :6] = "stopped"  # a gap below a height that is cleared
+    outcomes[0, 1, :6] = "seized"  # a gap below a height that is cleared
     outcomes[0, 3, :] = "tipped_over"
-    outcomes[1, :, :] = "stopped"
+    outcomes[1, :, :] = "stalled"
     outcomes[1, 0, 0] = "diverged"
+    outcomes[1, 3, :2] = "cleared"  # where the first tipped over
+    outcomes[1, 3, 2] = "seized"
     dims = ("track", "height", "repeat")
     zero = np.zeros(outcomes.shape)
-    stopped = outcomes == "stopped"
-    weight = ROBOT.mass * 9.81
+    stopped = np.isin(outcomes.astype(str), ["seized", "stalled"])
+    mechanisms = np.where(outcomes == "seized", "undercut", "")
+    mechanisms[1, 1, :3] = "blocked"
+    mechanisms[0, 1, 0] = "straddled"
+    causes = np.where(outcomes == "seized", "pocket", np.where(stopped, "torque", ""))
+    causes = causes.astype("<U20")
+    causes[0, 1, 3] = "pocket or torque"
     figures = {
         "time": zero + 10.0,
         "wall_time": zero + 0.1,
         "max_penetration": zero + np.array([[[1e-4]], [[3e-4]]]),
-        "intrusion_force": np.where(stopped & (np.arange(10) % 2 == 0), 0.03 * weight, 0.0),
         "intrusion_depth": zero + np.arange(10) * 1e-3,
         "intrusion_root_depth": zero + np.arange(10) * 0.5e-3,
-        "stopped_time": np.where(stopped, 5.0, 0.0),
-        "path_length": zero + 1.0,
-        # The first model's track went on turning where it stopped, the second's did not.
-        "track_distance": np.where(stopped, [[[3.0]], [[1.1]]], 1.0),
+        "seized_at_tips": outcomes == "seized",
+        "belt_freed": stopped & (np.arange(10) % 2 == 0),
     }
     return xr.Dataset(
         {
             "outcome": (dims, outcomes.astype(str)),
+            "mechanism": (dims, mechanisms),
+            "cause": (dims, causes),
             **{name: (dims, values) for name, values in figures.items()},
             "distinct_poses": (dims[:2], np.full((2, 4), 3)),
         },
@@ -116,12 +125,12 @@ def test_the_obstacles_are_those_of_the_design() -> None:
 
 def test_cells_count_successes_failures_and_runs_without_a_result(table: xr.Dataset) -> None:
     cells = tables.cells(table, "step")
-    assert [cell.cleared for cell in cells] == [10, 4, 10, 0, 0, 0, 0, 0]
+    assert [cell.cleared for cell in cells] == [10, 4, 10, 0, 0, 0, 0, 2]
     assert [cell.count for cell in cells] == [10, 10, 10, 10, 9, 10, 10, 10]
-    assert cells[1].others == "6 stopped"
-    assert cells[4].others == "9 stopped, 1 diverged"
+    assert cells[1].others == "6 seized"
+    assert cells[4].others == "9 stalled, 1 diverged"
     assert (cells[1].rate, cells[1].low, cells[1].high) == c2d.wilson(4, 10)
-    assert "6 stopped" in report.rates_text(cells)
+    assert "7 stalled, 1 seized" in report.rates_text(cells)
 
 
 def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Dataset) -> None:
@@ -137,13 +146,87 @@ def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Datas
     assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
 
 
-def test_stops_tell_loaded_edges_and_standing_tracks(table: xr.Dataset) -> None:
-    first, second = tables.stops(table, "step")
-    assert (first.stopped, first.loaded, first.standing) == (6, 3, 0)
-    assert (second.stopped, second.standing) == (39, 39)
-    assert first.depth == pytest.approx(2e-3)  # of 0, 2 and 4 mm
-    assert first.root_depth == pytest.approx(1e-3)
-    assert "6, 0 stood, 3 loaded: 2.0, 1.0" in report.stops_text([first, second])
+def test_stops_tell_outcomes_mechanisms_and_what_a_belt_does(table: xr.Dataset) -> None:
+    first, second = stops(table, "step", belt="first")
+    assert (first.count, first.cleared, first.seized, first.stopped) == (40, 24, 6, 6)
+    assert (first.mechanism, first.of_mechanism) == ("undercut", 5)
+    assert (first.seized_alone, second.seized_alone) == (5, 1)
+    assert (first.at_tips, first.unnatural_stops, first.unnatural_passes) == (6, 3, 0)
+    assert first.depth == pytest.approx(2.5e-3)  # of 0 to 5 mm
+    assert first.root_depth == pytest.approx(1.25e-3)
+    assert (second.count, second.cleared, second.seized, second.stalled) == (39, 2, 1, 36)
+    assert (second.mechanism, second.of_mechanism) == ("", 33)
+    assert (second.at_tips, second.unnatural_passes) == (1, 2)
+    assert (second.hung_up, second.slipping, second.cycling) == (0, 0, 0)
+    *_, one, other = stops_report.stops_text([first, second]).splitlines()
+    assert one.split()[:5] == ["first", "step", "40", "24", "6"]
+    assert "undercut, 5" in one
+    assert one.split()[-6:] == ["83", "100", "50", "-", "2.5", "1.2"]
+    assert "none, 33" in other
+    assert other.split()[-3:] == ["2", "2.0", "1.0"]
+
+
+def test_a_model_that_never_stops_has_no_shares_of_stops(table: xr.Dataset) -> None:
+    (row,) = stops(table.sel(track=["first"], height=[0.02]), "step", belt="first")
+    assert (row.stopped, row.mechanism, row.of_mechanism) == (0, "", 0)
+    assert math.isnan(row.depth)
+    line = stops_report.stops_text([row]).splitlines()[-1]
+    assert line.split() == ["first", "step", "10", "10", *["-"] * 13]
+
+
+def test_gear_wheels_are_set_against_round_ones_with_intervals(table: xr.Dataset) -> None:
+    rows = gear_against_round(table, "step", {"second": "first"}, belt="first")
+    assert len(rows) == 4 * len(FIGURES)
+    assert [row.wheel for row in rows[:: len(FIGURES)]] == ["round", "gear"] * 2
+    by_place = {(row.model, row.wheel, row.figure): row for row in rows}
+    for wheel, model, found, count in (("round", "first", 6, 40), ("gear", "second", 1, 39)):
+        for name in (model, "all of these"):
+            row = by_place[name, wheel, "seized"]
+            assert (row.found, row.count) == (found, count)
+            assert (row.rate, row.low, row.high) == c2d.wilson(found, count)
+    assert by_place["second", "gear", "stopped"].found == 37
+    text = stops_report.against_text(rows)
+    assert "15 (7 to 29)" in text
+    assert text.count("all of these") == 2
+
+
+def test_the_pairs_differ_in_their_wheels_alone() -> None:
+    pairs = gear_pairs(MODELS)
+    assert len(pairs) == 4
+    for gear, plain in pairs.items():
+        ours, theirs = MODELS[gear].track, MODELS[plain].track
+        assert isinstance(ours, (c2d.LineOfWheels, c2d.CircumferentialWheels, c2d.HybridWheels))
+        assert ours.wheel == c2d.GearWheel()
+        assert replace(ours, wheel=c2d.RoundWheel()) == theirs
+
+
+def test_every_way_to_stop_has_a_replay_and_so_has_a_belt(tmp_path: Path) -> None:
+    models = {name: MODELS[name] for name in ("belt", "line of 4, touching", "24 gears all round")}
+    design = replace(TINY, heights={"step": (0.06, 0.08), "knife edge": (0.04,)})
+    own = Study(design=design, models=models, progress=False)
+    tables_of = {name: own.on_obstacle(name) for name in design.heights}
+    folder = tmp_path / "replays"
+    folder.mkdir()
+    (folder / "old.html").write_text("of a former study")
+    found = write_replays(tables_of, folder)
+    assert sorted(path.name for path in folder.iterdir()) == sorted(replay.file for replay in found)
+    ways = {
+        (outcome, mechanism)
+        for table in tables_of.values()
+        for outcome, mechanism in zip(
+            table["outcome"].to_numpy().flat, table["mechanism"].to_numpy().flat, strict=True
+        )
+        if c2d.Outcome(outcome).is_stop
+    }
+    *stopped, belt = found
+    assert {(replay.outcome, replay.mechanism) for replay in stopped} == ways
+    assert len(stopped) == len(ways) >= 3
+    assert (belt.model, belt.outcome, belt.sentence) == ("belt", "cleared", "")
+    for replay in stopped:
+        assert replay.sentence.startswith(replay.outcome.replace("_", " "))
+        text = (folder / replay.file).read_text(encoding="utf-8")
+        assert html.escape(replay.sentence) in text
+        assert f"{folder}/{replay.file}" in stops_report.replays_text(found, str(folder))
 
 
 def test_odometry_of_round_wheels_is_exact_and_that_of_gears_reads_too_much() -> None:
@@ -167,11 +250,11 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
     runs = public_wheel_model()
     assert {place: str(run.outcome) for place, run in runs.items()} == {
         (0.03, True): "cleared",
-        (0.05, True): "stopped",
-        (0.08, True): "stopped",
+        (0.05, True): "seized",
+        (0.08, True): "seized",
         (0.03, False): "cleared",
-        (0.05, False): "stopped",
-        (0.08, False): "stopped",
+        (0.05, False): "seized",
+        (0.08, False): "seized",
     }
     found = posts(runs)
     for (height, belly), run in runs.items():
@@ -182,7 +265,7 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
         # The belly hangs 50 mm above the ground between the wheels.
         reach = min(height, 0.05) if belly else height
         assert deepest.depth == pytest.approx(reach, abs=1e-3)
-        assert (deepest.end == run.metrics["time"]) == (run.outcome == "stopped")
+        assert (deepest.end == run.metrics["time"]) == (run.outcome == "seized")
 
 
 def test_the_quick_study_writes_its_tables_and_its_pictures(
@@ -207,6 +290,13 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
         if (row["robot"], row["obstacle"]) == ("preset", "step") and row["height"] == "0.06":
             own = [run for run in runs if run["track"] == row["model"]]
             assert int(row["cleared"]) == sum(run["outcome"] == "cleared" for run in own)
+    with (out / "replays.csv").open(newline="") as file:
+        replays = list(csv.DictReader(file))
+    assert replays
+    for replay in replays:
+        assert (out / "replays" / replay["file"]).exists()
+        assert f"{out}/replays/{replay['file']}" in text
+    assert "Gear wheels against round ones on steps" in text
     for picture in ("rates.png", "phases.png", "posts.png"):
         assert (out / picture).stat().st_size > 10_000
 

@@ -214,7 +214,7 @@ def test_a_simulation_finds_the_same_inside_as_the_run(seized: c2d.Run) -> None:
 def test_a_stop_before_a_wall_carries_no_edge() -> None:
     robot = ROBOT.with_track(c2d.ForceTrack(support="wheels"))
     run = c2d.simulate(robot, c2d.terrains.step(0.2))
-    assert run.outcome is c2d.Outcome.STOPPED
+    assert run.outcome is c2d.Outcome.STALLED
     assert run.events["kind"].tolist() == ["stop"]
     assert run.events["edge"].tolist() == [-1]
     assert run.events["bodies"].tolist() == [()]

@@ -148,9 +148,10 @@ def test_the_belt_is_drawn_round_wheels_alone(run: c2d.Run) -> None:
 
 def test_the_title_says_why_the_robot_stopped() -> None:
     run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
-    vars(run)["diagnosis"] = "The edge is held."
-    title = run.plot()[0].get_title(loc="left")
-    assert title == f"{run.title}\nThe edge is held."
+    title, *why = run.plot()[0].get_title(loc="left").splitlines()
+    assert title == run.title
+    assert " ".join(why) == str(run.diagnosis)
+    assert max(map(len, why)) <= 80
 
 
 def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) -> None:

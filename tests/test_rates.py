@@ -14,8 +14,8 @@ TABLE = xr.Dataset(
         "outcome": (
             ("height", "repeat"),
             [
-                ["cleared", "cleared", "cleared", "stopped"],
-                ["tipped_over", "stopped", "diverged", "cleared"],
+                ["cleared", "cleared", "seized", "stalled"],
+                ["tipped_over", "slipping", "diverged", "cleared"],
                 ["refused", "refused", "refused", "refused"],
             ],
         )
@@ -28,7 +28,7 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
     found = rate(TABLE)
     assert found["count"].values.tolist() == [4, 3, 0]
     for cell, (successes, count) in zip(
-        found.transpose("height").to_dataframe().itertuples(), [(3, 4), (1, 3), (0, 0)], strict=True
+        found.transpose("height").to_dataframe().itertuples(), [(2, 4), (1, 3), (0, 0)], strict=True
     ):
         expected = c2d.wilson(successes, count)
         assert (cell.rate, cell.low, cell.high) == pytest.approx(tuple(expected), nan_ok=True)
@@ -37,9 +37,19 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
 
 
 def test_any_outcome_can_be_counted() -> None:
-    assert rate(TABLE, "stopped")["rate"].values[:2] == pytest.approx([1 / 4, 1 / 3])
+    assert rate(TABLE, "seized")["rate"].values[:2].tolist() == [1 / 4, 0.0]
     assert rate(TABLE, c2d.Outcome.TIPPED_OVER)["rate"].sel(height=0.1) == pytest.approx(1 / 3)
-    assert rate(TABLE, "seized")["rate"].values[:2].tolist() == [0.0, 0.0]
+    assert rate(TABLE, "cycling")["rate"].values[:2].tolist() == [0.0, 0.0]
+
+
+def test_all_stops_can_be_counted_together() -> None:
+    found = rate(TABLE, "stopped")
+    assert found["rate"].values[:2].tolist() == [2 / 4, 1 / 3]
+    assert found.attrs["outcome"] == "stopped"
+    assert found["rate"].attrs["long_name"] == "rate of stopped"
+    names = [outcome for outcome in c2d.Outcome if outcome.is_stop]
+    assert rate(names, "stopped")["rate"].item() == 1.0
+    assert rate([o for o in c2d.Outcome if not o.is_stop], "stopped")["rate"].item() == 0.0
 
 
 def test_any_dimension_can_be_counted_over() -> None:
@@ -49,7 +59,7 @@ def test_any_dimension_can_be_counted_over() -> None:
 
 
 def test_a_list_of_outcomes_has_a_rate() -> None:
-    outcomes = [c2d.Outcome.CLEARED, "stopped", None, "cleared"]
+    outcomes = [c2d.Outcome.CLEARED, "seized", None, "cleared"]
     found = rate(outcomes)
     assert found["rate"].item() == pytest.approx(2 / 3)
     assert found["count"].item() == 3
@@ -70,7 +80,9 @@ def test_no_outcomes_have_no_rate() -> None:
         ((TABLE, None), "outcome", "detracked, tipped_over"),
         ((TABLE, "cleared", "repeats"), "dim", "did you mean repeat?"),
         ((xr.Dataset({"time": 1.0}),), "table", "must be one of time"),
-        ((["cleared", "stoped"],), "outcomes[1]", "did you mean stopped?"),
+        ((TABLE, "stoped"), "outcome", "did you mean stopped?"),
+        ((["cleared", "siezed"],), "outcomes[1]", "did you mean seized?"),
+        ((["cleared", "stopped"],), "outcomes[1]", "must be one of"),
         (("cleared",), "outcomes[0]", "must be one of"),
     ],
 )

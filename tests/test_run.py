@@ -185,7 +185,7 @@ def test_the_edges_are_those_of_the_step(run: c2d.Run) -> None:
 
 def test_a_stop_is_an_event_that_lasts_to_the_end() -> None:
     run = c2d.simulate(ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1))
-    assert run.outcome is c2d.Outcome.STOPPED
+    assert run.outcome is c2d.Outcome.STALLED
     assert run.events["kind"].tolist() == ["stop"]
     assert run.events["end"][0] == pytest.approx(run.time[-1])
     length = run.events["end"][0] - run.events["start"][0]

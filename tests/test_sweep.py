@@ -143,6 +143,44 @@ def test_distinct_outcomes_and_poses_are_counted_in_each_cell(table: xr.Dataset)
         assert at["distinct_outcomes"].item() == len(set(at["outcome"].values.tolist()))
 
 
+def test_stops_have_their_mechanism_and_others_none(table: xr.Dataset) -> None:
+    assert set(table["mechanism"].values.ravel().tolist()) <= {"", *c2d.Mechanism}
+    cleared = table["outcome"] == "cleared"
+    assert (table["mechanism"].where(cleared, "") == "").all()
+    assert (table["cause"].where(cleared, "") == "").all()
+    assert not table["seized_at_tips"].where(cleared, False).any()
+    assert "belt_freed" not in table
+    assert "belt_distance" not in table
+
+
+def test_a_tried_belt_has_its_columns() -> None:
+    seizing = BASE.replace({"terrain.height": 0.10, "duration": 8.0})
+    models = {"line of 4": c2d.LineOfWheels(4), "skids": c2d.ForceTrack()}
+    over = {"robot.track": models, "terrain.height": [0.02, 0.10]}
+    found = quiet(seizing, over, counterfactual=True)
+    stopped = found["outcome"].isin([str(o) for o in c2d.Outcome if o.is_stop])
+    assert 0 < stopped.sum() < stopped.size
+    assert (found["belt_distance"].notnull() == stopped).all()
+    assert not (found["belt_freed"] & ~stopped).any()
+    at_edge = found.sel(track="line of 4", height=0.10)
+    assert at_edge["outcome"].values.tolist() == ["seized"] * 2
+    assert at_edge["mechanism"].values.tolist() == ["straddled"] * 2
+    assert at_edge["cause"].values.tolist() == ["pocket"] * 2
+    assert at_edge["seized_at_tips"].values.tolist() == at_edge["belt_freed"].values.tolist()
+    assert found["belt_distance"].attrs["units"] == "m"
+    # Trying a belt changes nothing else.
+    plain = quiet(seizing, over)
+    xr.testing.assert_identical(
+        found.drop_vars(["belt_freed", "belt_distance", "wall_time"]), plain.drop_vars("wall_time")
+    )
+
+
+def test_a_belt_that_was_asked_for_has_its_columns_though_nothing_stopped() -> None:
+    found = quiet(BASE, {"terrain.height": [0.01]}, counterfactual=True)
+    assert found["belt_freed"].values.tolist() == [[False, False]]
+    assert found["belt_distance"].isnull().all()
+
+
 def test_the_number_of_threads_does_not_change_the_table() -> None:
     tables = [quiet(BASE, {"robot.track": MODELS}, threads=threads) for threads in (1, 2, 3)]
     one, *others = (found.drop_vars("wall_time") for found in tables)

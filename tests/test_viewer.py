@@ -16,7 +16,7 @@ import pytest
 import crawler2d as c2d
 from conftest import GEAR, ROBOT, VARIANTS
 from crawler2d import _core
-from crawler2d.plotting import inset, taut_belt
+from crawler2d._shapes import circle, inset
 from crawler2d.viewer.packed import packed
 from crawler2d.viewer.recording import MOST_FRAMES
 
@@ -94,10 +94,11 @@ def test_the_policy_of_the_page_lets_its_own_script_run_and_nothing_else(stopped
 
 
 def test_the_page_says_what_the_run_says(stopped: c2d.Run) -> None:
-    vars(stopped)["diagnosis"] = "the edge is <held> between wheels"
     page = Page(stopped.to_html())
     assert page.texts["title"] == stopped.title
-    assert "the edge is <held> between wheels" in page.shown
+    assert str(stopped.diagnosis) in page.shown
+    verdicts = [a["class"] for tag, a in page.tags if tag == "li" and "class" in a]
+    assert verdicts == [f"outcome {stopped.outcome}", "mechanism"]
     assert f"{1e3 * stopped.metrics['intrusion_depth']:.1f} mm" in page.shown
     assert f"{stopped.metrics['drive_work']:.6g} J" in page.shown
     assert c2d.__version__ in page.shown
@@ -164,27 +165,26 @@ def test_only_a_belt_has_a_surface_that_moves() -> None:
         assert Page(run.to_html()).recording["robot"]["moving"] is moving
 
 
-def test_the_belt_round_wheels_comes_from_the_core(
-    stopped: c2d.Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_belt_round_wheels_comes_from_the_core(stopped: c2d.Run) -> None:
     geometry = _core.geometry(stopped.scenario.to_json())
-    belt = taut_belt(geometry["circles"])
-    monkeypatch.setattr(_core, "geometry", lambda _: geometry | {"envelope": belt})
     robot = Page(stopped.to_html()).recording["robot"]
-    assert np.allclose(unpacked(robot["envelope"]), belt.ravel(), atol=1e-5)
+    assert np.allclose(unpacked(robot["envelope"]), geometry["envelope"].ravel(), atol=1e-5)
+    assert robot["root"] is None
     inner = unpacked(robot["inner"]).reshape(-1, 2)
     radius = geometry["circles"][0, 2] - stopped.scenario.criteria.intrusion_depth
     assert inner[:, 1].max() == pytest.approx(radius, abs=1e-5)
-    monkeypatch.setattr(
-        _core, "geometry", lambda _: {k: v for k, v in geometry.items() if k != "envelope"}
-    )
-    assert Page(stopped.to_html()).recording["robot"]["envelope"] is None
 
 
-@pytest.mark.parametrize("turn", [1, -1])
-def test_an_inset_line_lies_inside_by_its_depth(turn: int) -> None:
-    circle = taut_belt(np.array([[1.0, 2.0, 0.5]]))[::turn]
-    assert np.hypot(*(inset(circle, 0.1) - [1.0, 2.0]).T) == pytest.approx(0.4, abs=1e-12)
+def test_the_belt_round_the_roots_of_gears_runs_below_that_round_their_tips() -> None:
+    run = c2d.simulate(GEARS, c2d.terrains.flat(), duration=0.5)
+    robot = Page(run.to_html()).recording["robot"]
+    top, root = (unpacked(robot[name])[1::2].max() for name in ("envelope", "root"))
+    assert top - root == pytest.approx(GEAR.grouser_height, abs=1e-5)
+
+
+def test_an_inset_line_lies_inside_by_its_depth() -> None:
+    moved = inset(circle(1.0, 2.0, 0.5), 0.1)
+    assert np.hypot(*(moved - [1.0, 2.0]).T) == pytest.approx(0.4, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from crawler2d import robots, terrains
 from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
 from crawler2d.compare import compare
-from crawler2d.diagnosis import Condition, Diagnosis, Mechanism
+from crawler2d.diagnosis import Diagnosis, Mechanism
 from crawler2d.draws import scaled, uniform
 from crawler2d.errors import (
     BatchInterrupted,
@@ -46,7 +46,6 @@ __all__ = [
     "BatchInterrupted",
     "BeltTrack",
     "CircumferentialWheels",
-    "Condition",
     "Crawler2dError",
     "Diagnosis",
     "Drive",

@@ -3,95 +3,168 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from crawler2d.diagnosis import Diagnosis, Intrusion
+    from crawler2d.diagnosis import Diagnosis
 
 __all__ = ["sentence"]
 
-_OUTCOMES = {
-    "seized": "seized",
-    "hung_up": "hung up on its belly",
-    "stalled": "stalled at the torque limit",
-    "slipping": "slipping",
-    "cycling": "moving to and fro without gain",
-}
-_FREES = {
-    "pocket": "closing the pocket",
-    "belly": "taking the belly away",
+_BELT, _BELLY = 1, 3
+_NAMES = {_BELT: "the belt", 2: "the skid", _BELLY: "the belly"}
+"""What a reader calls the bodies that are no wheels, by their code in `body_kind`."""
+_LEAST_SHARE = 0.02
+"""Smaller shares are noise to a reader."""
+_LEAST_DEPTH = 5e-4
+"""[m] Smaller depths are none in whole millimetres."""
+_LEAST_SLIP = 5e-3
+"""[m/s] Slower surfaces do not slip to a reader."""
+
+_MOVES = {
+    "pocket": "a closed track",
+    "belly": "a robot without its belly",
     "torque": "more torque",
     "friction": "twice the friction",
 }
 
 
 def sentence(diagnosis: Diagnosis) -> str:
-    """Say what a diagnosis found, most telling first."""
+    """Say what a diagnosis found, most telling first.
+
+    Every clause is a fact of its own; what follows from the outcome or from another clause is left
+    out.
+    """
     d = diagnosis
-    head = _OUTCOMES[d.outcome]
-    if d.mechanism is not None:
-        head += f", {d.mechanism}"
-    parts = []
-    if d.intrusion is not None:
-        parts.append(_inside(d.intrusion))
-    parts.extend(_bearing(d))
-    parts.extend(_balance(d))
-    return f"{head}: {'; '.join(parts)}" if parts else head
+    names = [str(d.outcome), *([] if d.mechanism is None else [str(d.mechanism)])]
+    head = ", ".join(name.replace("_", " ") for name in names)
+    tellers = (_inside, _on_it, _belly, _drives, _progress, _moved_by, _belt)
+    said = "; ".join(clause for clause in (tell(d) for tell in tellers) if clause)
+    return f"{head}: {said}" if said else head
 
 
-def _inside(piece: Intrusion) -> str:
+def _inside(d: Diagnosis) -> str:
+    piece = d.intrusion
+    if piece is None:
+        return ""
     rear, front = sorted(piece.bodies)
-    where = f"between wheels {rear} and {front}" if rear != front else f"at wheel {rear}"
-    place = f"edge {piece.edge} at x {piece.x:.2f} m, y {piece.y:.2f} m,"
-    return f"{place} {1e3 * piece.depth:.0f} mm inside the envelope {where}"
+    has_grousers = piece.depth - piece.root_depth > _LEAST_DEPTH
+    if rear != front:
+        where = f"between wheels {rear} and {front}"
+    elif has_grousers:
+        where = f"between two grousers of wheel {rear}"
+    else:
+        where = f"at {_name(d, rear)}"
+    below = ""
+    if has_grousers and rear != front:
+        deep = f"{1e3 * piece.root_depth:.0f} mm" if piece.root_depth > _LEAST_DEPTH else "not"
+        below = f", {deep} below the roots,"
+    place = f"at x {piece.x:z.3f} m, y {piece.y:z.3f} m"
+    reach = f"edge {piece.edge} reaches {1e3 * piece.depth:.0f} mm inside the envelope"
+    return f"{reach}{below} {where}, {place}"
 
 
-def _bearing(d: Diagnosis) -> list[str]:
-    """Say what the most loaded contact in the pocket, the belly and the motors do."""
-    said = []
+def _on_it(d: Diagnosis) -> str:
+    """Say what bears on the ground inside the track, most loaded first."""
     contacts = d.contacts
-    inside = np.flatnonzero(contacts["in_pocket"])
-    if len(inside) > 0:
-        most = inside[np.argmax(contacts["normal_force"][inside])]
-        body = "the belly" if contacts["body_kind"][most] == _BELLY else None
-        body = body or f"wheel {contacts['body'][most]}"
-        does = "slides" if contacts["slides"][most] else "bears"
-        said.append(f"{body} {does} on it with {contacts['normal_force'][most]:.0f} N")
-    if d.belly_share > _WORTH_SAYING:
-        said.append(f"{d.belly_share:.0%} of the weight is on the belly")
-    if d.stalled_share > 0:
-        said.append(f"{_share(d.stalled_share)} motors stand at the torque limit")
-    elif d.sliding_share > _WORTH_SAYING:
-        said.append(f"{d.sliding_share:.0%} of the load slides")
-    return said
+    rows = np.flatnonzero(contacts["in_pocket"])
+    bodies = contacts["body"][rows]
+    forces = {int(body): 0.0 for body in bodies}
+    sliding = dict(forces)
+    for body, force, slides in zip(
+        bodies, contacts["normal_force"][rows], contacts["slides"][rows], strict=True
+    ):
+        forces[int(body)] += float(force)
+        sliding[int(body)] += float(force) * bool(slides)
+    told = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
+    told = [body for body in told if forces[body] >= _LEAST_SHARE * sum(forces.values())]
+    names = [_name(d, body) for body in told]
+    does = ["slide" if sliding[body] > 0.5 * forces[body] else "bear" for body in told]
+    with_force = [f"with {forces[body]:.0f} N" for body in told]
+    if not told:
+        return ""
+    said = f"{names[0]} {does[0]}s on it {with_force[0]}"
+    if len(told) == 2 and does[0] != does[1]:
+        said += f" and {names[1]} {does[1]}s on it {with_force[1]}"
+    elif len(told) == 2:
+        said += f", {names[1]} {with_force[1]}"
+    return said + (", a grouser's flank against it" if d.mechanism == "interlocked" else "")
 
 
-def _balance(d: Diagnosis) -> list[str]:
-    """Say what would end the equilibrium."""
-    said = []
+def _name(d: Diagnosis, body: int) -> str:
+    kinds = d.contacts["body_kind"][d.contacts["body"] == body]
+    return _NAMES.get(int(kinds[0]) if len(kinds) else 0, f"wheel {body}")
+
+
+def _belly(d: Diagnosis) -> str:
+    on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == _BELLY)
+    if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != "hung_up"):
+        return ""
+    return f"{_percent(d.belly_share)} of the load rests on the belly"
+
+
+def _drives(d: Diagnosis) -> str:
+    """Say what motors and surfaces do, where the ground inside the track has not said it."""
+    if d.stalled_share > 0.0:
+        of = "" if d.stalled_share == 1.0 else f"{d.stalled_share:.0%} of ".replace("%", " %")
+        return f"{of}its motors stand at their torque limit"
+    track = d.contacts["body_kind"] != _BELLY
+    forces = d.contacts["normal_force"][track]
+    if d.outcome not in ("slipping", "cycling") or forces.sum() == 0.0:
+        return ""
+    slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
+    return f"its track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
+
+
+def _progress(d: Diagnosis) -> str:
+    if d.progress < _LEAST_SHARE:
+        return ""
+    return f"it creeps on at {_percent(d.progress)} of what is commanded"
+
+
+def _moved_by(d: Diagnosis) -> str:
+    """Say what would end the equilibrium: conditions relaxed, or a push."""
     if not d.certified:
-        said.append("no equilibrium of contact forces explains it")
-    if d.cause:
-        ways = [" with ".join(_FREES[condition] for condition in each) for each in d.cause]
-        said.append(f"{' or '.join(ways)} would free it")
-    if d.escape_force is not None:
-        if math.isinf(d.escape_force):
-            said.append("no push forwards frees it")
-        else:
-            said.append(f"a push of {d.escape_force:.0f} N would move it")
-    if d.counterfactual is not None:
-        does = "gets away" if d.counterfactual.freed else "does not get away"
-        said.append(f"a closed belt {does}")
-    return said
+        if d.imbalance is None:
+            return "its balance could not be computed"
+        return f"no contact forces balance it: {100 * d.imbalance:.2g} % of the weight is missing"
+    # What a belt does there has been tried, and that is said on its own.
+    tried = () if d.counterfactual is None else (("pocket",),)
+    ways = [" with ".join(_MOVES[each] for each in way) for way in d.cause if way not in tried]
+    push = d.escape_force
+    wedged = push is not None and math.isinf(push)
+    if push is not None and not wedged:
+        ways.append(f"a push of {push:.0f} N" if push >= 0.5 else "the slightest push")
+    helpless = {"stalled": "more torque", "slipping": "twice the friction"}
+    known = d.sliding_share if d.outcome == "slipping" else d.stalled_share
+    in_vain = [helpless[d.outcome]] if not d.cause and known and d.outcome in helpless else []
+    if wedged:
+        in_vain.append("any push")
+    if ways:
+        but = f", but not {' or '.join(in_vain)}" if in_vain else ""
+        return f"{_listed(ways)} would move it on{but}"
+    if len(in_vain) == 2:
+        return f"neither {in_vain[0]} nor {in_vain[1]} would move it on"
+    if wedged:
+        return "no push would move it on"
+    return f"{in_vain[0]} would not move it on" if in_vain else ""
 
 
-def _share(share: float) -> str:
-    return "all" if share == 1.0 else f"{share:.0%} of the"
+def _belt(d: Diagnosis) -> str:
+    if d.counterfactual is None or (d.contacts["body_kind"] == _BELT).any():
+        return ""
+    if d.counterfactual.freed:
+        return "a closed belt gets away"
+    further = 1e3 * d.counterfactual.distance
+    return f"a closed belt gets {f'{further:.0f} mm' if further >= 0.5 else 'no'} further"
 
 
-# Code of the belly in `body_kind`.
-_BELLY = 3
-# Shares below this are noise to a reader.
-_WORTH_SAYING = 0.02
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last

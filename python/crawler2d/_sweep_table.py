@@ -12,6 +12,7 @@ from crawler2d._axes import Axis, coordinates, field_attributes, short_names
 from crawler2d._extras import extra
 from crawler2d._plan import Plan
 from crawler2d._units import METRICS
+from crawler2d.diagnosis import Diagnosis
 from crawler2d.draws import Distribution
 from crawler2d.errors import ScenarioError
 from crawler2d.run import Run
@@ -37,6 +38,8 @@ def to_table(
     distributions: Mapping[str, Distribution],
     plans: Sequence[Plan],
     runs: Sequence[Run],
+    *,
+    with_belts: bool,
 ) -> xarray.Dataset:
     """Arrange what is known of the runs, which are in the order of their plans; see `sweep`."""
     xr = extra("xarray", "analysis")
@@ -55,9 +58,10 @@ def to_table(
     variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
     why = [run.diagnosis for run in runs]
     variables["mechanism"] = by_run([str((d and d.mechanism) or "") for d in why], str)
+    variables["cause"] = by_run([_cause(d) for d in why], str)
     variables["seized_at_tips"] = by_run([bool(d and d.seized_at_tips) for d in why], bool)
     belts = [d and d.counterfactual for d in why]
-    if any(belts):
+    if with_belts:
         distances = [belt.distance if belt else math.nan for belt in belts]
         variables["belt_freed"] = by_run([bool(belt and belt.freed) for belt in belts], bool)
         variables["belt_distance"] = by_run(distances, float, units="m")
@@ -90,6 +94,11 @@ def _outcome(run: Run) -> str:
     if run.error is None:
         return str(run.outcome)
     return refused if isinstance(run.error, ScenarioError) else diverged
+
+
+def _cause(why: Diagnosis | None) -> str:
+    """Write the sets of conditions, such as ``pocket or belly+torque``."""
+    return " or ".join("+".join(each) for each in why.cause) if why else ""
 
 
 def _distinct_outcomes(runs: Sequence[Run]) -> int:

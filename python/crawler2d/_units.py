@@ -7,10 +7,10 @@ __all__ = ["FIELDS", "METRICS"]
 _FIELDS_BY_UNIT = {
     "m": (
         "approach axle_distance base_thickness belly center_of_mass cycling_distance depth"
-        " edge_radius escape_distance front_radius"
-        " gauge goal grouser_height grouser_pitch grouser_thickness height intrusion_depth length"
-        " placements points prediction_distance radius rear_radius rise run stationary_distance"
-        " thickness tip_thickness track_phase wheel_radius width"
+        " edge_radius escape_distance front_radius gauge goal grouser_height grouser_pitch"
+        " grouser_thickness height intrusion_depth length placements points prediction_distance"
+        " radius rear_radius rise run stationary_distance thickness tip_thickness track_phase"
+        " wheel_radius width"
     ),
     "s": "clear_time duration escape_time stop_window time_step",
     "rad": "angle clear_angle edge_angle tip_over_angle",
@@ -21,9 +21,10 @@ _FIELDS_BY_UNIT = {
     "N m": "max_torque",
     "Hz": "contact_frequency",
     "1": (
-        "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count imbalance"
-        " intrusion_load iterations mean_imbalance phase_fraction skid_friction sliding_speed"
-        " stationary_windows stop_pitches stop_progress substeps torque_limit wheel_count"
+        "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
+        " imbalance intrusion_load iterations mean_imbalance phase_fraction skid_friction"
+        " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
+        " wheel_count"
     ),
 }
 

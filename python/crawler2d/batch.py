@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from crawler2d import _core, errors
 from crawler2d._progress import Progress, reporter
-from crawler2d._recording import Recording, recording
+from crawler2d._recording import Recording, recording, yes_or_no
 from crawler2d._threads import thread_count
 from crawler2d.errors import BatchInterrupted, Crawler2dError, InternalError, ScenarioError
 from crawler2d.robot import Robot
@@ -66,7 +66,8 @@ def simulate(
     <Outcome.CLEARED: 'cleared'>
     """
     complete = _complete(scenario, terrain).replace(fields)
-    recorded = (*recording(sample_interval, record), bool(counterfactual))
+    asked = yes_or_no(counterfactual, "counterfactual")
+    recorded = (*recording(sample_interval, record), asked)
     return Run(complete, _core.simulate(complete.to_json(), *recorded))
 
 
@@ -128,7 +129,8 @@ def simulate_many(
     """
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    recorded = (*recording(sample_interval, record), bool(counterfactual))
+    asked = yes_or_no(counterfactual, "counterfactual")
+    recorded = (*recording(sample_interval, record), asked)
     count = thread_count(threads)
     batch = list(scenarios)
     checked = [_checked(scenario, index) for index, scenario in enumerate(batch)]

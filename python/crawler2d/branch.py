@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
@@ -21,14 +22,19 @@ def branch_time(run: Run, at: float | str) -> float:
     """[s] The instant that `at` names: a time of the run, or the stop that it ended in."""
     if run.trunk is not None:
         raise ScenarioError("run", run, "must have begun at its start; branch the run it came from")
-    if at == "stop":
+    if run.error is not None:
+        raise ScenarioError("run", run, f"must have a result: {run.error}")
+    if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
             raise ScenarioError("at", at, "must be a time: the run did not end in a stop")
         return run.diagnosis.time
-    time = real_number(at, "at")
-    end = run.metrics["time"] if run.error is None else 0.0
+    end = run.metrics["time"]
+    try:
+        time = real_number(at, "at")
+    except ScenarioError:
+        time = math.nan
     if not 0.0 <= time <= end:
-        raise ScenarioError("at", at, f'must be "stop" or a time from 0 to {end} s')
+        raise ScenarioError("at", at, f'must be "stop" or a time from 0 to {end:.6g} s')
     return time
 
 

@@ -95,8 +95,8 @@ class Counterfactual:
 class Diagnosis:
     """Why a robot that was commanded to move did not; `Run.diagnosis` holds it.
 
-    ``str(diagnosis)`` says it in a sentence. All forces, speeds and the pose are means over the last
-    one to two stop windows before `time`.
+    ``str(diagnosis)`` says it in a sentence. All forces, speeds and the pose are means over the
+    last one to two stop windows before `time`.
 
     Attributes
     ----------
@@ -106,9 +106,9 @@ class Diagnosis:
         How the most loaded ground inside the track is held, whether that is the cause or not; None
         if there is none, or one body sticks to it and turns with it.
     cause : tuple of tuple of Condition
-        The smallest sets of conditions whose relaxation leaves no equilibrium: pockets closed, belly
-        removed, torque limit lifted, friction doubled. More than one set is a tie; none means that
-        there is no certificate, or that nothing of these frees it.
+        The smallest sets of conditions whose relaxation leaves no equilibrium: pockets closed,
+        belly removed, torque limit lifted, friction doubled. More than one set is a tie; none means
+        that there is no certificate, or that nothing of these frees it.
     seized_at_tips : bool
         Whether closing the pockets would end the equilibrium if the track reached to the
         circumscribed circles, so that ground between the grousers of one wheel is in a pocket, too.
@@ -138,9 +138,10 @@ class Diagnosis:
     certified : bool
         The imbalance is within the criteria: the pose may be an equilibrium.
     escape_force, free_escape_force : float or None
-        [N] Largest push at the centre of mass along the command that can be balanced: while sliding
-        contacts slide on, and if every contact could hold within its friction cone; inf: wedged.
-        None without a certificate.
+        [N] Largest push at the centre of mass along the command that can be balanced: here or
+        within the next 5 mm, while surfaces slide on and motors push as they do; and here, if every
+        contact and motor could hold within its limits. inf: wedged. None without a certificate, and
+        for a state that rattles on.
     counterfactual : Counterfactual or None
         How a closed belt fares from here, where the run was simulated with ``counterfactual=True``.
     """

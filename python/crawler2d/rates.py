@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["rate"]
 
+_STOPPED = "stopped"
+"""Any outcome that is a stop."""
+
 
 def rate(
     table: xarray.Dataset | Iterable[str | None], outcome: str = "cleared", dim: str = "repeat"
@@ -31,7 +34,8 @@ def rate(
     table : xarray.Dataset or iterable of str or None
         What `sweep` returned; or outcomes, None for a run without a result.
     outcome : str
-        Name of an `Outcome`.
+        Name of an `Outcome`, or "stopped" for all that are stops: seized, hung_up, stalled,
+        slipping and cycling.
     dim : str
         The dimension of a table that is counted over.
 
@@ -50,12 +54,16 @@ def rate(
 
     Examples
     --------
-    >>> found = rate(["cleared", "stopped", "cleared", "cleared"])
+    >>> outcomes = ["cleared", "seized", "cleared", "stalled"]
+    >>> found = rate(outcomes)
     >>> found["rate"].item(), round(found["low"].item(), 3), found["count"].item()
-    (0.75, 0.301, 4)
+    (0.5, 0.15, 4)
+    >>> rate(outcomes, "seized")["rate"].item(), rate(outcomes, "stopped")["rate"].item()
+    (0.25, 0.5)
     """
     xr = extra("xarray", "analysis")
-    wanted = _name(outcome, "outcome", list(Outcome))
+    wanted = _name(outcome, "outcome", [*Outcome, _STOPPED])
+    counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         _name("outcome", "table", [str(name) for name in table.data_vars])
         outcomes = table["outcome"]
@@ -64,7 +72,7 @@ def rate(
         outcomes = xr.DataArray(np.array(_texts(table), dtype=str), dims=dim)
     with xr.set_options(keep_attrs=True):  # of the coordinates
         counts = (~outcomes.isin(NO_RESULT)).sum(dim)
-        successes = (outcomes == wanted).sum(dim)
+        successes = outcomes.isin(counted).sum(dim)
         intervals = xr.apply_ufunc(
             np.vectorize(wilson), successes, counts, output_core_dims=[(), (), ()]
         )

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from crawler2d import branch as branching
@@ -15,6 +13,9 @@ from crawler2d.outcome import Outcome
 from crawler2d.table import Table, read_only
 
 if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
     import numpy as np
     import xarray
     from matplotlib.axes import Axes
@@ -235,8 +236,8 @@ class Run:
         """Go on from an instant of this run with something changed.
 
         The run is repeated up to that instant, bit by bit, and goes on from the same pose and
-        speeds; what is not changed goes on as it was. Ground that is inside the new track is let out
-        without a push: the track is dented there, and the dent heals as the robot moves on.
+        speeds; what is not changed goes on as it was. Ground that is inside the new track is let
+        out without a push: the track is dented there, and the dent heals as the robot moves on.
 
         Parameters
         ----------
@@ -263,8 +264,8 @@ class Run:
         Raises
         ------
         ScenarioError
-            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or a
-            change breaks a rule.
+            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or
+            a change breaks a rule.
 
         Examples
         --------
@@ -388,7 +389,10 @@ class Run:
         AttributeError
             If the run was recorded with ``record="summary"``.
         """
-        from crawler2d.viewer import replay_page  # noqa: PLC0415 - costs nothing until used
+        # They cost nothing until used.
+        from pathlib import Path  # noqa: PLC0415
+
+        from crawler2d.viewer import replay_page  # noqa: PLC0415
 
         text = replay_page(self, time)
         if path is None:

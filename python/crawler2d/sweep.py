@@ -76,8 +76,9 @@ def sweep(
         tuple joins the last names of its paths, whose numbers are further coordinates.
 
         - `outcome`, and `error` where there is none: `diverged`, or `refused` by a rule;
-        - `mechanism` of a stop, "" without; `seized_at_tips`; with `counterfactual`, `belt_freed` and
-          `belt_distance`, False and nan where there was no stop;
+        - `mechanism` of a stop, "" without; its `cause`, such as "pocket or belly+torque" for a tie
+          of the pocket with belly and torque together; `seized_at_tips`; with `counterfactual`,
+          `belt_freed` and `belt_distance` [m], False and nan where there was no stop;
         - every metric of `Run.metrics`, and `wall_time`;
         - `scenario`, the JSON text of each run, and its `identity`;
         - `drawn_...`, the value that was drawn for each path of `vary`;
@@ -181,7 +182,7 @@ def tabulate(
             run.error.add_note(f"in {plan.place}")
     if on_error == "raise":
         _raise_first(run.error for run in runs)
-    dataset = to_table(axes, variation.distributions, plans, runs)
+    dataset = to_table(axes, variation.distributions, plans, runs, with_belts=counterfactual)
     provenance = {"scenario": scenario.to_json(), "seed": seed, "repeats": repeats}
     builds = {f"build_{name}": value for name, value in build_info().items()}
     return dataset.assign_attrs(provenance, vary=str(variation.distributions), **builds)

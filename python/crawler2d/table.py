@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -82,6 +81,8 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     def _repr_html_(self) -> str:
         """Show the first rows in a notebook."""
+        import html  # noqa: PLC0415 - costs nothing until used
+
         head = "".join(f"<th>{html.escape(name)}</th>" for name in self)
         rows = "".join(
             "<tr>"

@@ -82,8 +82,11 @@ impl Simulation {
     #[pyo3(signature = (speed = None, push = None))]
     fn command(&self, py: Python<'_>, speed: Option<f64>, push: Option<f64>) -> PyResult<()> {
         self.with(py, |simulation| {
-            speed.map_or(Ok(()), |speed| simulation.set_speed(speed))?;
-            push.map_or(Ok(()), |push| simulation.set_push(push))
+            // Both or none: a refused speed takes the push back.
+            let before = simulation.push();
+            push.map_or(Ok(()), |push| simulation.set_push(push))?;
+            let commanded = speed.map_or(Ok(()), |speed| simulation.set_speed(speed));
+            commanded.or_else(|error| simulation.set_push(before).and(Err(error)))
         })
     }
 

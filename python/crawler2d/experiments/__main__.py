@@ -13,9 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crawler2d.errors import BatchInterrupted
-from crawler2d.experiments import report
+from crawler2d.experiments import report, stops_report
 from crawler2d.experiments import tables as rows
+from crawler2d.experiments.models import gear_pairs
 from crawler2d.experiments.public_model import posts, public_wheel_model
+from crawler2d.experiments.replays import write_replays
+from crawler2d.experiments.stops import gear_against_round, stops
 from crawler2d.experiments.sweeps import FULL, QUICK, Study
 
 if TYPE_CHECKING:
@@ -49,11 +52,17 @@ def _run(study: Study, out: Path) -> None:
     sweeps = {obstacle: study.on_obstacle(obstacle) for obstacle in study.design.heights}
     robots, flat, turned = study.on_other_robots(), study.on_the_flat(), study.over_phases()
     runs = public_wheel_model(study.threads)
+    replays = write_replays(sweeps, out / "replays", threads=study.threads)
     took = time.perf_counter() - begin
 
     cells = [row for name, table in sweeps.items() for row in rows.cells(table, name)]
     climbs = [row for name, table in sweeps.items() for row in rows.climbs(table, name)]
-    stops = [row for name, table in sweeps.items() for row in rows.stops(table, name)]
+    stopped = [row for name, table in sweeps.items() for row in stops(table, name)]
+    pairs, strong = gear_pairs(study.models), "torque doubled"
+    against = [
+        *gear_against_round(sweeps["step"], "step", pairs),
+        *gear_against_round(robots.sel(robot=strong), "step", pairs, strong),
+    ]
     others = [
         row
         for robot in robots["robot"].to_numpy().tolist()
@@ -64,7 +73,9 @@ def _run(study: Study, out: Path) -> None:
     text = "\n\n\n".join(
         (
             report.rates_text(cells),
-            report.stops_text(stops),
+            stops_report.stops_text(stopped),
+            stops_report.against_text(against),
+            stops_report.replays_text(replays, f"{out}/replays"),
             report.robots_text(others),
             report.rides_text(rides),
             report.phases_text(phases),
@@ -82,7 +93,9 @@ def _run(study: Study, out: Path) -> None:
     written: dict[str, list[Any]] = {
         "rates": [*cells, *others],
         "heights": climbs,
-        "stops": stops,
+        "stops": stopped,
+        "gear_against_round": against,
+        "replays": replays,
         "flat": rides,
         "phases": phases,
         "posts": found,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from crawler2d.experiments.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 from crawler2d.track import (
@@ -12,10 +13,11 @@ from crawler2d.track import (
     GearWheel,
     HybridWheels,
     LineOfWheels,
+    RoundWheel,
     Track,
 )
 
-__all__ = ["StudyModel", "study_models"]
+__all__ = ["StudyModel", "gear_pairs", "study_models"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,3 +86,33 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
         "hybrid": StudyModel(track=HybridWheels(hybrid), source="Fig. 8"),
         "hybrid gears": StudyModel(track=HybridWheels(hybrid, wheel=gear), source="ours"),
     }
+
+
+def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
+    """Find the models with gear wheels that are there with round ones, too.
+
+    Parameters
+    ----------
+    models : mapping of str to StudyModel
+        Models by name.
+
+    Returns
+    -------
+    dict of str to str
+        From the name of each to that of its twin.
+
+    Examples
+    --------
+    >>> gear_pairs(study_models(0.365))["line of 3 gears"]
+    'line of 3'
+    """
+    names = {model.track: name for name, model in models.items()}
+    pairs = {}
+    for name, model in models.items():
+        track = model.track
+        if isinstance(track, (BeltTrack, ForceTrack)) or not isinstance(track.wheel, GearWheel):
+            continue
+        twin = names.get(replace(track, wheel=RoundWheel()))
+        if twin is not None:
+            pairs[name] = twin
+    return pairs

@@ -35,6 +35,8 @@ class Post:
     belly: bool
     """Whether the robot has one."""
     outcome: str
+    mechanism: str
+    """How the post is held where the run ended in a stop; "": it did not."""
     bodies: str
     """The two wheels, in order of belt travel; 2 is the foremost."""
     start: float
@@ -97,6 +99,7 @@ def posts(runs: Mapping[tuple[float, bool], Run]) -> list[Post]:
             height=height,
             belly=belly,
             outcome=str(run.outcome),
+            mechanism=str(run.mechanism or ""),
             bodies=" ".join(map(str, run.events["bodies"][row])),
             start=float(run.events["start"][row]),
             end=float(run.events["end"][row]),

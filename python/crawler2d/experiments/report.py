@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 from crawler2d._core import build_info
 from crawler2d.experiments import paper
+from crawler2d.experiments.columns import aligned, in_mm, mm
 
 if TYPE_CHECKING:
     from crawler2d.experiments.models import StudyModel
     from crawler2d.experiments.public_model import Post
     from crawler2d.experiments.sweeps import Study
-    from crawler2d.experiments.tables import Cell, Climb, Phase, Ride, Stops
+    from crawler2d.experiments.tables import Cell, Climb, Phase, Ride
 
 __all__ = [
     "beside_the_paper",
@@ -24,7 +25,6 @@ __all__ = [
     "rates_text",
     "rides_text",
     "robots_text",
-    "stops_text",
 ]
 
 _RPM = 60.0 / (2.0 * math.pi)
@@ -36,7 +36,7 @@ def header(study: Study) -> str:
     robot, outline = base.robot, base.robot.outline
     clearance = outline.rear_radius + min((y for _, y in robot.belly or ()), default=math.inf)
     build = ", ".join(f"{name} {value}" for name, value in build_info().items())
-    obstacles = "; ".join(f"{name} {_heights(h)} mm" for name, h in design.heights.items())
+    obstacles = "; ".join(f"{name} {in_mm(h)} mm" for name, h in design.heights.items())
     return (
         f"Engineer without flippers, {len(study.models)} track models: {obstacles}\n"
         f"barrier 100 mm thick, knife edge 10 mm; {design.repeats} repeats, seed {study.seed}\n"
@@ -56,7 +56,7 @@ def rates_text(cells: Iterable[Cell]) -> str:
         (
             cell.model,
             cell.obstacle,
-            _mm(cell.height),
+            mm(cell.height),
             f"{cell.cleared}/{cell.count}",
             f"{100 * cell.low:.0f} to {100 * cell.high:.0f} %",
             str(cell.poses),
@@ -65,7 +65,7 @@ def rates_text(cells: Iterable[Cell]) -> str:
         for cell in cells
     ]
     head = ("model", "obstacle", "[mm]", "cleared", "95 % interval", "poses", "the others")
-    return _aligned(head, rows, left=(1, 6))
+    return aligned(head, rows, left=(1, 6))
 
 
 def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
@@ -88,28 +88,14 @@ def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> st
         "Greatest height [mm] cleared in at least half of the runs (in brackets: smaller heights\n"
         "that were not; +: the greatest tried), real-time factor of one thread, deepest\n"
         "penetration of all runs [mm]\n\n"
-    ) + _aligned(head, rows, left=range(1, 2 + len(obstacles)))
-
-
-def stops_text(stops: Sequence[Stops]) -> str:
-    """Write how many stops had a loaded edge inside the track, and how many a standing track."""
-    obstacles = list(dict.fromkeys(row.obstacle for row in stops))
-    rows = []
-    for model in dict.fromkeys(row.model for row in stops):
-        own = {row.obstacle: row for row in stops if row.model == model}
-        rows.append((model, *(_stops(own[obstacle]) for obstacle in obstacles)))
-    return (
-        "Stops: how many; in how many the track stood still, its motors at their limit; in how\n"
-        "many an edge inside the track was loaded, and its median depth below the circumscribed\n"
-        "and below the root circles [mm]\n\n"
-    ) + _aligned(("model", *obstacles), rows, left=range(1, 1 + len(obstacles)))
+    ) + aligned(head, rows, left=range(1, 2 + len(obstacles)))
 
 
 def robots_text(cells: Sequence[Cell]) -> str:
     """Write how other estimates of the robot move the table."""
     robots = list(dict.fromkeys(cell.robot for cell in cells))
     names = dict.fromkeys(cell.model for cell in cells)
-    heights = _heights(dict.fromkeys(cell.height for cell in cells))
+    heights = in_mm(dict.fromkeys(cell.height for cell in cells))
     rows = [
         (
             name,
@@ -121,7 +107,7 @@ def robots_text(cells: Sequence[Cell]) -> str:
         for name in names
     ]
     count = cells[0].count
-    return (f"Other robots: runs of {count} that cleared a step of {heights} mm\n\n") + _aligned(
+    return (f"Other robots: runs of {count} that cleared a step of {heights} mm\n\n") + aligned(
         ("model", *robots), rows
     )
 
@@ -141,7 +127,7 @@ def rides_text(rides: Iterable[Ride]) -> str:
     return (
         "Flat ground: by how much odometry reads too much, and shaking (root mean square of\n"
         "vertical acceleration and of the rate of the chassis angle)\n\n"
-    ) + _aligned(head, rows)
+    ) + aligned(head, rows)
 
 
 def phases_text(phases: Sequence[Phase]) -> str:
@@ -160,16 +146,16 @@ def phases_text(phases: Sequence[Phase]) -> str:
     return (
         "Lines of gear wheels on flat ground: shaking against the phase fraction of eq. (1),\n"
         "where the paper has 0.333\n\n"
-    ) + _aligned(head, rows)
+    ) + aligned(head, rows)
 
 
 def posts_text(posts: Iterable[Post]) -> str:
     """Write what the post did between the wheels of the public model."""
     rows = [
         (
-            _mm(post.height),
+            mm(post.height),
             "yes" if post.belly else "no",
-            post.outcome,
+            ", ".join(filter(None, (post.outcome, post.mechanism))),
             post.bodies,
             f"{post.start:.2f} to {post.end:.2f}",
             f"{1e3 * post.depth:.1f}",
@@ -181,7 +167,7 @@ def posts_text(posts: Iterable[Post]) -> str:
     return (
         "The public wheel model, three wheels a side with slots of 26 mm, against a post 20 mm\n"
         "thick: the spans in which it was between two wheels\n\n"
-    ) + _aligned(head, rows, left=(1, 2, 3))
+    ) + aligned(head, rows, left=(1, 2, 3))
 
 
 def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
@@ -195,7 +181,7 @@ def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) 
         rows.append(
             (
                 theirs.model,
-                _mm(theirs.max_height),
+                mm(theirs.max_height),
                 *("", ""),
                 f"{theirs.real_time_factor:g}",
                 f"{theirs.max_speed:g}",
@@ -211,12 +197,12 @@ def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) 
     return "\n\n".join(
         (
             "The paper's Table 2, successful runs of 20 [%]",
-            _aligned(("obstacle", "CWA", "LWA", "gear wheels"), success),
+            aligned(("obstacle", "CWA", "LWA", "gear wheels"), success),
             "The paper's Table 3 with ours below. Only the order of the heights compares: the\n"
             "paper's 150 and 200 mm are those of a robot with flippers. Turning is out of the\n"
             "plane of a side view. Heights in mm, speed in m/s, braking in m, acceleration in\n"
             "m/s^2, turning in revolutions a minute.",
-            _aligned(
+            aligned(
                 (
                     *("model", "barrier", "step", "knife edge"),
                     *("RTF", "speed", "braking", "acceleration", "turning"),
@@ -228,45 +214,15 @@ def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) 
     )
 
 
-def _stops(row: Stops) -> str:
-    if not row.stopped:
-        return "-"
-    depth = f": {1e3 * row.depth:.1f}, {1e3 * row.root_depth:.1f}" if row.loaded else ""
-    return f"{row.stopped}, {row.standing} stood, {row.loaded} loaded{depth}"
-
-
 def _highest(climb: Climb) -> str:
     if math.isnan(climb.highest):
         return "none"
     more = "+" if climb.highest == climb.tested else ""
-    gaps = f" (not {_heights(climb.gaps)})" if climb.gaps else ""
-    return f"{_mm(climb.highest)}{more}{gaps}"
+    gaps = f" (not {in_mm(climb.gaps)})" if climb.gaps else ""
+    return f"{mm(climb.highest)}{more}{gaps}"
 
 
 def _factor(climbs: Collection[Climb]) -> str:
     """Write the real-time factor of one thread."""
     simulated = sum(climb.simulated_time for climb in climbs)
     return f"{simulated / sum(climb.computing_time for climb in climbs):.0f}"
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.0f}"
-
-
-def _heights(heights: Iterable[float]) -> str:
-    return ", ".join(map(_mm, heights))
-
-
-def _aligned(header: Sequence[str], rows: Iterable[Sequence[str]], left: Iterable[int] = ()) -> str:
-    """Write rows as columns, to the right but for the first and those of `left`."""
-    lines = [list(header), *map(list, rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    lines.insert(1, ["-" * width for width in widths])
-    to_left = {0, *left}
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if index in to_left else cell.rjust(width)
-            for index, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ).rstrip()
-        for line in lines
-    )

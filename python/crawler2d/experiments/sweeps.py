@@ -127,20 +127,20 @@ class Study:
     progress: bool = True
 
     def on_obstacle(self, obstacle: str) -> xarray.Dataset:
-        """Run every model over one obstacle: dimensions track, height, repeat."""
+        """Run every model over one obstacle: track, height, repeat; with a belt at every stop."""
         heights = self.design.heights[obstacle]
         over = {"robot.track": self._tracks(), "terrain.height": heights}
         base = self.base.replace({"terrain": _obstacles(heights[0])[obstacle]})
-        return self._sweep(base, over, self.design.repeats)
+        return self._sweep(base, over, self.design.repeats, counterfactual=True)
 
     def on_other_robots(self) -> xarray.Dataset:
-        """Run every model of every robot over a step: robot, track, height, repeat."""
+        """Run every model of every robot over a step: robot, track, height, repeat; with belts."""
         over = {
             "robot": robots_of_the_study(),
             "robot.track": self._tracks(),
             "terrain.height": self.design.robot_heights,
         }
-        return self._sweep(self.base, over, self.design.robot_repeats)
+        return self._sweep(self.base, over, self.design.robot_repeats, counterfactual=True)
 
     def on_the_flat(self) -> xarray.Dataset:
         """Run every model over flat ground: track, repeat."""
@@ -166,7 +166,14 @@ class Study:
     def _tracks(self) -> dict[str, Any]:
         return {name: model.track for name, model in self.models.items()}
 
-    def _sweep(self, base: Scenario, over: Mapping[str, Any], repeats: int) -> xarray.Dataset:
+    def _sweep(
+        self,
+        base: Scenario,
+        over: Mapping[str, Any],
+        repeats: int,
+        *,
+        counterfactual: bool = False,
+    ) -> xarray.Dataset:
         return sweep(
             base,
             over,
@@ -175,4 +182,5 @@ class Study:
             threads=self.threads,
             progress=self.progress,
             on_error="record",
+            counterfactual=counterfactual,
         )

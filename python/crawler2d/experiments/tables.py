@@ -10,10 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from crawler2d.rates import rate
-from crawler2d.scenario import Scenario
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,19 +22,12 @@ __all__ = [
     "Climb",
     "Phase",
     "Ride",
-    "Stops",
     "cells",
     "climbs",
     "phases",
     "rides",
-    "stops",
     "write_csv",
 ]
-
-# An intrusion that carries less of the weight than this does not hold the robot.
-_LOADED = 0.02
-# A track that runs less of what is commanded than this stands still.
-_STANDING = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,23 +69,6 @@ class Climb:
     """[s] Of one thread for them."""
     max_penetration: float
     """[m] Of all runs."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stops:
-    """The runs of one model on one obstacle that ended in a stop."""
-
-    obstacle: str
-    model: str
-    stopped: int
-    standing: int
-    """Of these: the track stood still too, with motors at their limit."""
-    loaded: int
-    """Of these: an edge inside the track carried more than 2 % of the weight until the end."""
-    depth: float
-    """[m] Median depth of those edges below the circumscribed circles; nan: there are none."""
-    root_depth: float
-    """[m] The same below the root circles."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,35 +151,6 @@ def climbs(table: xarray.Dataset, obstacle: str) -> list[Climb]:
                 simulated_time=own["time"].sum().item(),
                 computing_time=own["wall_time"].sum().item(),
                 max_penetration=own["max_penetration"].max().item(),
-            )
-        )
-    return found
-
-
-def stops(table: xarray.Dataset, obstacle: str) -> list[Stops]:
-    """Ask the stops of a sweep over track and height whether an edge was in the track."""
-    scenario = Scenario.from_json(table.attrs["scenario"])
-    least = _LOADED * scenario.robot.mass * scenario.gravity
-    found = []
-    for model in table["track"].to_numpy():
-        own = table.sel(track=model)
-        stopped = own["outcome"].to_numpy() == "stopped"
-        slid = (own["track_distance"] - own["path_length"]).to_numpy()
-        commanded = scenario.drive.speed * own["stopped_time"].to_numpy()
-        loaded = stopped & (own["intrusion_force"].to_numpy() > least)
-        depth, root_depth = (
-            float(np.median(own[name].to_numpy()[loaded])) if loaded.any() else math.nan
-            for name in ("intrusion_depth", "intrusion_root_depth")
-        )
-        found.append(
-            Stops(
-                obstacle=obstacle,
-                model=str(model),
-                stopped=int(stopped.sum()),
-                standing=int((stopped & (slid < _STANDING * commanded)).sum()),
-                loaded=int(loaded.sum()),
-                depth=depth,
-                root_depth=root_depth,
             )
         )
     return found

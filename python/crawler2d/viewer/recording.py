@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.plotting import extent, inset, taut_belt
+from crawler2d._shapes import SLIVER, extent, inset
 from crawler2d.viewer.packed import packed
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ _WAY = 1e-4
 _ARROW = 1e-2
 # Impacts last one sample; arrows as long as theirs would leave all others unreadable.
 _USUAL = 98.0
-# Lines that coincide enclose slivers of rounding; an intrusion is deeper.
-_SLIVER = 2e-5
 
 
 def recording(run: Run, time: float | None = None) -> dict[str, Any]:
@@ -158,13 +156,13 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     for wheel, gear in zip(wheels, gears, strict=False):
         wheel["outline"] = packed(gear["outline"], _SHAPE)
     hull = bool(geometry["hull"])
-    envelope, root = geometry.get("envelope"), geometry.get("root_envelope")
-    depth = max(run.scenario.criteria.intrusion_depth, _SLIVER)
+    envelope = geometry["envelope"]
+    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     shapes = {
-        "hull": taut_belt(circles) if hull else None,
-        "envelope": None if hull else envelope,
-        "inner": None if hull or envelope is None else inset(envelope, depth),
-        "root": None if hull or not gears else root,
+        "hull": envelope if hull else None,
+        "envelope": None if hull else envelope,  # nothing gets inside a belt
+        "inner": None if hull else inset(envelope, depth),
+        "root": geometry["root_envelope"] if gears else None,
         "belly": geometry["belly"],
     }
     outline = robot.outline

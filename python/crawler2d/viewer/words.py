@@ -72,13 +72,12 @@ def sentence(run: Run) -> str:
     """Say why the run stopped, or why there is no result; empty if there is nothing to say."""
     if run.error is not None:
         return str(run.error)
-    diagnosis = getattr(run, "diagnosis", None)
-    return "" if diagnosis is None else str(diagnosis)
+    return "" if run.diagnosis is None else str(run.diagnosis)
 
 
 def verdicts(run: Run) -> list[str]:
     """Name outcome and mechanism, in that order, as far as they are known."""
-    known = [run.outcome, getattr(run, "mechanism", None)]
+    known = [run.outcome, run.mechanism]
     return [str(value).replace("_", " ") for value in known if value is not None]
 
 

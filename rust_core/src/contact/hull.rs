@@ -4,6 +4,8 @@
 //! A hull meets a polyline in two ways only: an arc, or a corner, bears on a face, or a vertex on the
 //! hull.
 
+use std::f64::consts::TAU;
+
 use rapier2d_f64::math::{Pose, Vector};
 
 use super::Contact;
@@ -22,8 +24,28 @@ const SHALLOW: f64 = 1e-3;
 pub(super) struct HullContact {
     part: usize,
     hull: Envelope,
-    /// The discs that have an arc on the hull.
-    discs: Vec<Disc>,
+    arcs: Vec<Arc>,
+}
+
+/// An arc of the hull, or a corner.
+struct Arc {
+    disc: Disc,
+    /// [rad] Outward direction where it begins.
+    from: f64,
+    /// [rad] How far it turns from there, clockwise.
+    sweep: f64,
+}
+
+impl Arc {
+    /// Whether its outward directions hold `outward`, or nearly: on a face that is all but parallel to
+    /// a run both ends of the run bear.
+    fn faces(&self, outward: Vector) -> bool {
+        /// [rad] An arc reaches less than 0.1 mm out of the hull where it goes on by this.
+        const NEARLY: f64 = 0.05;
+
+        let turn = self.from - libm::atan2(outward.y, outward.x) + NEARLY;
+        turn.rem_euclid(TAU) <= self.sweep + 2.0 * NEARLY
+    }
 }
 
 impl HullContact {
@@ -37,7 +59,11 @@ impl HullContact {
         let hull = Envelope::new(&discs);
         Some(Self {
             part: index,
-            discs: hull.discs_outside(&discs),
+            arcs: hull
+                .arcs()
+                .into_iter()
+                .map(|(disc, from, sweep)| Arc { disc, from, sweep })
+                .collect(),
             hull,
         })
     }
@@ -51,13 +77,15 @@ impl HullContact {
         contacts: &mut Vec<Contact>,
     ) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for disc in &self.discs {
-            let center = pose.transform_point(disc.center);
-            let reach = disc.radius + prediction;
+        for arc in &self.arcs {
+            let center = pose.transform_point(arc.disc.center);
+            let reach = arc.disc.radius + prediction;
             low = low.min(center.x - reach);
             high = high.max(center.x + reach);
             for facet in profile.facets(center.x - reach, center.x + reach) {
-                contacts.extend(self.on_face(profile, facet, center, disc.radius, prediction));
+                let contact = self.on_face(profile, facet, center, arc.disc.radius, prediction);
+                let faces = |c: &Contact| arc.faces(pose.rotation.inverse() * -c.normal);
+                contacts.extend(contact.filter(faces));
             }
         }
         let facets = profile.facets(low, high);

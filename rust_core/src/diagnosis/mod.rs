@@ -52,7 +52,7 @@ pub struct Diagnosis {
     pub belly_share: f64,
     /// Share of the normal forces at contacts that slide.
     pub sliding_share: f64,
-    /// Share of the motors that stand at their limit.
+    /// Share of the motors bearing against the ground that stand at their limit.
     pub stalled_share: f64,
     /// Share of the commanded distance made in the last stop window.
     pub progress: f64,
@@ -146,9 +146,7 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
     let free_escape_force = resting.and_then(|s| s.free_escape(direction, tolerance));
 
     let facts = scene.facts(stance, most_loaded);
-    let is_pocket = pockets
-        .iter()
-        .any(|p| p.place.root_depth > criteria.intrusion_depth);
+    let is_pocket = pockets.iter().any(|p| scene.is_pocket(p));
     let given = scene.conditions(stance, &facts, is_pocket);
     let cause = certificate.map_or(Vec::new(), |s| s.cause(tolerance, &given));
     let alone = |s: &Statics| s.ends(&[Condition::Pocket], tolerance);

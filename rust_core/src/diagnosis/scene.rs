@@ -48,6 +48,13 @@ impl Scene<'_> {
         with_force.collect()
     }
 
+    /// Whether an intrusion is in a pocket: between two bodies, and below their root circles. Between
+    /// two grousers of one wheel it is grip; inside one surface it is a dent.
+    pub(super) fn is_pocket(&self, intrusion: &LoadedIntrusion) -> bool {
+        let [before, after] = intrusion.place.bodies;
+        before != after && intrusion.place.root_depth > self.criteria.intrusion_depth
+    }
+
     /// The coefficient of friction of a part on the ground.
     pub(super) fn friction(&self, contact: &Contact) -> f64 {
         let limit = self.model.parts[contact.part].friction_limit;
@@ -95,7 +102,15 @@ impl Scene<'_> {
         };
         let all_lift = sum(&lift).max(f64::MIN_POSITIVE);
         let on = |is: bool, value: f64| if is { value } else { 0.0 };
-        let motors = &stance.drives[..self.model.motors.min(stance.drives.len())];
+        // A wheel in the air turns whatever holds the robot.
+        let on_drive = |k: usize| {
+            contacts
+                .iter()
+                .any(|c| self.model.parts[c.body].drive == Some(k))
+        };
+        let bears = |k: &usize| (self.model.pushes_chassis && *k == 0) || on_drive(*k);
+        let motors = (0..self.model.motors.min(stance.drives.len())).filter(bears);
+        let motors: Vec<&DriveMean> = motors.map(|k| &stance.drives[k]).collect();
         let stalled = motors
             .iter()
             .filter(|d| !self.is_moving(d.speed) && self.is_at_limit(d))
@@ -103,7 +118,7 @@ impl Scene<'_> {
         Facts {
             belly_share: sum(&|c| on(c.kind == BodyKind::Belly, lift(c))) / all_lift,
             sliding_share: sum(&|c| on(c.slides, c.normal_force)) / normal,
-            stalled_share: stalled as f64 / self.model.motors.max(1) as f64,
+            stalled_share: stalled as f64 / motors.len().max(1) as f64,
             flank: self.bears_on_a_flank(stance, &contacts),
             contacts,
         }
@@ -165,7 +180,7 @@ impl Scene<'_> {
         }
         let deep: Vec<&LoadedIntrusion> = pockets
             .iter()
-            .filter(|p| at_tips || p.place.root_depth > self.criteria.intrusion_depth)
+            .filter(|p| at_tips || self.is_pocket(p))
             .collect();
         let supports = stance
             .bearings

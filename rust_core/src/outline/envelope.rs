@@ -140,19 +140,19 @@ impl Envelope {
         }
     }
 
-    /// Those of the discs that have an arc on the hull.
-    pub(crate) fn discs_outside(&self, discs: &[Disc]) -> Vec<Disc> {
-        let mut outside: Vec<usize> = self
-            .stretches
-            .iter()
-            .filter_map(|stretch| match stretch.shape {
-                Form::Arc { disc, .. } => Some(disc),
-                Form::Run { .. } => None,
-            })
-            .collect();
-        outside.sort_unstable();
-        outside.dedup();
-        outside.into_iter().map(|i| discs[i]).collect()
+    /// The arcs of the hull: disc, outward direction [rad] where it begins, how far it turns clockwise.
+    pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
+        let arc = |stretch: &Stretch| match stretch.shape {
+            Form::Arc {
+                center,
+                radius,
+                from,
+                sweep,
+                ..
+            } => Some((Disc { center, radius }, from, sweep)),
+            Form::Run { .. } => None,
+        };
+        self.stretches.iter().filter_map(arc).collect()
     }
 
     /// Points along the hull, an arc cut every `turn` [rad]; the last is not the first again.

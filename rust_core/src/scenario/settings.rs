@@ -159,7 +159,7 @@ impl SeizureCriteria {
             creep_from: f.number("creep_from", Range::between(0.0, 1.0, ""))?,
             creep_to: f.number("creep_to", Range::between(0.0, 1.0, ""))?,
             escape_distance: f.number("escape_distance", Range::above(0.0, 10.0, "m"))?,
-            escape_time: f.number("escape_time", Range::between(0.01, 1e4, "s"))?,
+            escape_time: f.number("escape_time", Range::between(0.01, 60.0, "s"))?,
         };
         f.finish()?;
         Ok(criteria)

@@ -169,6 +169,11 @@ impl Simulation {
         Ok(())
     }
 
+    /// [N] The push at the centre of mass, along x.
+    pub fn push(&self) -> f64 {
+        self.dynamics.outer_force.x
+    }
+
     /// Pushes at the centre of mass with a force [N] along x, from now on.
     ///
     /// # Errors

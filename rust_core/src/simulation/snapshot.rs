@@ -46,7 +46,7 @@ impl Simulation {
             step: self.step,
             command: self.command,
             set_point: self.set_point,
-            push: self.dynamics.outer_force.x,
+            push: self.push(),
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),

@@ -1,0 +1,75 @@
+"""Shapes of a robot as pictures need them: placed, turned, inset; and what a run visits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.run import Run
+
+__all__ = ["SLIVER", "circle", "closed", "extent", "inset", "placed", "turned"]
+
+SLIVER = 2e-5
+"""[m] Lines that coincide enclose slivers of rounding; an intrusion is deeper."""
+
+
+def extent(
+    run: Run, profile: NDArray[np.float64], geometry: dict[str, Any]
+) -> tuple[float, float, float, float]:
+    """[m] Left, right, bottom and top of what the run visits, with the obstacle's beginning."""
+    circles = geometry["circles"]
+    reach = float((np.hypot(circles[:, 0], circles[:, 1]) + circles[:, 2]).max()) + 0.05
+    x, y = run.position.T
+    left, right = float(x.min()) - reach, float(x.max()) + reach
+    visited = profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1]
+    ground = np.concatenate([visited, np.interp([left, right], profile[:, 0], profile[:, 1])])
+    bottom = min(float(ground.min()), float(y.min()) - float(circles[:, 2].max()))
+    return left, right, bottom - 0.05, max(float(ground.max()), float(y.max()) + reach)
+
+
+def circle(x: float, y: float, radius: float) -> NDArray[np.float64]:
+    """[m] A circle as a closed line, shape (n, 2)."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 181)
+    line: NDArray[np.float64] = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    line += (x, y)
+    return line
+
+
+def placed(run: Run, sample: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Points of the chassis frame, shape (n, 2), where they are at a sample."""
+    there: NDArray[np.float64] = points @ _rotation(run.chassis_angle[sample]).T
+    there += run.position[sample]
+    return there
+
+
+def _rotation(angle: float) -> NDArray[np.float64]:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def turned(gear: dict[str, Any], positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Outline of a gear in the chassis frame, turned as far as its drive has run."""
+    angle = 0.0 if gear["drive"] is None else -positions[gear["drive"]] / gear["radius"]
+    outline: NDArray[np.float64] = gear["outline"] @ _rotation(angle).T + gear["center"]
+    return closed(outline)
+
+
+def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] A polygon as a line that ends where it began."""
+    return np.vstack([polygon, polygon[:1]])
+
+
+def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
+    """[m] A closed convex line, counter-clockwise, moved inwards by a depth."""
+    way = np.roll(belt, -1, axis=0) - belt
+    belt = belt[np.hypot(*way.T) > 1e-9]  # without corners that coincide
+    way = np.roll(belt, -1, axis=0) - belt
+    inwards = np.column_stack([-way[:, 1], way[:, 0]])
+    inwards /= np.hypot(*way.T)[:, None]
+    inwards = inwards + np.roll(inwards, 1, axis=0)
+    moved: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
+    return moved

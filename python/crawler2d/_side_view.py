@@ -1,0 +1,203 @@
+"""The side view of a run: ground, robot, what bears and what is inside the track."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d._extras import extra
+from crawler2d._shapes import SLIVER, circle, closed, extent, inset, placed, turned
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from crawler2d.run import Run
+
+__all__ = ["side_view"]
+
+# Okabe and Ito's palette: told apart by colour-blind readers.
+_BLACK, _BLUE, _RED, _GREEN = "#222222", "#0072B2", "#D55E00", "#009E73"
+_GROUND, _PURPLE = "#D9D2C5", "#A3327B"
+
+# A contact force as large as the weight is drawn as long as this share of the axle distance, and a
+# larger one of a robot that wedges itself in no longer.
+_FORCE_LENGTH = 0.6
+# The same of a surface that passes the ground at the commanded speed, or of the fastest beyond it.
+_SPEED_LENGTH = 0.22
+# They lie so far inside the ground, as a share of the axle distance, where they hide nothing.
+_BELOW = 0.03
+# Shorter arrows, as a share of the longest one there can be, would be mere dots.
+_SHORTEST = 0.02
+
+
+def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
+    """Draw ground, robot at some instants, path of the chassis origin, and what holds the robot.
+
+    At the last of the instants the contacts are drawn, with their forces on the robot and the
+    speeds of its surface over the ground, the taut belt round its wheels, and the ground and the
+    edges inside that belt.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    times : ndarray, shape (k,)
+        [s] When to draw the robot; the nearest samples are taken.
+    ax : Axes
+        Where to draw.
+    """
+    geometry = _core.geometry(run.scenario.to_json())
+    profile = geometry["profile"]
+    samples = np.unique([np.abs(run.time - t).argmin() for t in times])
+    left, right, bottom, top = extent(run, profile, geometry)
+    ax.fill_between(
+        profile[:, 0], profile[:, 1], bottom - 1.0, color=_GROUND, linewidth=0.0, zorder=0
+    )
+    ax.plot(profile[:, 0], profile[:, 1], color=_BLACK, linewidth=1.2, zorder=1)
+    for sample in samples:
+        last = sample == samples[-1]
+        _draw_robot(run, geometry, int(sample), ax, alpha=1.0 if last else 0.3)
+    ax.plot(
+        run.position[:, 0],
+        run.position[:, 1],
+        color=_BLUE,
+        linewidth=1.2,
+        label="path of the chassis origin",
+        zorder=3,
+    )
+    shown = int(samples[-1])
+    _draw_contacts(run, shown, ax)
+    if not geometry["hull"]:  # nothing gets inside a belt
+        _draw_envelope(run, geometry, shown, ax)
+    _draw_intrusions(run, shown, ax)
+    if left < geometry["goal"] < right:
+        ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
+    ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
+
+
+def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
+    def draw(outline: NDArray[np.float64], color: str, *, filled: bool = False) -> None:
+        x, y = placed(run, sample, outline).T
+        if filled:
+            ax.fill(x, y, color=color, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
+        ax.plot(x, y, color=color, alpha=alpha, linewidth=1.0, zorder=2)
+
+    if len(geometry["belly"]):  # first: the wheels lie before it
+        draw(closed(geometry["belly"]), _GREEN, filled=True)
+    if geometry["gears"]:
+        for gear in geometry["gears"]:
+            draw(turned(gear, run.drive_positions[sample]), _BLACK)
+    elif geometry["hull"]:
+        draw(closed(geometry["envelope"]), _BLACK)
+    else:
+        for x, y, radius in geometry["circles"]:
+            draw(circle(x, y, radius), _BLACK)
+    center = placed(run, sample, np.array([run.scenario.robot.center_of_mass]))
+    ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
+
+
+def _draw_contacts(run: Run, sample: int, ax: Axes) -> None:
+    """Arrows of the forces on the robot and of the speeds of its surface, at one sample."""
+    contacts = run.contacts
+    now = contacts["time"] == run.time[sample]
+    if not now.any():
+        return
+    robot = run.scenario.robot
+    places = np.column_stack([contacts["x"], contacts["y"]])[now]
+    normal = np.column_stack([contacts["normal_x"], contacts["normal_y"]])[now]
+    tangent = np.column_stack([normal[:, 1], -normal[:, 0]])
+    speed = contacts["surface_speed"][now, None] * tangent
+    below = places - _BELOW * robot.outline.axle_distance * normal
+    usual, length = abs(run.scenario.drive.speed), _SPEED_LENGTH * robot.outline.axle_distance
+    label = "surface over the ground, longest {:.2f} m/s"
+    _draw_arrows(ax, below, speed, (usual, length), color=_BLUE, label=label)
+    force = contacts["normal_force"][now, None] * normal
+    force = force + contacts["friction_force"][now, None] * tangent
+    usual = robot.mass * run.scenario.gravity
+    length = _FORCE_LENGTH * robot.outline.axle_distance
+    label = "contact forces, longest {:.0f} N"
+    _draw_arrows(ax, places, force, (usual, length), color=_RED, label=label)
+
+
+def _draw_arrows(
+    ax: Axes,
+    places: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    scale: tuple[float, float],
+    *,
+    color: str,
+    label: str,
+) -> None:
+    """Arrows with their tails at some places.
+
+    The scale is a usual size and the length [m] that it is drawn at, or the largest if beyond it.
+    """
+    usual, length = scale
+    sizes = np.hypot(*vectors.T)
+    most = max(usual, float(sizes.max()))
+    drawn = sizes > _SHORTEST * most
+    if not drawn.any():
+        return
+    ax.quiver(
+        *places[drawn].T,
+        *(length / most * vectors[drawn]).T,
+        color=color,
+        angles="xy",
+        scale_units="xy",
+        scale=1.0,
+        width=0.004,
+        label=label.format(sizes.max()),
+        zorder=4,
+    )
+
+
+def _draw_envelope(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
+    """Draw the taut belt round the wheels, and fill what of the ground is inside it."""
+    belt = geometry["envelope"]
+    ax.plot(
+        *closed(placed(run, sample, belt)).T,
+        color=_PURPLE,
+        linestyle="--",
+        linewidth=0.9,
+        label="taut belt round the wheels",
+        zorder=2.5,
+    )
+    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
+    inner = placed(run, sample, inset(belt, depth))
+    x, y = geometry["profile"].T
+    soil = ax.fill_between(
+        x, y, float(inner[:, 1].min()) - 1.0, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6
+    )
+    patches = extra("matplotlib.patches", "plot")
+    soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
+
+
+def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
+    """Mark the edges that are inside the track at one sample."""
+    events, time = run.events, run.time[sample]
+    inside = events["kind"] == "intrusion"
+    inside &= (events["start"] <= time) & (time <= events["end"])
+    rows = np.flatnonzero(inside)
+    if not rows.size:
+        return
+    edges = events["edge"][rows]
+    most_loaded = rows[events["force"][rows].argmax()]
+    depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
+    label = f"edge inside the track: {1e3 * depth:.1f} mm"
+    if one != other:
+        label += f" between wheels {one} and {other}"
+    ax.plot(
+        run.edges["x"][edges],
+        run.edges["y"][edges],
+        linestyle="none",
+        marker="D",
+        markersize=6,
+        markerfacecolor="white",
+        markeredgecolor=_PURPLE,
+        label=label,
+        zorder=5,
+    )
