@@ -128,7 +128,7 @@ class Diagnosis:
     sliding_share : float
         [-] Share of the normal forces at contacts that slide at their friction limit.
     stalled_share : float
-        [-] Share of the motors that stand at their torque limit.
+        [-] Share of the motors that bear on the ground which stand at their torque limit.
     progress : float
         [-] Share of the commanded distance made in the last stop window.
     stationary : bool
