@@ -20,6 +20,8 @@ pub(crate) struct Reading {
     pub friction_force: f64,
     /// [m/s] When last seen.
     pub surface_speed: f64,
+    /// Step of the interval in which it was last seen: two contacts of one step are two.
+    step: u32,
 }
 
 impl Readings {
@@ -37,10 +39,11 @@ impl Readings {
                     },
                 )
             };
+            let step = self.steps;
             let mut same = self
                 .seen
                 .iter_mut()
-                .filter(|r| place(&r.contact) == place(&l.contact));
+                .filter(|r| r.step != step && place(&r.contact) == place(&l.contact));
             // A face can bear on a facet at both its ends: those are two contacts.
             let known = same.find(|r| (r.contact.point - l.contact.point).length() < SAME_PLACE);
             match known {
@@ -49,12 +52,14 @@ impl Readings {
                     reading.normal_force += l.normal_force;
                     reading.friction_force += l.friction_force;
                     reading.surface_speed = l.surface_speed;
+                    reading.step = step;
                 }
                 None => self.seen.push(Reading {
                     contact: l.contact,
                     normal_force: l.normal_force,
                     friction_force: l.friction_force,
                     surface_speed: l.surface_speed,
+                    step,
                 }),
             }
         }

@@ -271,7 +271,8 @@ impl Scene<'_> {
             }
         });
         let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
-        let slides = drive.map_or(0.0, speed);
+        // A free surface rolls with the ground under it.
+        let slides = drive.filter(|k| *k < self.model.motors).map_or(0.0, speed);
         let friction = self.model.parts[place.bodies[0]].friction_limit;
         Support {
             normal: Direction::new(normal, arm, motion, self.model),

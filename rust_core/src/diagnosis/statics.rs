@@ -231,8 +231,8 @@ impl Statics {
             1.0
         };
         let mut forces = Forces::default();
-        let bearing = self.supports.iter().filter(stays).chain(closed);
-        for (i, support) in bearing.enumerate() {
+        let bearing: Vec<&Support> = self.supports.iter().filter(stays).chain(closed).collect();
+        for (i, support) in bearing.iter().enumerate() {
             let motor = support.drive.map_or(0.0, |k| self.motors[k]);
             let slides = match drives {
                 _ if motor == 0.0 => support.slides,
@@ -257,7 +257,10 @@ impl Statics {
             self.torque
         };
         for (k, motor) in self.motors.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+            // A motor with nothing left to bear on turns freely.
+            let bears = self.push.is_some() || bearing.iter().any(|s| s.drive == Some(k));
             let bounds = match drives {
+                _ if !bears => (-torque, torque),
                 Drives::Stand => (motor * torque, motor * torque),
                 Drives::Hold if self.stalled[k] > 0.0 => (AT_LIMIT * torque, torque),
                 Drives::Hold if self.stalled[k] < 0.0 => (-torque, -AT_LIMIT * torque),
