@@ -11,7 +11,7 @@ mod scene;
 mod signals;
 mod statics;
 
-use rapier2d_f64::math::{Pose, Vector};
+use rapier2d_f64::math::Vector;
 
 pub use mechanism::Mechanism;
 pub(crate) use signals::{Signals, Stance};
@@ -117,15 +117,13 @@ pub(crate) struct Seen {
 
 /// Judges a stop.
 pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
-    let pose = Pose::new(stance.position, stance.angle);
-    let weight = scene.model.mass * scene.gravity;
     let criteria = scene.criteria;
-    let bearings = &stance.bearings;
-    let mut pockets = scene.pockets(pose, bearings);
-    pockets.retain(|p| p.force > criteria.intrusion_load * weight);
-    let most_loaded = pockets
+    let weight = scene.model.mass * scene.gravity;
+    let inside = scene.loaded_intrusions(stance);
+    let most_loaded = inside
         .iter()
-        .reduce(|most, p| if p.force > most.force { p } else { most });
+        .reduce(|most, i| if i.force > most.force { i } else { most });
+    let facts = scene.facts(stance, most_loaded);
 
     let range = stance.range[0].max(stance.range[1]);
     let range = range.max(stance.range[2] * scene.half_length);
@@ -135,26 +133,20 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
     } else {
         criteria.mean_imbalance
     };
-    let statics = scene.statics(pose, stance, &pockets, false);
+    let pockets: Vec<&LoadedIntrusion> = inside.iter().filter(|i| scene.is_pocket(i)).collect();
+    let statics = scene.statics(stance, &pockets);
     let imbalance = statics.as_ref().and_then(Statics::imbalance);
     let certified = imbalance.is_some_and(|i| i <= tolerance);
     let certificate = statics.as_ref().filter(|_| certified);
-    let direction = scene.direction();
-    // A state that rattles on has no pose to be pushed from.
-    let resting = certificate.filter(|_| stationary);
-    let escape_force = resting.and_then(|s| escape::force(scene, stance, s, tolerance));
-    let free_escape_force = resting.and_then(|s| s.free_escape(direction, tolerance));
 
-    let facts = scene.facts(stance, most_loaded);
-    let is_pocket = pockets.iter().any(|p| scene.is_pocket(p));
-    let given = scene.conditions(stance, &facts, is_pocket);
+    let given = scene.conditions(stance, &facts, !pockets.is_empty());
     let cause = certificate.map_or(Vec::new(), |s| s.cause(tolerance, &given));
-    let alone = |s: &Statics| s.ends(&[Condition::Pocket], tolerance);
     let seized = cause.contains(&vec![Condition::Pocket]);
-    let at_tips = || scene.statics(pose, stance, &pockets, true);
-    let seized_at_tips = certified
-        && !pockets.is_empty()
-        && (seized || at_tips().is_some_and(|statics| alone(&statics)));
+    let at_tips = || {
+        let statics = scene.statics(stance, &inside.iter().collect::<Vec<_>>());
+        statics.is_some_and(|s| s.ends(&[Condition::Pocket], tolerance))
+    };
+    let seized_at_tips = certified && !inside.is_empty() && (seized || at_tips());
     let outcome = if range > criteria.cycling_distance {
         Outcome::Cycling
     } else if seized {
@@ -166,6 +158,11 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
     } else {
         Outcome::Slipping
     };
+
+    // A state that rattles on has no pose to be pushed from.
+    let resting = certificate.filter(|_| stationary);
+    let escape_force = resting.and_then(|s| escape::force(scene, stance, s, tolerance));
+    let free_escape = resting.and_then(|s| s.free_escape(scene.direction(), tolerance));
     Diagnosis {
         outcome,
         mechanism: most_loaded.and_then(|_| Mechanism::of(&facts, criteria, weight)),
@@ -185,7 +182,7 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
         imbalance,
         certified,
         escape_force: escape_force.map(|push| push * weight),
-        free_escape_force: free_escape_force.map(|push| push.force * weight),
+        free_escape_force: free_escape.map(|push| push.force * weight),
         counterfactual: None,
     }
 }

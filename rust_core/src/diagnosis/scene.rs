@@ -35,17 +35,20 @@ impl Scene<'_> {
         if self.command < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Ground inside the track with the forces on it.
-    pub(super) fn pockets(&self, pose: Pose, bearings: &[Bearing]) -> Vec<LoadedIntrusion> {
+    /// Ground inside the track that carries weight, with the force on it.
+    pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
+        let pose = Pose::new(stance.position, stance.angle);
+        let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
         let found = self.envelope.intrusions(self.profile, pose);
         let with_force = found.into_iter().filter(|i| i.edge >= 0).map(|place| {
-            let on_it = bearings
+            let on_it = stance
+                .bearings
                 .iter()
                 .filter(|b| place.bears(self.profile, &b.contact));
             let force = on_it.map(|b| b.normal_force).sum();
             LoadedIntrusion { place, force }
         });
-        with_force.collect()
+        with_force.filter(|i| i.force > least).collect()
     }
 
     /// Whether an intrusion is in a pocket: between two bodies, and below their root circles. Between
@@ -165,32 +168,21 @@ impl Scene<'_> {
         Condition::ALL.into_iter().filter(has).collect()
     }
 
-    /// The statics of a stop; None without a weight. At the tips, every loaded intrusion is a pocket;
-    /// else those that reach below the root circles.
-    pub(super) fn statics(
-        &self,
-        pose: Pose,
-        stance: &Stance,
-        pockets: &[LoadedIntrusion],
-        at_tips: bool,
-    ) -> Option<Statics> {
-        let weight = self.model.mass * self.gravity;
-        if weight <= 0.0 {
+    /// The statics of a stop whose pockets are these; None without a weight.
+    pub(super) fn statics(&self, stance: &Stance, pockets: &[&LoadedIntrusion]) -> Option<Statics> {
+        if self.model.mass * self.gravity <= 0.0 {
             return None;
         }
-        let deep: Vec<&LoadedIntrusion> = pockets
-            .iter()
-            .filter(|p| at_tips || self.is_pocket(p))
-            .collect();
+        let pose = Pose::new(stance.position, stance.angle);
         let supports = stance
             .bearings
             .iter()
             .map(|b| {
                 let slides = if self.slides(b) { b.slip.signum() } else { 0.0 };
-                self.support(pose, &b.contact, slides, self.role(&b.contact, &deep))
+                self.support(pose, &b.contact, slides, self.role(&b.contact, pockets))
             })
             .collect();
-        let closed = deep
+        let closed = pockets
             .iter()
             .map(|p| self.closed(pose, stance, &p.place))
             .collect();
