@@ -29,6 +29,9 @@ pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f
     let direction = scene.direction();
     let first = here.escape(direction, tolerance)?;
     let mut largest = first.force;
+    if largest.is_infinite() {
+        return Some(largest);
+    }
     let parts = |push: &Push, part: &dyn Fn(usize) -> usize| {
         let mut parts: Vec<usize> = push.bearing.iter().map(|i| part(*i)).collect();
         parts.sort_unstable();

@@ -59,7 +59,7 @@ impl Scene<'_> {
     }
 
     /// The coefficient of friction of a part on the ground.
-    pub(super) fn friction(&self, contact: &Contact) -> f64 {
+    fn friction(&self, contact: &Contact) -> f64 {
         let limit = self.model.parts[contact.part].friction_limit;
         limit.min(self.profile.friction)
     }
@@ -69,7 +69,7 @@ impl Scene<'_> {
         speed.abs() > self.criteria.sliding_speed * self.set_point.abs()
     }
 
-    pub(super) fn slides(&self, bearing: &Bearing) -> bool {
+    fn slides(&self, bearing: &Bearing) -> bool {
         /// Share of the friction cone that a contact in rattle must have used, in the mean.
         const AT_LIMIT: f64 = 0.95;
 
@@ -129,7 +129,7 @@ impl Scene<'_> {
 
     /// Whether a surface in the pocket would move into the ground if its drive turned as commanded:
     /// a grouser's flank.
-    pub(super) fn bears_on_a_flank(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
+    fn bears_on_a_flank(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
         /// Share of the surface speed along the normal that a round wheel, but for rounding, lacks.
         const INTO_GROUND: f64 = 0.05;
 
@@ -142,7 +142,7 @@ impl Scene<'_> {
         })
     }
 
-    pub(super) fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
+    fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
         let pose = Pose::new(stance.position, stance.angle);
         let center = pose.transform_point(self.model.center_of_mass);
         Levers::new(contact, (center, stance.angle), self.model)
@@ -234,7 +234,7 @@ impl Scene<'_> {
         drive.force.abs() >= self.criteria.torque_limit * self.model.drive_force
     }
 
-    pub(super) fn role(&self, contact: &Contact, pockets: &[&LoadedIntrusion]) -> Role {
+    fn role(&self, contact: &Contact, pockets: &[&LoadedIntrusion]) -> Role {
         let bears = |p: &&LoadedIntrusion| p.place.bears(self.profile, contact);
         if pockets.iter().any(bears) {
             Role::Pocket

@@ -149,11 +149,15 @@ impl Block {
         }
         let bears = |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES;
         for l in loaded.iter().filter(bears) {
-            let new = Summed::new(l);
-            match self.contacts.iter_mut().find(|c| c.is_same(&new)) {
-                Some(known) => known.absorb(&new),
-                None => self.contacts.push(new),
-            }
+            self.gather(&Summed::new(l));
+        }
+    }
+
+    /// Adds a contact to the one that it goes on from, if it is there.
+    fn gather(&mut self, new: &Summed) {
+        match self.contacts.iter_mut().find(|c| c.is_same(new)) {
+            Some(known) => known.absorb(new),
+            None => self.contacts.push(*new),
         }
     }
 
@@ -176,10 +180,7 @@ impl Block {
             sum.speed += more.speed;
         }
         for new in &later.contacts {
-            match self.contacts.iter_mut().find(|c| c.is_same(new)) {
-                Some(known) => known.absorb(new),
-                None => self.contacts.push(*new),
-            }
+            self.gather(new);
         }
     }
 }
