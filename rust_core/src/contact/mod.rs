@@ -1,8 +1,13 @@
 //! Contacts between the robot's parts and the ground.
 
 mod dents;
+mod finder;
+mod gear;
 mod hull;
 mod intrusion;
+mod lane;
+mod overlap;
+mod own;
 mod reading;
 mod reference;
 
@@ -10,10 +15,10 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use dents::Dents;
+pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use reading::Readings;
-pub(crate) use reference::ReferenceContact;
 
 /// One place where a part is on the ground or about to be.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -11,6 +11,7 @@ use rapier2d_f64::parry::shape::{Polyline, PolylineFlags};
 use rapier2d_f64::prelude::SharedShape;
 
 use super::hull::HullContact;
+use super::lane::Lane;
 use super::{Contact, without_redundant};
 use crate::robot::{Part, Shape, TurningWheel};
 use crate::terrain::Profile;
@@ -20,6 +21,8 @@ pub(crate) struct ReferenceContact {
     bodies: Vec<Body>,
     ground: Polyline,
     profile: Profile,
+    /// For the hulls.
+    lane: Lane,
     manifolds: Vec<ContactManifold<(), ()>>,
 }
 
@@ -63,12 +66,14 @@ impl ReferenceContact {
                 .map(|(i, part)| Body {
                     part: i,
                     bound: part.bound(),
-                    hull: HullContact::of(i, part),
+                    hull: matches!(part.shape, Shape::Hull { .. } | Shape::Polygon { .. })
+                        .then(|| HullContact::new(i, part)),
                     solids: solids_of(part),
                 })
                 .collect(),
             ground: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
             profile: profile.clone(),
+            lane: Lane::new(profile),
             manifolds: Vec::new(),
         }
     }
@@ -91,7 +96,7 @@ impl ReferenceContact {
                 continue;
             }
             if let Some(hull) = &self.bodies[i].hull {
-                hull.find(&self.profile, pose, prediction, contacts);
+                hull.find(&self.lane, pose, prediction, contacts);
             }
             for k in 0..self.bodies[i].solids.len() {
                 let place = pose * self.bodies[i].solids[k].at(drives);

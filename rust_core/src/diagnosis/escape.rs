@@ -11,7 +11,7 @@ use super::linear_program::Rows;
 use super::scene::Scene;
 use super::signals::Stance;
 use super::statics::{Role, Statics, Support};
-use crate::contact::{Contact, ReferenceContact};
+use crate::contact::{Contact, ContactFinder};
 use crate::plane::{cross, right_of};
 
 /// [m] Where the robot is looked at on its way, beyond where it stands.
@@ -38,7 +38,7 @@ pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f
         parts
     };
     let bearing = parts(&first, &|i| stance.bearings[i].contact.part);
-    let mut finder = ReferenceContact::new(&scene.model.parts, scene.profile);
+    let mut finder = ContactFinder::new(scene.contact, &scene.model.parts, scene.profile);
     let mut pose = Pose::new(stance.position, stance.angle);
     for way in WAY {
         if largest.is_infinite() {
@@ -81,7 +81,7 @@ fn moving(scene: &Scene, stance: &Stance, pose: Pose, contact: &Contact) -> Supp
 
 /// Lets the robot down at its x as far as the ground lets it; its contacts there, or None if it does
 /// not come to rest.
-fn settle(scene: &Scene, finder: &mut ReferenceContact, pose: &mut Pose) -> Option<Vec<Contact>> {
+fn settle(scene: &Scene, finder: &mut ContactFinder, pose: &mut Pose) -> Option<Vec<Contact>> {
     /// [m], [rad] Farthest that a round moves it.
     const FARTHEST: [f64; 2] = [2e-3, 0.02];
 

@@ -10,7 +10,7 @@ use crate::contact::{Contact, Intrusion, TrackEnvelope};
 use crate::dynamics::{Direction, Levers};
 use crate::plane::{left_of, right_of};
 use crate::robot::{BodyKind, Model};
-use crate::scenario::SeizureCriteria;
+use crate::scenario::{ContactMethod, SeizureCriteria};
 use crate::terrain::Profile;
 
 /// What a diagnosis looks at besides the stop.
@@ -18,6 +18,8 @@ pub(crate) struct Scene<'a> {
     pub model: &'a Model,
     pub profile: &'a Profile,
     pub envelope: &'a TrackEnvelope,
+    /// Who finds contacts.
+    pub contact: ContactMethod,
     pub criteria: &'a SeizureCriteria,
     pub gravity: f64,
     /// [m/s] What the drivetrain is to do.

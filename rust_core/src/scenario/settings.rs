@@ -27,6 +27,8 @@ pub struct Start {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
+    /// Our own: outlines against the faces and corners of the lane.
+    Own,
     /// The engine's geometric queries on one oriented polyline a lane.
     Reference,
 }
@@ -122,7 +124,13 @@ impl Start {
 impl Solver {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
         let solver = Self {
-            contact: f.choice("contact", &[("reference", ContactMethod::Reference)])?,
+            contact: f.choice(
+                "contact",
+                &[
+                    ("own", ContactMethod::Own),
+                    ("reference", ContactMethod::Reference),
+                ],
+            )?,
             time_step: f.number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
             substeps: f.integer("substeps", 1, 64)?,
             iterations: f.integer("iterations", 1, 1000)?,

@@ -7,7 +7,7 @@ use rapier2d_f64::math::Vector;
 
 pub use branch::Counterfactual;
 
-use crate::contact::{Contact, Dents, Intrusion, LoadedContact, ReferenceContact};
+use crate::contact::{Contact, ContactFinder, Dents, Intrusion, LoadedContact};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
 use crate::dynamics::{DriveState, Dynamics, State};
@@ -24,7 +24,7 @@ use crate::terrain::Ground;
 pub struct Simulation {
     scenario: Scenario,
     ground: Ground,
-    contact: ReferenceContact,
+    contact: ContactFinder,
     dynamics: Dynamics,
     monitor: Monitor,
     state: State,
@@ -67,7 +67,8 @@ impl Simulation {
 
     /// A robot in a state on a ground.
     pub(crate) fn of(scenario: &Scenario, ground: Ground, model: Model, state: State) -> Self {
-        let contact = ReferenceContact::new(&model.parts, &ground.profile);
+        let method = scenario.solver.contact;
+        let contact = ContactFinder::new(method, &model.parts, &ground.profile);
         let reach = model.reach();
         let monitor = Monitor::new(scenario, &ground, &model);
         let dynamics = Dynamics::new(
@@ -262,6 +263,7 @@ impl Simulation {
             model: self.dynamics.model(),
             profile: &self.ground.profile,
             envelope: self.monitor.envelope(),
+            contact: self.scenario.solver.contact,
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
             command: self.command,

@@ -3,6 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
+use crate::plane::left_of;
 
 /// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
 const FACET_TURN: f64 = 0.0175;
@@ -38,6 +39,8 @@ pub struct Edge {
     pub angle: f64,
     /// [m] Radius, 0 is sharp.
     pub radius: f64,
+    /// [m] Centre of the arc; of a sharp edge the corner itself.
+    pub center: Vector,
 }
 
 impl Profile {
@@ -124,20 +127,24 @@ impl Profile {
                 ));
             }
             spare = tangent;
+            let outward = left_of(d1);
+            let start = corner - d1 * tangent;
+            let radius = if rounded { radius } else { 0.0 };
+            let center = start - outward * radius;
             self.edges.push(Edge {
                 x: corner.x,
                 y: corner.y,
                 angle,
-                radius: if rounded { radius } else { 0.0 },
+                radius,
+                center,
             });
             if rounded {
-                let (start, facets) = (corner - d1 * tangent, (angle / FACET_TURN).ceil().max(1.0));
-                let outward = Vector::new(-d1.y, d1.x);
+                let facets = (angle / FACET_TURN).ceil().max(1.0);
                 for k in 0..=facets as usize {
                     let (s, c) = libm::sincos(-angle * k as f64 / facets);
                     let spoke =
                         Vector::new(c * outward.x - s * outward.y, s * outward.x + c * outward.y);
-                    self.push(start - outward * radius + spoke * radius, id);
+                    self.push(center + spoke * radius, id);
                 }
             } else {
                 self.push(corner, id);

@@ -1,0 +1,43 @@
+//! Who finds the contacts.
+
+use rapier2d_f64::math::Pose;
+
+use super::Contact;
+use super::own::OwnContact;
+use super::reference::ReferenceContact;
+use crate::robot::Part;
+use crate::scenario::ContactMethod;
+use crate::terrain::Profile;
+
+/// Finds the contacts of one robot on one ground.
+pub(crate) enum ContactFinder {
+    Own(OwnContact),
+    Reference(Box<ReferenceContact>),
+}
+
+impl ContactFinder {
+    pub(crate) fn new(method: ContactMethod, parts: &[Part], profile: &Profile) -> Self {
+        match method {
+            ContactMethod::Own => Self::Own(OwnContact::new(parts, profile)),
+            ContactMethod::Reference => {
+                Self::Reference(Box::new(ReferenceContact::new(parts, profile)))
+            }
+        }
+    }
+
+    /// Writes every contact with a gap below `prediction` [m] into `contacts`, in a stable order.
+    ///
+    /// `drives` holds how far the surface of each drive has run [m].
+    pub(crate) fn find(
+        &mut self,
+        pose: Pose,
+        drives: &[f64],
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        match self {
+            Self::Own(own) => own.find(pose, drives, prediction, contacts),
+            Self::Reference(reference) => reference.find(pose, drives, prediction, contacts),
+        }
+    }
+}

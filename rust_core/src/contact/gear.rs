@@ -1,0 +1,167 @@
+//! Contacts of a gear wheel with a lane: exact, and only of the grousers that are near the ground.
+//!
+//! The root circle bears between grousers, the corners of the tips bear on faces and corners of the
+//! ground, flanks and tips on its corners. Where a corner of the tip and one of the ground have run
+//! into each other, the way out is the shortest of those that both allow.
+
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+
+use super::Contact;
+use super::lane::{Lane, ROUNDING};
+use super::overlap::{self, Tip};
+use crate::outline::Gear;
+use crate::plane::{direction, right_of};
+use crate::robot::TurningWheel;
+
+/// A gear wheel of a robot.
+pub(super) struct GearContact {
+    part: usize,
+    wheel: TurningWheel,
+    gear: Gear,
+    /// Unit vectors to the middles of the grousers at the start.
+    directions: Vec<Vector>,
+    /// The one that points along +x, about the centre.
+    grouser: Grouser,
+    /// [rad] Half the angle that a grouser takes on the root circle.
+    half_base: f64,
+}
+
+/// A grouser somewhere.
+struct Grouser {
+    /// [m] Counter-clockwise from its base.
+    corners: [Vector; 4],
+    /// Outward normals of its flank, tip and flank.
+    normals: [Vector; 3],
+}
+
+impl Grouser {
+    /// A corner of its tip, 1 or 2.
+    fn tip(&self, k: usize) -> Tip {
+        Tip {
+            place: self.corners[k],
+            normals: [self.normals[k - 1], self.normals[k]],
+        }
+    }
+}
+
+impl GearContact {
+    pub(super) fn new(part: usize, wheel: TurningWheel, gear: Gear) -> Self {
+        let corners = gear.corners(0.0);
+        let side = |i: usize| right_of((corners[i + 1] - corners[i]).normalize());
+        Self {
+            part,
+            wheel,
+            gear,
+            directions: gear.directions().map(direction).collect(),
+            grouser: Grouser {
+                corners,
+                normals: [side(0), side(1), side(2)],
+            },
+            half_base: libm::atan2(corners[3].y, corners[3].x),
+        }
+    }
+
+    /// Adds every contact with a gap below `prediction`; the chassis is at `pose`, the surface of the
+    /// wheel has run by `drive` [m].
+    pub(super) fn find(
+        &self,
+        lane: &Lane,
+        pose: Pose,
+        drive: f64,
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        let center = pose.transform_point(self.wheel.center);
+        let reach = self.gear.radius + prediction;
+        let region = lane.region(center.x - reach, center.x + reach);
+        let room = center.y - lane.top(&region) - prediction;
+        if room > self.gear.radius {
+            return;
+        }
+        let turned = pose.rotation * Rotation::new(-drive / self.wheel.radius);
+        if room <= self.gear.root_radius {
+            let depth = self.gear.root_radius;
+            lane.touches_of_disc(
+                center,
+                self.gear.root_radius,
+                (prediction, depth),
+                |touch| {
+                    if self.is_between_grousers(turned.inverse() * -touch.normal) {
+                        contacts.push(touch.contact(self.part));
+                    }
+                },
+            );
+        }
+        let corners_stand_out = lane.may_stand_out(&region);
+        let tip = self.grouser.corners[2];
+        for along in &self.directions {
+            let axis = turned * *along;
+            // The lower corner of its tip.
+            if room + tip.x * axis.y - tip.y * axis.x.abs() > 0.0 {
+                continue;
+            }
+            let grouser = Grouser {
+                corners: self.grouser.corners.map(|p| center + axis.rotate(p)),
+                normals: self.grouser.normals.map(|n| axis.rotate(n)),
+            };
+            self.find_tips(lane, &grouser, prediction, contacts);
+            if corners_stand_out {
+                self.find_runs(lane, &grouser, prediction, contacts);
+            }
+        }
+    }
+
+    /// Corners of a tip on the ground.
+    fn find_tips(
+        &self,
+        lane: &Lane,
+        grouser: &Grouser,
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        for tip in [grouser.tip(1), grouser.tip(2)] {
+            let reach = (prediction, self.height());
+            lane.touches_of_disc(tip.place, 0.0, reach, |touch| {
+                if tip.faces(-touch.normal) && !overlap::tip_yields(lane, &tip, &touch) {
+                    contacts.push(touch.contact(self.part));
+                }
+            });
+        }
+    }
+
+    /// Corners of the ground on flanks and tip of a grouser.
+    fn find_runs(
+        &self,
+        lane: &Lane,
+        grouser: &Grouser,
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        // Ground that is deeper inside has come in elsewhere.
+        let half = 0.5 * self.gear.base_thickness;
+        for (i, depth) in [half, self.height(), half].into_iter().enumerate() {
+            let ends = (grouser.corners[i], grouser.corners[i + 1]);
+            let outward = grouser.normals[i];
+            lane.touches_of_run(ends, outward, (prediction, depth), |touch| {
+                // A flank has one end at the tip, and the tip has two.
+                let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
+                if !tips.any(|tip| overlap::run_yields(lane, outward, &tip, &touch)) {
+                    contacts.push(touch.contact(self.part));
+                }
+            });
+        }
+    }
+
+    /// [m] Of a grouser.
+    fn height(&self) -> f64 {
+        self.gear.radius - self.gear.root_radius
+    }
+
+    /// Whether a direction in the wheel's frame leads to the root circle.
+    fn is_between_grousers(&self, outward: Vector) -> bool {
+        let angle = libm::atan2(outward.y, outward.x) - self.gear.phase;
+        let pitch = self.gear.angle();
+        let off = (angle / pitch - (angle / pitch).round()) * pitch;
+        off.abs() >= self.half_base - ROUNDING
+    }
+}

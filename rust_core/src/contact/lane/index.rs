@@ -1,0 +1,279 @@
+//! Finding the ground near a place in a time that does not grow with the length of the lane, nor, for
+//! ground cut into many pieces, with their number.
+//!
+//! A table of x leads to the pieces under a place. Where these are many, a hierarchy over them knows
+//! how high each stretch reaches and which way it faces: a piece of flat ground bears what is right
+//! above it, whatever is near.
+
+use std::ops::{Range, RangeInclusive};
+
+use rapier2d_f64::math::Vector;
+
+use super::{Corner, Face, ROUNDING};
+use crate::plane::cross;
+use crate::terrain::Profile;
+
+/// Pieces of a stretch of the lowest level.
+const BLOCK: usize = 8;
+/// Fewer pieces are looked at one by one.
+const FEW: usize = 2 * BLOCK;
+/// Largest number of cells in the table of x.
+const MOST_CELLS: usize = 1 << 18;
+
+/// A piece is a face with the corner before it.
+pub(super) struct Index {
+    /// [m] Where each piece begins.
+    begins: Vec<f64>,
+    /// Pieces that begin before each cell of the table.
+    cells: Vec<u32>,
+    cells_per_meter: f64,
+    /// [m] How high each piece reaches.
+    tops: Vec<f64>,
+    /// Stretches of `BLOCK` pieces, then of twice as many, and so on to one of all.
+    levels: Vec<Vec<Stretch>>,
+    /// [m] Of the corners' arcs.
+    largest_radius: f64,
+}
+
+/// A span of pieces.
+#[derive(Clone, Debug)]
+pub(crate) struct Region(Range<usize>);
+
+impl Region {
+    /// Whether its pieces are too many to be looked at one by one.
+    pub(super) fn is_long(&self) -> bool {
+        self.0.len() > FEW
+    }
+
+    /// The corners of the region, both ends among them.
+    pub(crate) fn corners(&self) -> RangeInclusive<usize> {
+        self.0.start..=self.0.end
+    }
+}
+
+/// What is known of a stretch of the ground.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch {
+    low: Vector,
+    high: Vector,
+    /// The normals that point farthest to the right and to the left.
+    normals: [Vector; 2],
+}
+
+impl Stretch {
+    fn join(self, other: Self) -> Self {
+        let [right, left] = self.normals;
+        let [other_right, other_left] = other.normals;
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            // No normal points down, so that their x orders them.
+            normals: [
+                if right.x < other_right.x {
+                    other_right
+                } else {
+                    right
+                },
+                if left.x > other_left.x {
+                    other_left
+                } else {
+                    left
+                },
+            ],
+        }
+    }
+
+    /// Whether a disc within `reach` of its centre may bear on the stretch.
+    pub(super) fn may_face(&self, center: Vector, reach: f64) -> bool {
+        let away = (self.low - center)
+            .max(center - self.high)
+            .max(Vector::ZERO);
+        if away.length_squared() > reach * reach {
+            return false;
+        }
+        let [right, left] = self.normals;
+        // Bounds of the cross products of the stretch's last normals and the way from it to the
+        // centre: that way, or its opposite in penetration, must lie between them.
+        let bounds = |n: Vector| {
+            let (a, b) = (n.x * self.low.y, n.x * self.high.y);
+            let here = cross(n, center);
+            (
+                here - a.max(b) + n.y * self.low.x,
+                here - a.min(b) + n.y * self.high.x,
+            )
+        };
+        let (of_right, of_left) = (bounds(right), bounds(left));
+        let above = of_right.1 >= -ROUNDING && of_left.0 <= ROUNDING;
+        let below = of_right.0 <= ROUNDING && of_left.1 >= -ROUNDING;
+        above || (below && center.y <= self.high.y)
+    }
+
+    /// Whether the stretch may have a normal.
+    pub(super) fn may_have(&self, normal: Vector) -> bool {
+        let [right, left] = self.normals;
+        cross(right, normal) >= -ROUNDING && cross(normal, left) >= -ROUNDING
+    }
+}
+
+impl Index {
+    pub(super) fn new(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Self {
+        let begin_of = |c: &Corner| profile.points[c.facet].x;
+        let begins: Vec<f64> = corners[..faces.len()].iter().map(begin_of).collect();
+        let (low, high) = profile.extent();
+        let count = (2 * faces.len()).clamp(16, MOST_CELLS);
+        let cells_per_meter = count as f64 / (high - low);
+        let cells = (0..=count)
+            .map(|k| {
+                let x = low + k as f64 / cells_per_meter;
+                begins.partition_point(|begin| *begin < x) as u32
+            })
+            .collect();
+        let pieces = pieces(profile, faces, corners);
+        Self {
+            begins,
+            cells,
+            cells_per_meter,
+            tops: pieces.iter().map(|piece| piece.high.y).collect(),
+            levels: levels(&pieces),
+            largest_radius: corners.iter().map(|c| c.radius).fold(0.0, f64::max),
+        }
+    }
+
+    /// [m] Of the corners' arcs.
+    pub(super) fn largest_radius(&self) -> f64 {
+        self.largest_radius
+    }
+
+    /// The pieces that a range of x touches.
+    pub(super) fn region(&self, low: f64, high: f64) -> Region {
+        let first = self.count_before(low).saturating_sub(1);
+        let mut end = self.count_before(high);
+        while end < self.begins.len() && self.begins[end] <= high {
+            end += 1;
+        }
+        Region(first..end.max(first + 1))
+    }
+
+    /// Pieces that begin before x.
+    fn count_before(&self, x: f64) -> usize {
+        let cell = ((x - self.begins[0]) * self.cells_per_meter).max(0.0) as usize;
+        let last = self.cells.len() - 1;
+        // A cell further on either side: the table's own rounding may be off by one.
+        let from = self.cells[cell.saturating_sub(1).min(last)] as usize;
+        let to = match self.cells.get(cell + 2) {
+            Some(to) => *to as usize,
+            None => self.begins.len(),
+        };
+        from + self.begins[from..to].partition_point(|begin| *begin < x)
+    }
+
+    /// [m] A height that nothing of a region rises above.
+    pub(super) fn top(&self, region: &Region) -> f64 {
+        if !region.is_long() {
+            let tops = self.tops[region.0.clone()].iter();
+            return tops.copied().fold(f64::NEG_INFINITY, f64::max);
+        }
+        let (level, stretches) = self.cover(region);
+        let tops = self.levels[level][stretches].iter().map(|s| s.high.y);
+        tops.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The level at which a few stretches cover a region, and these.
+    fn cover(&self, region: &Region) -> (usize, RangeInclusive<usize>) {
+        let Range { start, end } = region.0;
+        let blocks = (end - start) / BLOCK;
+        let level = (blocks.max(1).ilog2() as usize).min(self.levels.len() - 1);
+        let size = BLOCK << level;
+        (level, start / size..=(end - 1) / size)
+    }
+
+    /// Calls `piece` with every piece of the stretches that may matter, and whether it has a face:
+    /// the last corner of a region has none.
+    pub(super) fn visit(
+        &self,
+        region: &Region,
+        matters: impl FnMut(&Stretch) -> bool,
+        mut piece: impl FnMut(usize, bool),
+    ) {
+        let end = region.0.end;
+        if !region.is_long() {
+            region.0.clone().for_each(|i| piece(i, true));
+            piece(end, false);
+            return;
+        }
+        let mut last = usize::MAX;
+        self.descend(region, matters, |pieces| {
+            last = pieces.end;
+            pieces.for_each(|i| piece(i, true));
+        });
+        if last == end {
+            piece(end, false);
+        }
+    }
+
+    /// Calls `block` with the pieces of each lowest stretch of a region that may matter.
+    fn descend(
+        &self,
+        region: &Region,
+        mut matters: impl FnMut(&Stretch) -> bool,
+        mut block: impl FnMut(Range<usize>),
+    ) {
+        let (top, stretches) = self.cover(region);
+        for k in stretches {
+            self.descend_from(top, k, &region.0, &mut matters, &mut block);
+        }
+    }
+
+    fn descend_from(
+        &self,
+        level: usize,
+        k: usize,
+        region: &Range<usize>,
+        matters: &mut impl FnMut(&Stretch) -> bool,
+        block: &mut impl FnMut(Range<usize>),
+    ) {
+        let size = BLOCK << level;
+        let pieces = (k * size).max(region.start)..((k + 1) * size).min(region.end);
+        if pieces.is_empty() || !matters(&self.levels[level][k]) {
+            return;
+        }
+        if level == 0 {
+            block(pieces);
+        } else {
+            self.descend_from(level - 1, 2 * k, region, matters, block);
+            self.descend_from(level - 1, 2 * k + 1, region, matters, block);
+        }
+    }
+}
+
+fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch> {
+    let of_piece = |i: usize| {
+        let (face, corner, next) = (&faces[i], &corners[i], &corners[i + 1]);
+        let points = profile.points[corner.facet..=next.facet].iter();
+        let place = |point: &Vector| Stretch {
+            low: *point,
+            high: *point,
+            normals: [face.normal; 2],
+        };
+        // The closing corner is visited with the piece before it.
+        let normals = corner.normals.into_iter().chain(next.normals);
+        let facing = |normal| Stretch {
+            normals: [normal; 2],
+            ..place(&face.begin)
+        };
+        let parts = points.map(place).chain(normals.map(facing));
+        parts.fold(place(&face.begin), Stretch::join)
+    };
+    (0..faces.len()).map(of_piece).collect()
+}
+
+/// Stretches of `BLOCK` pieces, then of twice as many, and so on.
+fn levels(pieces: &[Stretch]) -> Vec<Vec<Stretch>> {
+    let join = |stretches: &[Stretch]| stretches[1..].iter().fold(stretches[0], |a, b| a.join(*b));
+    let mut levels = vec![pieces.chunks(BLOCK).map(join).collect::<Vec<_>>()];
+    while levels[levels.len() - 1].len() > 1 {
+        let next = levels[levels.len() - 1].chunks(2).map(join).collect();
+        levels.push(next);
+    }
+    levels
+}

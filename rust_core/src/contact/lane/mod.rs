@@ -1,0 +1,348 @@
+//! One lane of the ground as contacts see it: straight faces, and the corners between them.
+//!
+//! A sharp corner is a rounded one of radius 0, so that everything bears either on a face or on the
+//! disc of a corner, and rounded edges are true arcs.
+
+mod index;
+
+use rapier2d_f64::math::Vector;
+
+use super::Contact;
+use crate::plane::{cross, left_of};
+use crate::terrain::Profile;
+pub(super) use index::Region;
+use index::{Index, Stretch};
+
+/// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
+pub(super) const ROUNDING: f64 = 1e-9;
+/// [m] A point this close to an arc is on it.
+const SHARED: f64 = 1e-10;
+/// [m] A contact this close to the end of a face touches the edge there.
+const AT_CORNER: f64 = 1e-7;
+
+/// Faces and corners from left to right: face i lies between the corners i and i + 1.
+pub(crate) struct Lane {
+    faces: Vec<Face>,
+    corners: Vec<Corner>,
+    index: Index,
+}
+
+/// A straight piece of the ground; the solid lies on its right.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// [m] Its left end.
+    pub begin: Vector,
+    /// Unit vector to its right end.
+    pub along: Vector,
+    /// Unit vector out of the ground.
+    pub normal: Vector,
+    /// [m] Length; 0 between two arcs that adjoin.
+    pub length: f64,
+    /// Facet of the profile.
+    facet: usize,
+    /// Edges at both ends.
+    edges: [i32; 2],
+}
+
+/// Where two faces meet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// [m] Centre of its arc.
+    pub center: Vector,
+    /// [m] Radius of its arc.
+    pub radius: f64,
+    /// Normals of the faces before and behind it, from which and to which the arc turns clockwise.
+    pub normals: [Vector; 2],
+    /// Whether it stands out, so that something can bear on it.
+    pub stands_out: bool,
+    /// Edge that it is.
+    pub edge: i32,
+    /// First facet of its arc, or the facet that begins at it.
+    facet: usize,
+    /// Facets that its arc is drawn with.
+    facets: usize,
+}
+
+/// Where something bears on the ground, or nearly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// [m] The place on the ground.
+    pub place: Vector,
+    /// Unit vector out of the ground.
+    pub normal: Vector,
+    /// [m] Gap; negative in penetration.
+    pub distance: f64,
+    /// Facet of the profile.
+    pub facet: usize,
+    /// Edge that is touched, or -1 on a face.
+    pub edge: i32,
+    /// The face or the corner.
+    pub on: On,
+}
+
+/// What of the ground a touch is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum On {
+    Face(usize),
+    Corner(usize),
+}
+
+impl Touch {
+    /// The same as a contact of a part.
+    pub(super) fn contact(&self, part: usize) -> Contact {
+        Contact {
+            part,
+            facet: self.facet,
+            edge: self.edge,
+            point: self.place + self.normal * (0.5 * self.distance),
+            normal: self.normal,
+            distance: self.distance,
+        }
+    }
+}
+
+impl Corner {
+    /// Whether the ground has a normal in that direction at the corner, but for rounding.
+    pub(super) fn faces(&self, direction: Vector) -> bool {
+        let [before, behind] = self.normals;
+        cross(direction, before) >= -ROUNDING
+            && cross(behind, direction) >= -ROUNDING
+            && direction.dot(before + behind) > 0.0
+    }
+
+    /// The facet of the profile at a normal of the arc.
+    fn facet_at(&self, normal: Vector) -> usize {
+        if self.facets == 0 {
+            return self.facet;
+        }
+        let [from, to] = self.normals;
+        let angle = |a: Vector, b: Vector| libm::atan2(cross(b, a), a.dot(b));
+        let share = angle(from, normal) / angle(from, to);
+        self.facet + ((share * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
+    }
+
+    /// Something bears on it, along a normal of its own.
+    pub(super) fn touch(&self, corner: usize, normal: Vector, distance: f64) -> Touch {
+        Touch {
+            place: self.center + normal * self.radius,
+            normal,
+            distance,
+            facet: self.facet_at(normal),
+            edge: self.edge,
+            on: On::Corner(corner),
+        }
+    }
+}
+
+impl Lane {
+    /// The lane of a profile.
+    pub(crate) fn new(profile: &Profile) -> Self {
+        let corners = corners_of(profile);
+        let end_of = |c: &Corner| profile.points[c.facet + c.facets];
+        let faces: Vec<Face> = corners
+            .windows(2)
+            .map(|ends| {
+                let (begin, facet) = (end_of(&ends[0]), ends[0].facet + ends[0].facets);
+                let way = profile.points[ends[1].facet] - begin;
+                let length = way.length();
+                let normal = left_of(way.normalize_or(Vector::X));
+                let adjoining = length == 0.0;
+                let normal = if adjoining {
+                    ends[0].normals[1]
+                } else {
+                    normal
+                };
+                Face {
+                    begin,
+                    along: Vector::new(normal.y, -normal.x),
+                    normal,
+                    length,
+                    facet,
+                    edges: [ends[0].edge, ends[1].edge],
+                }
+            })
+            .collect();
+        let index = Index::new(profile, &faces, &corners);
+        Self {
+            faces,
+            corners,
+            index,
+        }
+    }
+
+    pub(super) fn corner(&self, corner: usize) -> &Corner {
+        &self.corners[corner]
+    }
+
+    /// The ground between two x.
+    pub(super) fn region(&self, low: f64, high: f64) -> Region {
+        self.index.region(low, high)
+    }
+
+    /// [m] A height that nothing of a region rises above.
+    pub(super) fn top(&self, region: &Region) -> f64 {
+        self.index.top(region)
+    }
+
+    /// Whether a corner of a region may stand out.
+    pub(super) fn may_stand_out(&self, region: &Region) -> bool {
+        region.is_long() || region.corners().any(|i| self.corners[i].stands_out)
+    }
+
+    /// Everything that a disc bears on with a gap below `prediction`: a corner of a part is a disc of
+    /// no size. Ground above the centre by more than `depth` [m] did not get there by sinking in.
+    pub(super) fn touches_of_disc(
+        &self,
+        center: Vector,
+        radius: f64,
+        (prediction, depth): (f64, f64),
+        mut found: impl FnMut(Touch),
+    ) {
+        let reach = radius + prediction;
+        let region = self.region(center.x - reach, center.x + reach);
+        self.index.visit(
+            &region,
+            |node: &Stretch| node.may_face(center, reach),
+            |i, is_face| {
+                if is_face {
+                    let touch = self.face_under_disc(i, center, radius);
+                    let near = |t: &Touch| t.distance < prediction && t.distance + radius > -depth;
+                    touch.filter(near).into_iter().for_each(&mut found);
+                }
+                let touch = self.corner_under_disc(i, center, radius);
+                touch
+                    .filter(|t| t.distance < prediction)
+                    .into_iter()
+                    .for_each(&mut found);
+            },
+        );
+    }
+
+    /// The foot of a disc's centre on a face.
+    fn face_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
+        let face = &self.faces[i];
+        let spoke = center - face.begin;
+        let along = spoke.dot(face.along);
+        if !(0.0..=face.length).contains(&along) {
+            return None;
+        }
+        let edge = if along < AT_CORNER {
+            face.edges[0]
+        } else if face.length - along < AT_CORNER {
+            face.edges[1]
+        } else {
+            -1
+        };
+        Some(Touch {
+            place: face.begin + face.along * along,
+            normal: face.normal,
+            distance: spoke.dot(face.normal) - radius,
+            facet: face.facet,
+            edge,
+            on: On::Face(i),
+        })
+    }
+
+    /// A corner in whose cone the centre of a disc lies.
+    fn corner_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
+        let corner = &self.corners[i];
+        if !corner.stands_out {
+            return None;
+        }
+        let spoke = center - corner.center;
+        let far = spoke.length();
+        let normal = spoke / far;
+        (far > 0.0 && corner.faces(normal))
+            .then(|| corner.touch(i, normal, far - radius - corner.radius))
+    }
+
+    /// Every corner that bears on a straight run of a part, counter-clockwise from `begin` to `end`, with
+    /// the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
+    pub(super) fn touches_of_run(
+        &self,
+        (begin, end): (Vector, Vector),
+        outward: Vector,
+        (prediction, depth): (f64, f64),
+        mut found: impl FnMut(Touch),
+    ) {
+        // The ground has no overhangs: no normal of it points down.
+        if outward.y > ROUNDING {
+            return;
+        }
+        let along = left_of(outward);
+        let length = (end - begin).dot(along);
+        let (low, high) = (begin.x.min(end.x), begin.x.max(end.x));
+        // An arc's centre lies off its corner by its radius at most.
+        let margin = prediction + self.index.largest_radius();
+        let region = self.region(low - margin, high + margin);
+        self.index.visit(
+            &region,
+            |node: &Stretch| node.may_have(-outward),
+            |i, _| {
+                let corner = &self.corners[i];
+                if !corner.stands_out {
+                    return;
+                }
+                let spoke = corner.center - begin;
+                let gap = spoke.dot(outward) - corner.radius;
+                if gap < prediction
+                    && gap > -depth
+                    && (0.0..=length).contains(&spoke.dot(along))
+                    && corner.faces(-outward)
+                {
+                    found(corner.touch(i, -outward, gap));
+                }
+            },
+        );
+    }
+}
+
+/// The corners of a profile, its two ends among them; the points of an arc are one corner.
+fn corners_of(profile: &Profile) -> Vec<Corner> {
+    let points = &profile.points;
+    let last = points.len() - 1;
+    let mut corners = Vec::new();
+    let mut i = 0;
+    while i <= last {
+        let edge = profile.edge_of_point[i];
+        let rounded = usize::try_from(edge)
+            .ok()
+            .map(|e| &profile.edges[e])
+            .filter(|e| e.radius > 0.0);
+        // An arc that adjoins the last one shares its end.
+        let shares_point = rounded.is_some_and(|e| {
+            let on_arc = |p: Vector| ((p - e.center).length() - e.radius).abs() < SHARED;
+            i > 0 && edge != profile.edge_of_point[i - 1] && on_arc(points[i - 1])
+        });
+        let first = i - usize::from(shares_point);
+        while rounded.is_some() && i < last && profile.edge_of_point[i + 1] == edge {
+            i += 1;
+        }
+        let normal_of = |a: usize, b: usize| left_of((points[b] - points[a]).normalize());
+        let (center, normals) = match rounded {
+            Some(e) => {
+                let normal = |p: Vector| (p - e.center) / e.radius;
+                (e.center, [normal(points[first]), normal(points[i])])
+            }
+            // The ends of the ground have one normal only.
+            None => (
+                points[i],
+                [
+                    normal_of(i.saturating_sub(1), i.max(1)),
+                    normal_of(i.min(last - 1), (i + 1).min(last)),
+                ],
+            ),
+        };
+        corners.push(Corner {
+            center,
+            radius: rounded.map_or(0.0, |e| e.radius),
+            stands_out: 0 < first && i < last && cross(normals[1], normals[0]) > 0.0,
+            normals,
+            edge,
+            facet: first,
+            facets: i - first,
+        });
+        i += 1;
+    }
+    corners
+}

@@ -1,0 +1,92 @@
+//! A corner of a part and a corner of the ground that have run into each other.
+//!
+//! The overlap can be left along each of the four faces that meet there, as far as the other corner is
+//! what the face meets. The shortest of these ways is the contact; the others yield to it.
+
+use rapier2d_f64::math::Vector;
+
+use super::lane::{Corner, Lane, On, ROUNDING, Touch};
+use crate::plane::cross;
+
+/// Cosine of the angle up to which two normals of an overlap both count: faces that all but lie on each
+/// other bear at both ends of their overlap.
+const ALIKE: f64 = 0.94;
+
+/// A sharp corner of a part.
+#[derive(Clone, Copy)]
+pub(super) struct Tip {
+    /// [m] Where it is.
+    pub place: Vector,
+    /// Outward normals of the runs before and behind it, counter-clockwise.
+    pub normals: [Vector; 2],
+}
+
+impl Tip {
+    /// Whether the part has an outward normal in that direction there, but for rounding.
+    pub(super) fn faces(&self, direction: Vector) -> bool {
+        let [before, behind] = self.normals;
+        cross(before, direction) >= -ROUNDING
+            && cross(direction, behind) >= -ROUNDING
+            && direction.dot(before + behind) > 0.0
+    }
+}
+
+/// Whether a tip that is inside a face of the ground leaves it another way.
+pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
+    let On::Face(face) = touch.on else {
+        return false;
+    };
+    let yields_at = |corner: &Corner, beside: Vector| {
+        let below = (corner.center - tip.place).dot(beside);
+        // The ground ends before it gets there.
+        if below < 0.0 {
+            return true;
+        }
+        let beyond = |outward: Vector| (tip.place - corner.center).dot(outward);
+        shorter(touch, beside, below, || tip.faces(-beside))
+            || tip
+                .normals
+                .iter()
+                .any(|m| shorter(touch, -*m, beyond(*m), || corner.faces(-*m)))
+    };
+    let ends = [(face, 0), (face + 1, 1)];
+    touch.distance < 0.0
+        && ends.into_iter().any(|(i, side)| {
+            let corner = lane.corner(i);
+            is_sharp(corner) && yields_at(corner, corner.normals[side])
+        })
+}
+
+/// Whether a corner of the ground that is inside a run of a part, which ends in `tip`, leaves it
+/// another way.
+pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch) -> bool {
+    let On::Corner(i) = touch.on else {
+        return false;
+    };
+    let corner = lane.corner(i);
+    if touch.distance >= 0.0 || !is_sharp(corner) {
+        return false;
+    }
+    let [before, behind] = tip.normals;
+    let beside = if outward == before { behind } else { before };
+    let below = (tip.place - corner.center).dot(beside);
+    if below < 0.0 {
+        return true;
+    }
+    let beyond = |normal: Vector| (corner.center - tip.place).dot(normal);
+    shorter(touch, -beside, below, || corner.faces(-beside))
+        || corner
+            .normals
+            .iter()
+            .any(|n| shorter(touch, *n, beyond(*n), || tip.faces(-*n)))
+}
+
+/// A corner without an arc, that stands out.
+fn is_sharp(corner: &Corner) -> bool {
+    corner.stands_out && corner.radius == 0.0
+}
+
+/// Whether a way of `depth` along `normal` is shorter than the one of `touch`, and open.
+fn shorter(touch: &Touch, normal: Vector, depth: f64, open: impl Fn() -> bool) -> bool {
+    0.0 < depth && depth < -touch.distance && normal.dot(touch.normal) < ALIKE && open()
+}

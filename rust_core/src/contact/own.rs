@@ -1,0 +1,90 @@
+//! Our own contact: every part's outline against the faces and corners of the lane, exactly.
+//!
+//! Contacts are of this very pose, nothing is kept, and no memory is taken but for the list of contacts.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::gear::GearContact;
+use super::hull::HullContact;
+use super::lane::Lane;
+use super::{Contact, without_redundant};
+use crate::robot::{Part, Shape};
+use crate::terrain::Profile;
+
+/// [m] Ground above the centre of a disc by more than this did not get there by sinking in.
+const SHALLOW: f64 = 1e-3;
+
+/// Outlines of one robot and one ground.
+pub(crate) struct OwnContact {
+    lane: Lane,
+    outlines: Vec<Outline>,
+}
+
+/// A part as it meets the ground.
+enum Outline {
+    Disc {
+        part: usize,
+        center: Vector,
+        radius: f64,
+    },
+    Gear {
+        drive: usize,
+        gear: GearContact,
+    },
+    Hull(HullContact),
+}
+
+impl OwnContact {
+    /// The outlines of a robot's parts and of a profile.
+    pub(crate) fn new(parts: &[Part], profile: &Profile) -> Self {
+        let outline = |(i, part): (usize, &Part)| match (&part.shape, part.turning()) {
+            (Shape::Gear { gear, .. }, Some(wheel)) => Outline::Gear {
+                drive: wheel.drive,
+                gear: GearContact::new(i, wheel, *gear),
+            },
+            (Shape::Disc { center, radius }, _) => Outline::Disc {
+                part: i,
+                center: *center,
+                radius: *radius,
+            },
+            _ => Outline::Hull(HullContact::new(i, part)),
+        };
+        Self {
+            lane: Lane::new(profile),
+            outlines: parts.iter().enumerate().map(outline).collect(),
+        }
+    }
+
+    /// Writes every contact with a gap below `prediction` into `contacts`.
+    ///
+    /// `drives` holds how far the surface of each drive has run [m].
+    pub(crate) fn find(
+        &self,
+        pose: Pose,
+        drives: &[f64],
+        prediction: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        contacts.clear();
+        for outline in &self.outlines {
+            match outline {
+                Outline::Disc {
+                    part,
+                    center,
+                    radius,
+                } => {
+                    let center = pose.transform_point(*center);
+                    let reach = (prediction, SHALLOW);
+                    self.lane.touches_of_disc(center, *radius, reach, |touch| {
+                        contacts.push(touch.contact(*part));
+                    });
+                }
+                Outline::Gear { drive, gear } => {
+                    gear.find(&self.lane, pose, drives[*drive], prediction, contacts);
+                }
+                Outline::Hull(hull) => hull.find(&self.lane, pose, prediction, contacts),
+            }
+        }
+        without_redundant(contacts);
+    }
+}
