@@ -47,13 +47,13 @@ impl Scene {
         Scenario::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same in the bare engine, with as many steps and substeps; none without wheels that have
-    /// motors of their own.
+    /// The same in the bare engine, with as many steps and its own default of 4 substeps; none without
+    /// wheels that have motors of their own.
     pub fn engine(&self) -> Option<EngineWorld> {
         let scenario = self.scenario();
         let settings = EngineSettings {
             time_step: scenario.solver.time_step,
-            substeps: scenario.solver.substeps as usize,
+            substeps: 4,
         };
         let own_motors = scenario.robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
         own_motors.then(|| EngineWorld::new(&scenario, settings))

@@ -60,14 +60,16 @@ class Solver(Parameters):
 
     Parameters
     ----------
-    contact : {"reference"}
-        Who finds the contacts: the engine, on one oriented polyline a lane.
+    contact : {"own", "reference"}
+        Who finds the contacts: our own exact geometry, or the engine's queries of convex pieces on one
+        polyline, which are slower and cut rounded edges into facets; it is there to compare with.
     time_step : float
         [s] Time between two looks for contacts.
     substeps : int
-        Substeps of a step.
+        Substeps of a step; one in which a part strikes the ground is cut there.
     iterations : int
-        Largest number of sweeps over the constraints of a substep.
+        Largest number of sweeps over the constraints of a substep, where solving them all at once
+        finds no answer.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float
@@ -80,14 +82,14 @@ class Solver(Parameters):
 
     place: ClassVar[str] = "solver"
 
-    contact: Literal["reference"] = "reference"
+    contact: Literal["own", "reference"] = "own"
     time_step: float = 1e-3
-    substeps: int = 4
+    substeps: int = 1
     iterations: int = 30
     contact_frequency: float = 240.0
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5
-    prediction_distance: float = 0.005
+    prediction_distance: float = 0.001
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

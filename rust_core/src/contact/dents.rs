@@ -76,6 +76,7 @@ impl Dent {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::Grip;
 
     fn contact(x: f64, distance: f64) -> Contact {
         Contact {
@@ -103,8 +104,9 @@ mod tests {
             normal_force: 0.0,
             friction_force: 0.0,
             surface_speed: 0.0,
-            normal_impulse: 0.0,
-            friction_impulse: 0.0,
+            normal_guess: 0.0,
+            friction_guess: 0.0,
+            grip: Grip::Open,
             carried_over: false,
         }]);
     }

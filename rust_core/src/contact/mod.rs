@@ -14,6 +14,7 @@ mod reference;
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::dynamics::Grip;
 pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
@@ -48,8 +49,12 @@ pub(crate) struct LoadedContact {
     pub friction_force: f64,
     /// [m/s] Velocity of the surface over ground in the same direction.
     pub surface_speed: f64,
-    pub normal_impulse: f64,
-    pub friction_impulse: f64,
+    /// [N] Force that the next step starts from.
+    pub normal_guess: f64,
+    /// [N] The same along the tangent.
+    pub friction_guess: f64,
+    /// What it did last.
+    pub grip: Grip,
     pub carried_over: bool,
 }
 

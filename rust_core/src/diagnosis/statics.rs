@@ -122,8 +122,8 @@ impl Statics {
             })
             .collect();
         let push = model.pushes_chassis.then(|| {
-            let (axis, lever) = push_axis(model, angle);
-            (axis.x, axis.y, lever)
+            let axis = push_axis(model, angle);
+            (axis.unit.x, axis.unit.y, axis.lever)
         });
         Self {
             supports,

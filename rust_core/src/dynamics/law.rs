@@ -1,7 +1,7 @@
 //! The law of one contact: Signorini's for the gap, Coulomb's for the slip, a soft push out of penetration.
 
 /// Velocity change at a contact for a unit impulse along normal and tangent.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Admittance {
     pub normal: f64,
     pub tangent: f64,

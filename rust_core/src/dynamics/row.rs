@@ -2,7 +2,9 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
+use super::direct::Grip;
 use super::law::Admittance;
+use super::solve::Action;
 use super::state::State;
 use crate::contact::{Contact, LoadedContact};
 use crate::plane::{cross, right_of};
@@ -15,18 +17,30 @@ pub(super) struct Row {
     pub tangent: Direction,
     pub drive: Option<usize>,
     pub friction: f64,
-    /// What an impulse does to the velocities of the contact: with the drive free, ...
-    pub free: Admittance,
-    /// ... and while the motor holds it at its set-point.
-    pub held: Admittance,
+    /// Normal and tangent with the motors as they are in this solve.
+    pub actions: [Action; 2],
+    pub admittance: Admittance,
+    /// [m/s] Speed that the gap may close with, or must open with if negative.
+    pub bias: f64,
+    /// In units of its own admittance.
+    pub compliance: f64,
+    /// Whether it can bear in this solve.
+    pub bears: bool,
+    /// [N s] In this piece.
     pub normal_impulse: f64,
+    /// [N s] In this piece.
     pub friction_impulse: f64,
+    /// What it does.
+    pub grip: Grip,
+    /// [N s] What a direct solve starts from.
+    pub center: (f64, f64),
+    /// [N] As they were last, to start from.
+    pub normal_guess: f64,
+    pub friction_guess: f64,
     pub normal_total: f64,
     pub friction_total: f64,
     /// [m] Gap now.
     pub gap: f64,
-    /// The surfaces touch after the motion of this substep.
-    pub touches: bool,
     start: Place,
 }
 
@@ -139,14 +153,20 @@ impl Row {
             tangent,
             drive: part.drive,
             friction: part.friction_limit,
-            free: free(normal, tangent, model),
-            held: held(normal.unit, tangent.unit, arm, model),
-            normal_impulse: last.map_or(0.0, |l| l.normal_impulse),
-            friction_impulse: last.map_or(0.0, |l| l.friction_impulse),
+            actions: [Action::default(); 2],
+            admittance: Admittance::default(),
+            bias: 0.0,
+            compliance: 0.0,
+            bears: false,
+            normal_impulse: 0.0,
+            friction_impulse: 0.0,
+            grip: last.map_or(Grip::Open, |l| l.grip),
+            center: (0.0, 0.0),
+            normal_guess: last.map_or(0.0, |l| l.normal_guess),
+            friction_guess: last.map_or(0.0, |l| l.friction_guess),
             normal_total: 0.0,
             friction_total: 0.0,
             gap: start.gap,
-            touches: false,
             start,
         }
     }
@@ -172,28 +192,5 @@ impl Row {
         }
         let moved = state.center - center + turned * s.arm + spoke - s.arm - s.spoke;
         self.gap = s.gap + self.normal.unit.dot(moved);
-    }
-}
-
-fn free(normal: Direction, tangent: Direction, m: &Model) -> Admittance {
-    let drive_inertia = m.drive_mass * m.drive_radius * m.drive_radius;
-    let through = |a: Direction, b: Direction| {
-        a.lever * b.lever / m.moment_of_inertia + a.drive_lever * b.drive_lever / drive_inertia
-    };
-    Admittance {
-        normal: 1.0 / m.mass + through(normal, normal),
-        tangent: 1.0 / m.mass + through(tangent, tangent),
-        cross: through(normal, tangent),
-    }
-}
-
-/// The drive turns with the body.
-fn held(normal: Vector, tangent: Vector, arm: Vector, m: &Model) -> Admittance {
-    let (n, t) = (cross(arm, normal), cross(arm, tangent));
-    let inverse_inertia = 1.0 / m.locked_inertia();
-    Admittance {
-        normal: 1.0 / m.mass + n * n * inverse_inertia,
-        tangent: 1.0 / m.mass + t * t * inverse_inertia,
-        cross: n * t * inverse_inertia,
     }
 }

@@ -1,6 +1,6 @@
-//! Flat ground is flat however it is cut.
+//! Flat ground is flat however it is cut, and wherever it lies.
 
-use crawler2d_core::{Ground, Profile, Scenario, Simulation, Track};
+use crawler2d_core::{Ground, Profile, Scenario, Simulation, Terrain, Track};
 
 use crate::common::*;
 
@@ -64,6 +64,11 @@ fn scenarios() -> Vec<(&'static str, Scenario)> {
         ("belt", with(belt())),
         ("line of 3", with(line(3))),
         ("line of 9", with(line(9))),
+        ("line of 3 gear wheels", with(line_of(3, paper_gear()))),
+        (
+            "14 gear wheels round the outline",
+            with(circumferential(14, paper_gear())),
+        ),
         ("force", with(force())),
     ]
 }
@@ -72,7 +77,7 @@ fn scenarios() -> Vec<(&'static str, Scenario)> {
 fn pieces_of_flat_ground_leave_no_trace() {
     for (name, scenario) in scenarios() {
         let whole = drive(&scenario, cut(1, 0.0, &mut Draw(0))).0;
-        for pieces in [3, 10, 101, 1000] {
+        for pieces in [3, 101, 1000, 100_000] {
             let (path, upward) = drive(&scenario, cut(pieces, 0.0, &mut Draw(0)));
             let off = apart(&whole, &path);
             println!("{name}, {pieces} pieces: off {off:.1e} m, upwards {upward:.1e} m/s");
@@ -86,11 +91,40 @@ fn vertices_off_by_a_ten_millionth_leave_none_either() {
     let mut draw = Draw(3);
     for (name, scenario) in scenarios() {
         let whole = drive(&scenario, cut(1, 0.0, &mut draw)).0;
-        for pieces in [10, 100, 1000] {
+        for pieces in [10, 1000, 100_000] {
             let (path, upward) = drive(&scenario, cut(pieces, 1e-7, &mut draw));
             let off = apart(&whole, &path);
             println!("{name}, {pieces} jittered pieces: off {off:.1e} m, upwards {upward:.1e} m/s");
-            assert!(off < 1e-5 && upward < 1e-4);
+            assert!(off < 1e-6);
         }
+    }
+}
+
+#[test]
+fn a_shift_by_a_hundred_metres_changes_nothing_before_the_edge() {
+    let step_at = |x: f64| Terrain::Points {
+        points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
+        goal: x,
+        edge_radius: 0.0,
+        friction: 0.9,
+    };
+    for (name, scenario) in scenarios() {
+        let path = |x: f64| {
+            let mut scenario = scenario.clone();
+            scenario.terrain = step_at(x);
+            scenario.start.approach = 1.0;
+            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            let mut path = Vec::new();
+            // At 0.2 m/s^2 up to 0.4 m/s, three seconds end 0.2 m before the edge.
+            for _ in 0..3000 {
+                simulation.step().expect("finite");
+                let r = simulation.reading();
+                path.push([r.position.x - x, r.position.y, 0.1825 * r.chassis_angle]);
+            }
+            path
+        };
+        let off = apart(&path(0.0), &path(100.0));
+        println!("{name}: off {off:.1e} m");
+        assert!(off < 1e-9);
     }
 }

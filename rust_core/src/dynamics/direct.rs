@@ -1,0 +1,316 @@
+//! All constraints at once: which contacts are open, stick or slide is guessed from the last solve, the
+//! velocities follow from one small linear system, and the guess is mended until it fits.
+//!
+//! A contact enters as a stiff damper about the impulse that it had (the proximal point of an augmented
+//! Lagrangian), so that contacts that share one load have a solution, too, and the nearest one. What
+//! the damping leaves vanishes as the impulses become their own starting point. The system has three
+//! rows for the chassis, whatever the number of contacts, and one more to be eliminated at once for
+//! each drive with a spin of its own.
+
+use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use super::Dynamics;
+use super::row::Row;
+use super::solve::{AGREEMENT, Action, Phase, Push};
+use super::state::State;
+
+/// Compliance of the dampers, in units of the contact's own admittance.
+const DAMPING: f64 = 1e-6;
+/// Solutions of the system in search of one that fits: misfits that are mended all at once can chase each
+/// other for ever.
+const MENDINGS: u32 = 4;
+/// A pivot smaller than this share of the largest entry is none.
+const SINGULAR: f64 = 1e-12;
+
+/// What a contact does in a solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Grip {
+    /// Nothing.
+    #[default]
+    Open,
+    /// It holds.
+    Sticks,
+    /// It slides; friction acts along the tangent.
+    Forwards,
+    /// It slides; friction acts against the tangent.
+    Backwards,
+}
+
+impl Grip {
+    /// The next guess: between the two directions of slip lies none.
+    fn towards(self, fitting: Self) -> Self {
+        match (self, fitting) {
+            (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,
+            _ => fitting,
+        }
+    }
+}
+
+/// The linear system, and what the drives with a spin of their own add to it.
+#[derive(Default)]
+pub(super) struct System {
+    pub rows: [[f64; 4]; 3],
+    pub spins: Vec<Spin>,
+}
+
+/// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the velocity's
+/// equations have `rows x spin`.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Spin {
+    inertia: f64,
+    moment: f64,
+    columns: [f64; 3],
+    rows: [f64; 3],
+    /// Whether a constraint acts on it.
+    acts: bool,
+}
+
+impl System {
+    /// Adds a constraint whose impulse along `force` is `impulse - stiffness x speed` along `action`.
+    fn add(
+        &mut self,
+        force: &Action,
+        action: &Action,
+        spin: Option<usize>,
+        (impulse, stiffness): (f64, f64),
+    ) {
+        let (f, d) = (force.body(), action.body());
+        let impulse = impulse - stiffness * action.offset;
+        for (row, f) in self.rows.iter_mut().zip(f) {
+            for (entry, d) in row.iter_mut().zip(d) {
+                *entry += stiffness * f * d;
+            }
+            row[3] += f * impulse;
+        }
+        let Some(k) = spin.filter(|_| action.spin_lever != 0.0 || force.spin_lever != 0.0) else {
+            return;
+        };
+        let spin = &mut self.spins[k];
+        spin.acts = true;
+        spin.inertia += stiffness * force.spin_lever * action.spin_lever;
+        spin.moment += force.spin_lever * impulse;
+        for i in 0..3 {
+            spin.rows[i] += stiffness * f[i] * action.spin_lever;
+            spin.columns[i] += stiffness * force.spin_lever * d[i];
+        }
+    }
+
+    /// Velocity and angular velocity; none if the constraints contradict each other.
+    fn solve(&mut self) -> Option<(Vector, f64)> {
+        for spin in self.spins.iter().filter(|spin| spin.acts) {
+            for i in 0..3 {
+                let share = spin.rows[i] / spin.inertia;
+                for j in 0..3 {
+                    self.rows[i][j] -= share * spin.columns[j];
+                }
+                self.rows[i][3] -= share * spin.moment;
+            }
+        }
+        let [x, y, turn] = eliminate(self.rows)?;
+        Some((Vector::new(x, y), turn))
+    }
+}
+
+/// Gauss's elimination with pivots.
+fn eliminate(mut a: [[f64; 4]; 3]) -> Option<[f64; 3]> {
+    let largest = a
+        .iter()
+        .flat_map(|r| &r[..3])
+        .fold(0.0, |m: f64, e| m.max(e.abs()));
+    for i in 0..3 {
+        let pivot = (i..3).max_by(|p, q| a[*p][i].abs().total_cmp(&a[*q][i].abs()))?;
+        a.swap(i, pivot);
+        if a[i][i].abs() <= SINGULAR * largest {
+            return None;
+        }
+        for j in i + 1..3 {
+            let share = a[j][i] / a[i][i];
+            let above = a[i];
+            for (entry, above) in a[j].iter_mut().zip(above) {
+                *entry -= share * above;
+            }
+        }
+    }
+    let turn = a[2][3] / a[2][2];
+    let y = (a[1][3] - a[1][2] * turn) / a[1][1];
+    let x = (a[0][3] - a[0][1] * y - a[0][2] * turn) / a[0][0];
+    Some([x, y, turn])
+}
+
+impl Dynamics {
+    /// Finds the impulses that all constraints agree on, if a guess can be mended to fit.
+    pub(super) fn solve_at_once(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.settle();
+        for _ in 0..MENDINGS {
+            self.assemble(phase);
+            let Some((velocity, turn)) = self.system.solve() else {
+                return false;
+            };
+            (state.velocity, state.angular_velocity) = (velocity, turn);
+            for (k, spin) in self.system.spins.iter().enumerate() {
+                let [x, y, z] = spin.columns;
+                let of_body = x * velocity.x + y * velocity.y + z * turn;
+                state.drives[k].spin = (spin.moment - of_body) / spin.inertia;
+            }
+            let (mut fits, mut change) = (true, 0.0_f64);
+            for row in self.rows.iter_mut().filter(|row| row.bears) {
+                let spin = row.drive.map_or(0.0, |k| state.drives[k].spin);
+                let (fitting, moved) = row.follow_velocities(state, spin);
+                change = change.max(moved);
+                let grip = row.grip.towards(fitting);
+                fits &= grip == row.grip;
+                row.grip = grip;
+            }
+            if let Some(push) = &mut self.push {
+                change = change.max(push.follow_velocities(state));
+            }
+            if !fits {
+                continue;
+            }
+            self.turn_with_chassis(state, phase);
+            if self.switch_motors(state, phase) {
+                self.set_actions(state, phase);
+            } else {
+                if change < AGREEMENT {
+                    return true;
+                }
+                self.settle();
+            }
+        }
+        self.rows.iter_mut().for_each(Row::unsettle);
+        false
+    }
+
+    /// Makes the impulses the ones that constraints are damped about.
+    fn settle(&mut self) {
+        self.rows.iter_mut().for_each(Row::settle);
+        if let Some(push) = &mut self.push {
+            push.center = push.impulse;
+        }
+    }
+
+    /// The system of the constraints as they are guessed.
+    fn assemble(&mut self, phase: &Phase) {
+        let m = &self.model;
+        let (moment, drive_inertia) = (self.free_moment(phase), self.drive_inertia());
+        let system = &mut self.system;
+        system.rows = [
+            [m.mass, 0.0, 0.0, m.mass * phase.velocity.x],
+            [0.0, m.mass, 0.0, m.mass * phase.velocity.y],
+            [0.0, 0.0, self.inertia, moment],
+        ];
+        for (k, motor) in self.motors.iter().enumerate() {
+            let share = motor.share().unwrap_or_default();
+            let of_motor = share * m.drive_force * phase.elapsed * m.drive_radius;
+            system.spins[k] = Spin {
+                inertia: drive_inertia,
+                moment: drive_inertia * phase.spins[k] - of_motor,
+                ..Spin::default()
+            };
+        }
+        for row in self.rows.iter().filter(|row| row.bears) {
+            let [normal, tangent] = &row.actions;
+            let (n, t) = row.dampers();
+            match row.grip {
+                Grip::Open => {}
+                Grip::Sticks => {
+                    system.add(normal, normal, row.drive, n);
+                    system.add(tangent, tangent, row.drive, t);
+                }
+                Grip::Forwards => {
+                    let force = normal.plus(tangent, row.friction);
+                    system.add(&force, normal, row.drive, n);
+                }
+                Grip::Backwards => {
+                    let force = normal.plus(tangent, -row.friction);
+                    system.add(&force, normal, row.drive, n);
+                }
+            }
+        }
+        if let Some(push) = &self.push {
+            system.add(&push.action, &push.action, Some(0), push.damper());
+        }
+    }
+}
+
+impl Row {
+    /// Makes its impulses the ones that it is damped about.
+    fn settle(&mut self) {
+        self.center = (self.normal_impulse, self.friction_impulse);
+    }
+
+    /// Takes these back.
+    fn unsettle(&mut self) {
+        (self.normal_impulse, self.friction_impulse) = self.center;
+    }
+
+    /// Guesses its grip from its impulses.
+    pub(super) fn guess_grip(&mut self) {
+        let limit = self.friction * self.normal_impulse * (1.0 - 1e-9);
+        self.grip = if self.normal_impulse <= 0.0 {
+            Grip::Open
+        } else if self.friction_impulse >= limit {
+            Grip::Forwards
+        } else if self.friction_impulse <= -limit {
+            Grip::Backwards
+        } else {
+            Grip::Sticks
+        };
+    }
+
+    /// Impulse at rest and stiffness, along normal and tangent.
+    fn dampers(&self) -> ((f64, f64), (f64, f64)) {
+        let (normal, friction) = self.center;
+        let damping = DAMPING * self.admittance.normal;
+        let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
+        let along = 1.0 / (DAMPING * self.admittance.tangent);
+        (
+            (stiffness * (damping * normal - self.bias), stiffness),
+            (friction, along),
+        )
+    }
+
+    /// Takes the impulses that belong to the velocities: the grip that fits them, and how far its
+    /// velocities are from what they should be [m/s].
+    fn follow_velocities(&mut self, state: &State, spin: f64) -> (Grip, f64) {
+        let [n, t] = &self.actions;
+        let ((at_rest, stiffness), (stuck, along)) = self.dampers();
+        let normal = at_rest - stiffness * n.speed(state, spin);
+        let friction = stuck - along * t.speed(state, spin);
+        let limit = self.friction * normal;
+        let (grip, friction) = if normal <= 0.0 {
+            (Grip::Open, 0.0)
+        } else if friction > limit {
+            (Grip::Forwards, limit)
+        } else if friction < -limit {
+            (Grip::Backwards, -limit)
+        } else {
+            (Grip::Sticks, friction)
+        };
+        self.normal_impulse = normal.max(0.0);
+        self.friction_impulse = friction;
+        let off_normal = (self.normal_impulse - self.center.0).abs() * self.admittance.normal;
+        let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
+        let off = match grip {
+            Grip::Open => 0.0,
+            Grip::Sticks => off_normal.max(off_tangent),
+            Grip::Forwards | Grip::Backwards => off_normal,
+        };
+        (grip, DAMPING * off)
+    }
+}
+
+impl Push {
+    /// Impulse at rest and stiffness.
+    fn damper(&self) -> (f64, f64) {
+        (self.center, 1.0 / (DAMPING * self.admittance))
+    }
+
+    /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
+    fn follow_velocities(&mut self, state: &State) -> f64 {
+        let slip = self.action.speed(state, state.drives[0].spin);
+        self.impulse = self.center - slip / (DAMPING * self.admittance);
+        slip.abs()
+    }
+}

@@ -1,0 +1,384 @@
+//! The velocities at which all constraints agree, by projected Gauss-Seidel.
+
+use rapier2d_f64::math::Vector;
+
+use super::Dynamics;
+use super::law::{Admittance, Softness, coulomb};
+use super::motors::{Motor, push_axis};
+use super::row::{Direction, Row};
+use super::state::State;
+
+/// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a step of 1 ms
+/// that is a force of 1e-5 of the weight, far below what any outcome turns on.
+pub(super) const AGREEMENT: f64 = 1e-7;
+/// Sweeps over the contacts between two tries to solve them all at once.
+const SWEEPS: u32 = 3;
+/// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
+const TOUCHING: f64 = 1e-10;
+
+/// What a solve starts from: the velocities as they would be without contacts and motors.
+#[derive(Default)]
+pub(super) struct Phase {
+    /// [m/s] Of the centre of mass, with the weight's push.
+    pub velocity: Vector,
+    /// [rad/s] Of the chassis.
+    pub angular_velocity: f64,
+    /// [rad/s] Of the drives.
+    pub spins: Vec<f64>,
+    /// [m/s] For the surfaces.
+    pub set_point: f64,
+    /// [s] Time in which motors can push.
+    pub elapsed: f64,
+}
+
+/// A direction in which a constraint acts, with the motors as they are in this solve.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Action {
+    pub unit: Vector,
+    /// [m] Lever of the angular velocity of the chassis and of all drives that turn with it.
+    pub lever: f64,
+    /// [m] Lever of the spin of a drive with a spin of its own.
+    pub spin_lever: f64,
+    /// [m/s] What a surface that is held at the set-point adds.
+    pub offset: f64,
+}
+
+impl Action {
+    fn new(along: &Direction, held: bool, spin_of_set_point: f64) -> Self {
+        if held {
+            Self {
+                unit: along.unit,
+                lever: along.lever + along.drive_lever,
+                spin_lever: 0.0,
+                offset: -along.drive_lever * spin_of_set_point,
+            }
+        } else {
+            Self {
+                unit: along.unit,
+                lever: along.lever,
+                spin_lever: along.drive_lever,
+                offset: 0.0,
+            }
+        }
+    }
+
+    /// What it does to x, y and angle.
+    pub(super) fn body(&self) -> [f64; 3] {
+        [self.unit.x, self.unit.y, self.lever]
+    }
+
+    /// Together with a share of another.
+    pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
+        Self {
+            unit: self.unit + other.unit * share,
+            lever: self.lever + other.lever * share,
+            spin_lever: self.spin_lever + other.spin_lever * share,
+            offset: self.offset + other.offset * share,
+        }
+    }
+
+    /// [m/s] Speed along it.
+    pub(super) fn speed(&self, state: &State, spin: f64) -> f64 {
+        self.unit.dot(state.velocity)
+            + self.lever * state.angular_velocity
+            + self.spin_lever * spin
+            + self.offset
+    }
+}
+
+/// The push of a track that is modelled by a force alone: its axis runs on a rail without slip, and the
+/// motor limits it.
+#[derive(Default)]
+pub(super) struct Push {
+    /// [N] As it was last.
+    pub force: f64,
+    /// [N s] In this piece.
+    pub impulse: f64,
+    /// [N s] What a direct solve starts from.
+    pub center: f64,
+    pub action: Action,
+    pub admittance: f64,
+}
+
+/// Velocities and inverse inertias during the sweeps.
+struct Body {
+    velocity: Vector,
+    angular_velocity: f64,
+    mass: f64,
+    inertia: f64,
+    drive: f64,
+}
+
+impl Body {
+    fn speed(&self, action: &Action, spin: f64) -> f64 {
+        action.unit.dot(self.velocity)
+            + action.lever * self.angular_velocity
+            + action.spin_lever * spin
+            + action.offset
+    }
+
+    /// An impulse; the change of the spin is returned.
+    fn push(&mut self, action: &Action, impulse: f64) -> f64 {
+        self.velocity += action.unit * (impulse * self.mass);
+        self.angular_velocity += action.lever * impulse * self.inertia;
+        action.spin_lever * impulse * self.drive
+    }
+
+    /// Velocity along one direction for an impulse along another.
+    fn admittance(&self, a: &Action, b: &Action) -> f64 {
+        a.unit.dot(b.unit) * self.mass
+            + a.lever * b.lever * self.inertia
+            + a.spin_lever * b.spin_lever * self.drive
+    }
+}
+
+impl Dynamics {
+    /// Finds the impulses that all constraints agree on.
+    pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
+        self.set_actions(state, phase);
+        let rounds = self.solver.iterations.div_ceil(SWEEPS);
+        let agree = |_| self.solve_at_once(state, phase) || self.solve_one_by_one(state, phase);
+        if !(0..rounds).any(agree) && self.limit_motors(state, phase) {
+            self.set_actions(state, phase);
+        }
+        // From the impulses, so that momentum is kept to the last digit.
+        self.balance(state, phase);
+    }
+
+    /// Sweeps over the contacts, each solved by itself; whether they agree.
+    ///
+    /// However slowly, they get nearer, and what grips and what slides is soon right.
+    fn solve_one_by_one(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.balance(state, phase);
+        for _ in 0..SWEEPS {
+            let change = self.sweep(state);
+            self.turn_with_chassis(state, phase);
+            if self.switch_motors(state, phase) {
+                self.set_actions(state, phase);
+                self.balance(state, phase);
+            } else if change < AGREEMENT {
+                return true;
+            }
+        }
+        self.rows.iter_mut().for_each(Row::guess_grip);
+        false
+    }
+
+    /// How constraints act while the motors do what they do.
+    pub(super) fn set_actions(&mut self, state: &State, phase: &Phase) {
+        let motors = &self.motors;
+        let held = motors.iter().filter(|motor| motor.share().is_none());
+        self.inertia = self.model.moment_of_inertia + held.count() as f64 * self.drive_inertia();
+        let spin_of_set_point = phase.set_point / self.model.drive_radius;
+        let body = self.body(state);
+        for row in &mut self.rows {
+            let held = row.drive.is_some_and(|k| motors[k].share().is_none());
+            let n = Action::new(&row.normal, held, spin_of_set_point);
+            let t = Action::new(&row.tangent, held, spin_of_set_point);
+            row.admittance = Admittance {
+                normal: body.admittance(&n, &n),
+                tangent: body.admittance(&t, &t),
+                cross: body.admittance(&n, &t),
+            };
+            row.actions = [n, t];
+        }
+        if let Some(push) = &mut self.push {
+            let held = motors[0].share().is_none();
+            push.action = Action::new(
+                &push_axis(&self.model, state.angle),
+                held,
+                spin_of_set_point,
+            );
+            push.admittance = body.admittance(&push.action, &push.action);
+        }
+    }
+
+    /// [N m s] Moment of momentum of the chassis, and of the drives that turn with it over it, as it would
+    /// be without contacts.
+    pub(super) fn free_moment(&self, phase: &Phase) -> f64 {
+        let m = &self.model;
+        let spin_of_set_point = phase.set_point / m.drive_radius;
+        let of_drive = |(motor, spin): (&Motor, &f64)| match motor.share() {
+            Some(share) => share * m.drive_force * phase.elapsed * m.drive_radius,
+            None => self.drive_inertia() * (spin + spin_of_set_point),
+        };
+        let of_drives: f64 = self.motors.iter().zip(&phase.spins).map(of_drive).sum();
+        m.moment_of_inertia * phase.angular_velocity + of_drives
+    }
+
+    /// Velocities from all impulses so far, with the motors as they are.
+    fn balance(&mut self, state: &mut State, phase: &Phase) {
+        let m = &self.model;
+        let (mut impulse, mut moment) = (Vector::ZERO, self.free_moment(phase));
+        for row in &self.rows {
+            let [n, t] = &row.actions;
+            impulse += n.unit * row.normal_impulse + t.unit * row.friction_impulse;
+            moment += n.lever * row.normal_impulse + t.lever * row.friction_impulse;
+        }
+        if let Some(push) = &self.push {
+            impulse += push.action.unit * push.impulse;
+            moment += push.action.lever * push.impulse;
+        }
+        state.velocity = phase.velocity + impulse / m.mass;
+        state.angular_velocity = moment / self.inertia;
+        self.turn_with_chassis(state, phase);
+        let m = &self.model;
+        for (k, motor) in self.motors.iter().enumerate() {
+            if let Some(share) = motor.share() {
+                let of_motor = share * m.drive_force * phase.elapsed * m.drive_radius;
+                state.drives[k].spin =
+                    phase.spins[k] + (self.torques[k] - of_motor) / self.drive_inertia();
+            }
+        }
+    }
+
+    fn body(&self, state: &State) -> Body {
+        Body {
+            velocity: state.velocity,
+            angular_velocity: state.angular_velocity,
+            mass: 1.0 / self.model.mass,
+            inertia: 1.0 / self.inertia,
+            drive: 1.0 / self.drive_inertia(),
+        }
+    }
+
+    /// One sweep over the constraints; the largest change of a velocity [m/s].
+    fn sweep(&mut self, state: &mut State) -> f64 {
+        let mut body = self.body(state);
+        let mut change: f64 = 0.0;
+        let mut no_drive = 0.0;
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            let spin = match row.drive {
+                Some(k) => &mut state.drives[k].spin,
+                None => &mut no_drive,
+            };
+            change = change.max(row.solve(&mut body, spin));
+        }
+        if let Some(push) = &mut self.push {
+            let spin = &mut state.drives[0].spin;
+            let slip = body.speed(&push.action, *spin);
+            let impulse = -slip / push.admittance;
+            push.impulse += impulse;
+            *spin += body.push(&push.action, impulse);
+            change = change.max(slip.abs());
+        }
+        state.velocity = body.velocity;
+        state.angular_velocity = body.angular_velocity;
+        change
+    }
+
+    /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
+    pub(super) fn turn_with_chassis(&mut self, state: &mut State, phase: &Phase) {
+        let back = phase.set_point / self.model.drive_radius;
+        for (drive, motor) in state.drives.iter_mut().zip(&self.motors) {
+            if motor.share().is_none() {
+                drive.spin = state.angular_velocity - back;
+            }
+        }
+        self.torques.fill(0.0);
+        for row in &self.rows {
+            if let Some(k) = row.drive {
+                self.torques[k] += row.torque();
+            }
+        }
+        if let Some(push) = &self.push {
+            self.torques[0] += self.model.drive_radius * push.impulse;
+        }
+    }
+
+    /// Starts a piece from the forces of the last one, in half its time.
+    pub(super) fn guess(&mut self, half: f64) {
+        for row in &mut self.rows {
+            row.normal_impulse = row.normal_guess * half;
+            row.friction_impulse = row.friction_guess * half;
+        }
+        if let Some(push) = &mut self.push {
+            push.impulse = push.force * half;
+        }
+    }
+
+    /// The same for the other half, where something bears.
+    pub(super) fn guess_more(&mut self, half: f64) {
+        for row in &mut self.rows {
+            // What pressed before the motion has closed its gap, but for the curve of a turning grouser.
+            row.bears = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
+            (row.bias, row.compliance) = (0.0, 0.0);
+            if row.normal_impulse >= row.normal_guess * half {
+                row.normal_impulse += row.normal_guess * half;
+                row.friction_impulse += row.friction_guess * half;
+            }
+        }
+        if let Some(push) = &mut self.push {
+            push.impulse += push.force * half;
+        }
+    }
+
+    /// Keeps the forces of a piece of `h` [s] for the next.
+    pub(super) fn remember(&mut self, h: f64) {
+        for row in &mut self.rows {
+            row.normal_guess = row.normal_impulse / h;
+            row.friction_guess = row.friction_impulse / h;
+        }
+        if let Some(push) = &mut self.push {
+            push.force = push.impulse / h;
+        }
+    }
+
+    /// Adds what a piece applied to the means of a step of `dt` [s].
+    pub(super) fn collect(&mut self, state: &mut State, phase: &Phase, dt: f64) {
+        for row in &mut self.rows {
+            row.normal_total += row.normal_impulse;
+            row.friction_total += row.friction_impulse;
+        }
+        for k in 0..state.drives.len() {
+            let impulse = self.motor_impulse(state, phase, k);
+            state.drives[k].force += impulse / dt;
+            state.drives[k].traction += self.torques[k] / (self.model.drive_radius * dt);
+        }
+    }
+}
+
+impl Row {
+    /// Before the motion an open gap may just close, and a penetration is pushed out softly.
+    pub(super) fn close(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
+        self.bears = true;
+        if self.gap > 0.0 {
+            (self.bias, self.compliance) = (self.gap / h, 0.0);
+        } else {
+            self.bias = (soft.push_rate * self.gap).max(-max_push_speed);
+            // The load of half the time stands for the load of all of it.
+            self.compliance = 2.0 * soft.compliance;
+        }
+    }
+
+    /// Solves the contact by itself, exactly: open, sticking or sliding.
+    fn solve(&mut self, body: &mut Body, spin: &mut f64) -> f64 {
+        let [n, t] = &self.actions;
+        let a = self.admittance;
+        let approach = body.speed(n, *spin) + self.bias;
+        if approach >= 0.0 && self.normal_impulse == 0.0 {
+            return 0.0;
+        }
+        // Velocities that the contact would have without its impulses.
+        let free_approach =
+            approach - a.normal * self.normal_impulse - a.cross * self.friction_impulse;
+        let free_slip = body.speed(t, *spin)
+            - a.cross * self.normal_impulse
+            - a.tangent * self.friction_impulse;
+        let compliance = self.compliance * a.normal;
+        let (normal, friction) = coulomb(free_approach, free_slip, a, compliance, self.friction);
+        let more = (
+            normal - self.normal_impulse,
+            friction - self.friction_impulse,
+        );
+        *spin += body.push(n, more.0) + body.push(t, more.1);
+        (self.normal_impulse, self.friction_impulse) = (normal, friction);
+        (more.0.abs() * a.normal).max(more.1.abs() * a.tangent)
+    }
+
+    /// [N m s] What its impulses turn the drive with.
+    fn torque(&self) -> f64 {
+        self.normal.drive_lever * self.normal_impulse
+            + self.tangent.drive_lever * self.friction_impulse
+    }
+}

@@ -1,0 +1,50 @@
+//! The core against a judge that shares neither code nor method with it: who gets over, in ensembles.
+
+use crate::judge::{Scene, Settings, Tally, drawn_scene, fixed_scenes};
+
+/// Runs a scene in both and prints what came out.
+fn tally(scene: &Scene, runs: u32, settings: Settings) -> Tally {
+    let tally = Tally::of(scene, runs, settings);
+    println!("{}: {}", scene.name, tally.report());
+    // Deeper, and an overlap may have gone unseen.
+    assert!(tally.deepest() < 1e-3);
+    tally
+}
+
+#[test]
+fn core_and_judge_agree_on_who_gets_over() {
+    for scene in [&fixed_scenes()[0], &drawn_scene(1)] {
+        assert!(tally(scene, 8, Settings::default()).chance() > 0.01);
+    }
+}
+
+/// Ten scenes: at a true chance of one in two hundred each, one set in twenty would fail by luck.
+#[test]
+fn core_and_judge_agree_over_ten_scenes() {
+    if std::env::var_os("CRAWLER2D_SOAK").is_none() {
+        return;
+    }
+    let seeds = 1..=5;
+    println!("seeds of the drawn scenes: {seeds:?}");
+    let mut scenes = fixed_scenes();
+    scenes.extend(seeds.map(drawn_scene));
+    let apart: Vec<&str> = scenes
+        .iter()
+        .filter(|scene| tally(scene, 64, Settings::default()).chance() < 0.05 / 10.0)
+        .map(|scene| scene.name.as_str())
+        .collect();
+    assert!(apart.is_empty(), "{apart:?}");
+}
+
+/// The judge's own rates under half the step and four times the stiffness.
+#[test]
+fn the_judge_agrees_with_itself_when_refined() {
+    if std::env::var_os("CRAWLER2D_SOAK").is_none() {
+        return;
+    }
+    for scene in [&fixed_scenes()[0], &drawn_scene(1)] {
+        let tally = Tally::of_refined(scene, 64, Settings::default());
+        println!("{}, refined: {}", scene.name, tally.report());
+        assert!(tally.chance() > 0.05 / 2.0);
+    }
+}
