@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench format build soak tools
+.PHONY: help study test test-browser check bench bench-peers format build soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -49,6 +49,9 @@ check: $(VENV)/.built ## format, lint, types, stubs and documentation, nothing c
 bench: | tools ## benchmarks
 	cargo bench
 
+bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about half an hour
+	$(BIN)/python -m benches.peers $(ARGS)
+
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all
 	$(BIN)/ruff check --fix-only --quiet .
@@ -72,6 +75,10 @@ $(VENV)/.dependencies: pyproject.toml | tools
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+$(VENV)/.peers: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
 	@touch $@
 
 # Which browser the pages are tested in: one of this machine, playwright's own, or Debian's.

@@ -1,0 +1,109 @@
+"""Run the benchmark: progress on stderr, tables on the screen, `out/peers.json`, the report.
+
+Usage, from the repository root: ``python -m benches.peers [--quick]``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from benches.peers import accuracy, machine, report, scenes, sections
+from benches.peers.accuracy import Effort
+from benches.peers.batches import batches
+from benches.peers.engine import Setting
+from benches.peers.engines import NAMES, engine, engines
+from benches.peers.timing import interleaved, progress
+
+_ROOT = Path(__file__).parents[2]
+_RESULT = _ROOT / "out" / "peers.json"
+_REPORT = _ROOT / "docs" / "studies" / "peers.md"
+_REPEATS = 5
+_WORLDS = 8
+_ENSEMBLE = 12
+
+
+def main() -> None:
+    """Parse the arguments and run."""
+    parser = argparse.ArgumentParser(prog="python -m benches.peers", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="two scenes, and no report")
+    parser.add_argument(
+        "--scenes",
+        nargs="+",
+        choices=scenes.NAMES,
+        default=scenes.NAMES,
+        metavar="SCENE",
+        help="these alone, and no report",
+    )
+    parser.add_argument("--render", action="store_true", help="only write the report again")
+    arguments = parser.parse_args()
+    path = _RESULT.with_stem("peers-quick") if arguments.quick else _RESULT
+    if not arguments.render:
+        start = time.perf_counter()
+        result: dict[str, Any] = {"machine": machine.describe(engines())}
+        for section in quick() if arguments.quick else full(arguments.scenes):
+            result |= section
+            result["wall"] = time.perf_counter() - start
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    text = report.render(json.loads(path.read_text(encoding="utf-8")))
+    sys.stdout.write(text)
+    if not arguments.quick and arguments.scenes == scenes.NAMES:
+        _REPORT.write_text(text, encoding="utf-8", newline="\n")
+
+
+def quick() -> Iterator[dict[str, Any]]:
+    """Try everything on a small scale, in less than a minute."""
+    names = ["lwa5-round-step", "lwa5-gear-step"]
+    yield {"defaults": sections.defaults(names, engines(), 1)}
+    yield {"yardstick": sections.yardstick(["lwa3", "lwa5"], ["step"], 2)}
+    yield {"batches": batches(["lwa3-gear-step"], scenes.draws(2), NAMES, 1)}
+    yield {"accuracy": equal_accuracy(names[0], Effort(1, 4, 0.9e-3), 1)}
+
+
+def full(names: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Run it all; `names` are the scenes of the defaults and of equal accuracy."""
+    robots, terrains = ["lwa3", "lwa5", "cwa24"], ["step", "field"]
+    lines = ["lwa5-gear-step", "lwa3-gear-step"]
+    yield {"defaults": sections.defaults(names, engines(), _REPEATS)}
+    yield {"yardstick": sections.yardstick(robots, terrains, _REPEATS)}
+    yield {"batches": batches(lines, scenes.draws(_WORLDS), NAMES, 3)}
+    rows: list[dict[str, Any]] = []
+    for name in names:
+        rows += equal_accuracy(name, Effort(3, _ENSEMBLE), _REPEATS)
+        yield {"accuracy": rows}
+
+
+def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, Any]]:
+    """Search each engine's cheapest accurate setting on a scene, then time these together."""
+    progress(f"equal accuracy: {name}")
+    scene, draws = scenes.load(name), scenes.draws(effort.ensemble)
+    found = {each.name: accuracy.search(each, scene, draws, effort) for each in engines()}
+    settings = {
+        each: Setting(**search["found"]) for each, search in found.items() if search["found"]
+    }
+    times = interleaved(
+        {
+            each: partial(engine(each).wall_time, scene, setting, scene.duration)
+            for each, setting in settings.items()
+        },
+        repeats,
+    )
+    rows = []
+    for each, search in found.items():
+        row = {"scene": name, "engine": each, **search}
+        if each in times:
+            row |= sections.cost(scene, settings[each], times[each].least)
+            row["setting"] = str(settings[each])
+        rows.append(row)
+    return rows
+
+
+if __name__ == "__main__":
+    main()

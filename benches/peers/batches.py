@@ -1,0 +1,124 @@
+"""Many worlds on one thread and on two: the way each engine offers from Python.
+
+crawler2d and MuJoCo have thread pools of their own; the others get a process a world at a time. A
+loop that only counts shows what the machine itself gains by a second thread.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from multiprocessing import get_context
+from typing import Any
+
+from benches.peers import scenes
+from benches.peers.engine import Setting
+from benches.peers.engines import NAMES, at, engine
+from benches.peers.scenes import Draw, Scene
+from benches.peers.timing import interleaved, progress
+
+# [s] Of every world.
+_TIME_STEP = 1e-3
+_SPINS = 2_000_000
+
+
+def batches(
+    names: Sequence[str], draws: list[Draw], engines: Sequence[str], repeats: int
+) -> list[dict[str, Any]]:
+    """Time a batch of a scene's draws on one and on two threads or processes."""
+    rows = []
+    for name in names:
+        progress(f"batches: {name}")
+        variants = [scenes.load(name).vary(draw) for draw in draws]
+        with _pools() as pools:
+            jobs: dict[tuple[str, int], Callable[[], float]] = {}
+            for workers, pool in pools.items():
+                for each in engines:
+                    jobs[each, workers] = _job(each, variants, workers, pool)
+                jobs["spin", workers] = partial(_spread, pool, _spin, [_SPINS] * len(draws))
+            times = interleaved(jobs, repeats)
+        steps = len(variants) * variants[0].duration / _TIME_STEP
+        for each in (*engines, "spin"):
+            one, two = times[each, 1].least, times[each, 2].least
+            row = {"scene": name, "engine": each, "worlds": len(variants), "scaling": one / two}
+            if each != "spin":
+                row |= {"steps_per_second": [steps / one, steps / two]}
+            rows.append(row)
+    return rows
+
+
+def _job(
+    name: str, variants: list[Scene], workers: int, pool: ProcessPoolExecutor
+) -> Callable[[], float]:
+    setting = at(engine(name), _TIME_STEP, tuned=True)
+    if name == "crawler2d":
+        return partial(_crawler2d, variants, setting, workers)
+    if name == "MuJoCo":
+        return partial(_mujoco, variants, setting, workers)
+    tasks = [(name, scene, setting) for scene in variants]
+    return partial(_spread, pool, _one_world, tasks)
+
+
+def _crawler2d(variants: list[Scene], setting: Setting, threads: int) -> float:
+    import crawler2d as c2d  # noqa: PLC0415 - a worker process needs its own engine alone
+    from benches.peers.engine_crawler2d import scenario  # noqa: PLC0415
+
+    ready = [scenario(scene, setting, scene.duration) for scene in variants]
+    start = time.perf_counter()
+    c2d.simulate_many(ready, threads=threads, record="summary")
+    return time.perf_counter() - start
+
+
+def _mujoco(variants: list[Scene], setting: Setting, threads: int) -> float:
+    from mujoco.batch import Batch  # noqa: PLC0415
+
+    from benches.peers.engine_mujoco import build  # noqa: PLC0415
+
+    models, data = zip(*(build(scene, setting) for scene in variants), strict=True)
+    batch = Batch(models[0], nsim=len(models), nthread=threads)
+    batch.set_models(list(models))
+    batch.bind("ctrl")[:] = [each.ctrl for each in data]
+    start = time.perf_counter()
+    batch.step(nstep=setting.steps(variants[0].duration))
+    return time.perf_counter() - start
+
+
+def _one_world(task: tuple[str, Scene, Setting]) -> None:
+    name, scene, setting = task
+    engine(name).wall_time(scene, setting, scene.duration)
+
+
+def _spin(count: int) -> None:
+    while count > 0:
+        count -= 1
+
+
+def _spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequence[Any]) -> float:
+    """[s] Do all tasks in a pool."""
+    start = time.perf_counter()
+    list(pool.map(work, tasks))
+    return time.perf_counter() - start
+
+
+@contextmanager
+def _pools() -> Iterator[dict[int, ProcessPoolExecutor]]:
+    """Open a pool of one process and one of two, everything imported."""
+    context = get_context("spawn")
+    with (
+        ProcessPoolExecutor(1, context) as one,
+        ProcessPoolExecutor(2, context) as two,
+    ):
+        pools = {1: one, 2: two}
+        for workers, pool in pools.items():
+            list(pool.map(_warm, range(4 * workers)))
+        yield pools
+
+
+def _warm(_: int) -> None:
+    for name in NAMES:
+        if name not in ("crawler2d", "MuJoCo"):
+            engine(name)
+    time.sleep(0.2)  # so that each process of the pool gets its turn

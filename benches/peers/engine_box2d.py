@@ -1,0 +1,123 @@
+"""Box2D v3 through pyb2d3.
+
+Box2D's tolerances are meant for parts of about a metre: its slop is 5 mm, it looks for contacts 20
+mm ahead. The tuned setting tells it that the unit of length is a decimetre, which makes these a
+tenth, and stiffens contacts from 30 to 240 Hz at a damping ratio of 10. Box2D itself limits that
+to a quarter of the rate of substeps.
+
+Its joints are springs of 60 per unit of time, and the package has no way to set that: wheels on
+pins of 60 Hz give way by more than a millimetre, at any time step. The tuned setting therefore
+counts time in units of 20 ms, which makes them 3 kHz (Box2D itself limits that, too, to a quarter
+of the rate of substeps), and gives gravity, speeds and torques in that unit.
+
+Box2D mixes friction by the geometric mean, so that both have the scene's. Bodies do not sleep.
+Single precision.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from importlib.metadata import version
+
+import pyb2d3
+
+from benches.peers.engine import Setting
+from benches.peers.motion import Motion
+from benches.peers.scenes import Body, Scene
+
+# [s] Unit of time in a tuned world.
+_TUNED_UNIT = 0.02
+
+_GROUND, _ROBOT = 1, 2
+_FILTERS = {
+    _GROUND: pyb2d3.make_filter(category_bits=_GROUND, mask_bits=_ROBOT),
+    _ROBOT: pyb2d3.make_filter(category_bits=_ROBOT, mask_bits=_GROUND),
+}
+
+
+class Box2D:
+    """Box2D's soft step."""
+
+    name = "Box2D v3"
+    version = f"pyb2d3 {version('pyb2d3')}"
+    defaults = Setting(1 / 60, substeps=4, tuned=False)
+    grid: Sequence[Setting] = [
+        Setting(dt * 1e-3, substeps=substeps)
+        for dt in (8.0, 4.0, 2.0, 1.0, 0.5)
+        for substeps in (1, 2, 4, 8)
+    ]
+    finest = Setting(0.25e-3, substeps=8)
+    next_finest = Setting(0.5e-3, substeps=4)
+
+    def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
+        """[s] Take the time of a run."""
+        world, _ = _build(scene, setting)
+        step, dt, substeps = world.step, setting.time_step / _unit(setting), setting.substeps
+        start = time.perf_counter()
+        for _ in range(setting.steps(duration)):
+            step(dt, substeps)
+        return time.perf_counter() - start
+
+    def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
+        """Run and sample all poses."""
+        world, bodies = _build(scene, setting)
+        stride, dt = setting.stride(interval), setting.time_step / _unit(setting)
+        times, poses = [], []
+        for step in range(setting.steps(duration) + 1):
+            if step > 0:
+                world.step(dt, setting.substeps)
+            if step % stride == 0:
+                times.append(step * setting.time_step)
+                poses.append([(*body.position, body.angle) for body in bodies])
+        return Motion.of(times, poses)
+
+
+def _build(scene: Scene, setting: Setting) -> tuple[pyb2d3.World, list[pyb2d3.Body]]:
+    # Global to the process: no two worlds of different settings may live at once.
+    pyb2d3.set_length_units_per_meter(0.1 if setting.tuned else 1.0)
+    unit = _unit(setting)
+    world = pyb2d3.World(gravity=(0.0, -9.81 * unit**2))
+    if setting.tuned:
+        world.set_contact_tuning(240.0 * unit, 10.0, 3.0 * unit)
+    ground = world.create_static_body()
+    of_ground = _shape(_GROUND, scene.friction)
+    for box in scene.boxes:
+        ground.create_polygon_shape(of_ground, pyb2d3.polygon(box.tolist()))
+    bodies = [_body(body, world, scene.friction) for body in scene.bodies]
+    for joint in scene.joints:
+        world.create_revolute_joint(
+            body_a=bodies[joint.a],
+            body_b=bodies[joint.b],
+            local_anchor_a=joint.pa,
+            local_anchor_b=joint.pb,
+            enable_motor=True,
+            motor_speed=joint.speed * unit,
+            max_motor_torque=joint.torque * unit**2,
+        )
+    return world, bodies
+
+
+def _unit(setting: Setting) -> float:
+    """[s] Unit of time."""
+    return _TUNED_UNIT if setting.tuned else 1.0
+
+
+def _body(data: Body, world: pyb2d3.World, friction: float) -> pyb2d3.Body:
+    body = world.create_dynamic_body(
+        position=(data.x, data.y), rotation=data.angle, enable_sleep=False
+    )
+    shape = _shape(_ROBOT, friction)
+    if data.radius > 0.0:
+        body.create_circle_shape(shape, pyb2d3.circle(center=(0.0, 0.0), radius=data.radius))
+    for polygon in data.polygons:
+        body.create_polygon_shape(shape, pyb2d3.polygon(polygon.tolist()))
+    mass = pyb2d3.MassData()
+    mass.mass, mass.center, mass.rotational_inertia = data.mass, (0.0, 0.0), data.inertia
+    body.mass_data = mass
+    return body
+
+
+def _shape(category: int, friction: float) -> pyb2d3.ShapeDef:
+    material = pyb2d3.surface_material(friction=friction, restitution=0.0)
+    return pyb2d3.shape_def(density=0.0, material=material, filter=_FILTERS[category])

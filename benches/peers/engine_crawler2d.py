@@ -1,0 +1,117 @@
+"""crawler2d itself, on its own form of the scenes in `tests/scenarios`.
+
+One call simulates a whole run, and the time is that of the call: it includes building the model,
+and the monitor that looks for stops. Ends of runs are switched off by a stop window longer than
+the run, so that every engine simulates the same span. There are no pins that could open.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+import crawler2d as c2d
+from benches.peers.engine import Setting
+from benches.peers.motion import Array, Motion
+from benches.peers.scenes import Scene
+from crawler2d.errors import SimulationDiverged
+from crawler2d.scenario import Scenario, Solver
+
+_SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
+# [s] No run is as long.
+_NEVER = 1000.0
+
+
+class Crawler2D:
+    """Our own dynamics, in reduced coordinates."""
+
+    name = "crawler2d"
+    version = c2d.__version__
+    defaults = Setting(Solver().time_step, Solver().substeps, Solver().iterations, tuned=False)
+    grid: Sequence[Setting] = [
+        Setting(dt * 1e-3, substeps=substeps, iterations=iterations)
+        for dt in (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
+        for substeps in (1, 2, 4, 8)
+        for iterations in (5, 15, 60)
+    ]
+    finest = Setting(0.25e-3, substeps=8, iterations=60)
+    next_finest = Setting(0.5e-3, substeps=4, iterations=30)
+
+    def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
+        """[s] Take the time of a run."""
+        ready = scenario(scene, setting, duration)
+        start = time.perf_counter()
+        with suppress(SimulationDiverged):
+            c2d.simulate(ready, record="summary")
+        return time.perf_counter() - start
+
+    def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
+        """Run and sample all poses."""
+        ready = scenario(scene, setting, duration)
+        stride = setting.stride(interval) * setting.time_step
+        try:
+            run = c2d.simulate(ready, sample_interval=stride)
+        except SimulationDiverged:
+            return Motion.of([0.0, duration], np.full((2, len(scene.bodies), 3), np.nan))
+        poses = np.empty((len(run.time), len(scene.bodies), 3))
+        poses[:, 0, :2], poses[:, 0, 2] = run.position, run.chassis_angle
+        wheels = ready.robot.wheels()
+        centers = np.column_stack([wheels["x"], wheels["y"]])
+        for index, joint in enumerate(scene.joints):
+            # Wheels are counted along the belt here.
+            drive = int(np.argmin(np.hypot(*(centers - joint.pa).T)))
+            poses[:, index + 1] = _wheel(poses[:, 0], centers[drive])
+            way = run.drive_positions[:, drive]
+            poses[:, index + 1, 2] -= way / wheels["radius"][drive]
+        return Motion.of(run.time, poses, run.metrics["max_penetration"])
+
+
+def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:
+    """Take crawler2d's form of a scene, with the scene's draw."""
+    base = as_it_is(scene.name)
+    draw = scene.draw
+    solver = Solver(
+        time_step=setting.time_step, substeps=setting.substeps, iterations=setting.iterations
+    )
+    return base.replace(
+        {
+            "start.approach": base.start.approach + draw.approach,
+            "drive.speed": base.drive.speed * draw.speed,
+            "terrain.friction": scene.friction,
+            "solver": solver,
+            "duration": duration,
+            "criteria.stop_window": _NEVER,
+        }
+    )
+
+
+def as_it_is(name: str) -> Scenario:
+    """Read crawler2d's form of a scene; a line of 3 is one of 5 without two of its wheels."""
+    file = f"peer_{name.replace('lwa3', 'lwa5').replace('-', '_')}.json"
+    base = Scenario.from_json((_SCENARIOS / file).read_text(encoding="utf-8"))
+    if not name.startswith("lwa3"):
+        return base
+    wheels, robot = base.robot.wheels(), base.robot
+    return base.replace(
+        {
+            # Each wheel of 1 kg takes its mass and its inertia along.
+            "robot.mass": robot.mass - 2.0,
+            "robot.moment_of_inertia": robot.moment_of_inertia
+            - sum(1.0 * wheels["x"][i] ** 2 + wheels["moment_of_inertia"][i] for i in (1, 3)),
+            "robot.track_mass": robot.track_mass * 3 / 5,
+            "robot.drivetrain.max_torque": robot.drivetrain.max_torque * 3 / 5,
+            "robot.track.count": 3,
+        }
+    )
+
+
+def _wheel(chassis: Array, center: Array) -> Array:
+    """[m], [m], [rad] Pose of a point of the chassis."""
+    cosine, sine = np.cos(chassis[:, 2]), np.sin(chassis[:, 2])
+    x, y = center
+    at = chassis[:, :2] + np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+    return np.column_stack([at, chassis[:, 2]])

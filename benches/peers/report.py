@@ -1,0 +1,240 @@
+"""The report: Markdown from the figures of a run, for the screen and for docs/studies."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from benches.peers.accuracy import COST_SPAN
+from benches.peers.engines import NAMES
+from benches.peers.errors import JOINT_GAP, PATH, PENETRATION
+
+Rows = list[dict[str, Any]]
+
+
+def render(result: dict[str, Any]) -> str:
+    """Write the report of a run, also of one that has not got to its end."""
+    sections = {
+        "defaults": _defaults,
+        "accuracy": _accuracy,
+        "yardstick": _yardstick,
+        "batches": _batches,
+    }
+    parts = [_head(result)]
+    parts += [write(result[name]) for name, write in sections.items() if name in result]
+    parts.append(_LIMITS)
+    blocks = "\n\n".join(part.strip() for part in parts).split("\n\n")
+    return "\n\n".join(_wrap(block) for block in blocks) + "\n"
+
+
+def _head(result: dict[str, Any]) -> str:
+    machine = result["machine"]
+    versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
+    load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
+    return f"""
+# The same job in other engines
+
+What `make bench-peers` measures: a robot of 20 kg with 0.6 m between its end axles drives at 0.4
+m/s against a step of 0.15 m, or over 20 blocks up to 0.15 m high, on a line of 5 wheels (`lwa5`)
+or on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The scenes are files in
+no engine's own terms, in `benches/peers/scenes`; `tests/test_peer_scenes.py` checks that
+crawler2d's own form of them describes the same robots and grounds.
+
+Measured on {machine["date"]} in {result["wall"] / 60.0:.0f} minutes: {machine["processor"]},
+{machine["cores"]} cores, load {load} at the beginning, {machine["system"]},
+Python {machine["python"]}. Versions: {versions}.
+
+- Times are the least of several rounds in which all engines took turns, on one thread. *RTF* is
+  the simulated time over the wall time. The loop is each engine's fastest from Python (rapier2d's
+  is in Rust), nothing is recorded, and building the world is not counted, but for crawler2d, where
+  one call does it all.
+- Errors come from recorded poses, sampled every 2 ms or every step, by one geometry for all
+  engines. *Overlap* is the deepest of any part with the ground, *gap* the widest that a pin opens.
+- *Cleared* means that the rear axle got beyond the last edge, within 10 s (step) or 15 s (field).
+- Every engine has a docstring in `benches/peers` that says what it was given, and why.
+"""
+
+
+def _defaults(rows: Rows) -> str:
+    titles = {
+        "own": "At each engine's own time step",
+        "common": "All at steps of 2 ms, everything else at the defaults",
+    }
+    text = [
+        "## At the engines' defaults",
+        "These times come with very different errors: read each with its outcome. Chipmunk's slop"
+        " is scaled to metres, and sleeping is off; nothing would work otherwise. Cells: us a step,"
+        " RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
+    ]
+    for kind, title in titles.items():
+        text.append(f"### {title}")
+        chosen = [row for row in rows if row["kind"] == kind]
+        settings = {row["engine"]: row["setting"] for row in chosen}
+        text.append("; ".join(f"{name}: {setting}" for name, setting in settings.items()) + ".")
+        text.append(_by_scene(chosen, _default_cell))
+    return "\n\n".join(text)
+
+
+def _default_cell(row: dict[str, Any]) -> str:
+    return (
+        f"{row['per_step'] * 1e6:.1f} us, {1.0 / row['per_second']:.0f}x<br>"
+        f"{'cleared' if row['cleared'] else 'not'} ({row['final_x']:.2f})<br>"
+        f"{_millimetres(row['penetration'])} / {_millimetres(row['gap'])}"
+    )
+
+
+def _accuracy(rows: Rows) -> str:
+    return "\n\n".join(
+        [
+            "## At equal accuracy",
+            f"""
+For each engine and scene the cheapest setting of a grid that keeps: overlap at most
+{_millimetres(PENETRATION)} mm, gaps at most {_millimetres(JOINT_GAP)} mm, and the engine's own
+limit. The limit is its finest setting. Where its path differs by at most {_millimetres(PATH)} mm
+from that of the next finest, coarser by a factor of two in every respect, the setting's path must
+be as close to it, at equal times and in each of the first draws. Elsewhere the scene is *chaotic*
+for the engine: over all draws the Wilson interval (95 %) of the setting's rate of clearing must
+hold the limit's rate. The draws of approach (over 50 mm), speed and friction (2 % either way) are
+the same for all. Settings are tried in the order of their cost over the first {COST_SPAN:g} s;
+`out/peers.json` lists all that were tried, and why they were not taken. A robot that flies off
+counts as an overlap without bound.
+
+Cells: RTF, us a step, the setting; for chaotic scenes the setting's rate; how far its paths get
+from the limit's in the first draws.
+""".strip(),
+            _by_scene(rows, _accuracy_cell),
+            _standing(rows),
+            """
+The engines' limits: how far the two finest settings are apart [mm], how many runs cleared, last x
+of the nominal run [m], overlap / gap [mm]. A chaotic scene is the *easier* case for the engine,
+since no path has to be met; what converges is held to its path.
+""".strip(),
+            _by_scene(rows, _limit_cell),
+        ]
+    )
+
+
+def _standing(rows: Rows) -> str:
+    """Say how crawler2d stands to the fastest of the others, scene by scene."""
+    lines = []
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        found = {
+            row["engine"]: 1.0 / row["per_second"]
+            for row in rows
+            if row["scene"] == scene and row["found"]
+        }
+        own = found.pop("crawler2d", None)
+        best = max(found, key=lambda name: found[name], default=None)
+        if own is None:
+            lines.append(f"- {scene}: crawler2d has none in the grid.")
+        elif best is None:
+            lines.append(f"- {scene}: crawler2d alone has one in the grid.")
+        else:
+            lines.append(
+                f"- {scene}: crawler2d runs at {own / found[best]:.2f} times the speed of {best}."
+            )
+    return "\n".join(["Beside the fastest of the others:", "", *lines])
+
+
+def _accuracy_cell(row: dict[str, Any]) -> str:
+    if row["found"] is None:
+        return "none in the grid"
+    last = row["tried"][-1]
+    cell = f"**{1.0 / row['per_second']:.0f}x**, {row['per_step'] * 1e6:.1f} us<br>{row['setting']}"
+    if "count" in last:
+        cell += f"<br>{last['cleared']}/{last['count']}"
+    return f"{cell}<br>{_millimetres(last['distance'])} mm off"
+
+
+def _limit_cell(row: dict[str, Any]) -> str:
+    limit = row["limit"]
+    kind = "chaotic" if limit["is_chaotic"] else "converged"
+    return (
+        f"{kind}, {_millimetres(limit['spread'])}<br>"
+        f"{limit['cleared']}/{limit['count']} ({limit['final_x']:.2f})<br>"
+        f"{_millimetres(limit['penetration'])} / {_millimetres(limit['gap'])}"
+    )
+
+
+def _yardstick(rows: Rows) -> str:
+    cases = list(rows[0]["per_step"])
+    table = [
+        [
+            f"{row['robot']}, {row['terrain']}",
+            *(f"{row['per_step'][case] * 1e6:.1f}" for case in cases),
+            *(
+                f"{row['per_step']['crawler2d gear'] / row['per_step'][bare]:.2f}"
+                for bare in ("bare round", "bare round, tuned")
+            ),
+        ]
+        for row in rows
+    ]
+    head = ["scene", *cases, "gear / bare round", "gear / bare round, tuned"]
+    return "\n\n".join(
+        [
+            "## Grousers against round wheels in the bare engine",
+            "What crawler2d's gear wheels cost beside round wheels on cuboids in a plain loop of"
+            " rapier2d, all with steps of 1 ms and 4 substeps, us a step. The bare engine has its"
+            " default tolerances, or (*tuned*) those that suit grousers. `lwa3` is `lwa5` without"
+            " its second and fourth wheel. The aim is a ratio of at most 1.25.",
+            _table(head, table),
+        ]
+    )
+
+
+def _batches(rows: Rows) -> str:
+    table = []
+    for row in rows:
+        rates = [f"{rate:,.0f}" for rate in row.get("steps_per_second", [])] or ["", ""]
+        table.append(
+            [row["scene"], row["engine"], str(row["worlds"]), *rates, f"{row['scaling']:.2f}"]
+        )
+    head = ["scene", "engine", "worlds", "steps/s on one", "steps/s on two", "scaling"]
+    return "\n\n".join(
+        [
+            "## Batches",
+            "Worlds with different draws, steps of 1 ms, tuned: on one thread and on two, or one"
+            " process and two (pymunk, Box2D, rapier2d). *spin* is a loop that only counts: what"
+            " the machine itself gained in the same sitting.",
+            _table(head, table),
+        ]
+    )
+
+
+_LIMITS = """
+## What cannot be compared
+
+- **Accuracy is against an engine's own limit.** No engine is the truth here; the limits themselves
+  differ, see the table of limits.
+- **Mechanics.** crawler2d solves one body and the spins of its wheels: it has no pins that could
+  open, and its wheels cannot shake on them. MuJoCo has no gaps either, but is a 3D engine held in
+  the plane. Box2D works in single precision.
+- **Work done besides.** crawler2d's time includes building the model and watching for stops.
+- **The grid is coarse**, a factor of two a step. A cheaper setting may lie between its points, and
+  costs that differ by less than the noise of a shared machine may change places.
+- **Rates of few runs** have wide intervals: the rule for chaotic scenes refuses gross errors alone.
+"""
+
+
+def _by_scene(rows: Rows, cell: Any) -> str:
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    cells = {(row["scene"], row["engine"]): cell(row) for row in rows}
+    table = [[scene, *(cells.get((scene, name), "") for name in NAMES)] for scene in scenes]
+    return _table(["scene", *NAMES], table)
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _wrap(block: str) -> str:
+    """Break the lines of a paragraph anew; figures have changed their lengths."""
+    is_paragraph = not block.startswith(("|", "#", "-"))
+    return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block
+
+
+def _millimetres(length: float) -> str:
+    value = length * 1e3
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.2g}" if value >= 0.01 else "0"
