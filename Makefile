@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers format build soak tools
+.PHONY: help study test test-browser check bench bench-peers bench-scaling format build soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -51,6 +51,9 @@ bench: | tools ## benchmarks
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about half an hour
 	$(BIN)/python -m benches.peers $(ARGS)
+
+bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and time step, some minutes
+	$(BIN)/python -m benches.scaling $(ARGS)
 
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all

@@ -46,7 +46,8 @@ def main() -> None:
     path = _RESULT.with_stem("peers-quick") if arguments.quick else _RESULT
     if not arguments.render:
         start = time.perf_counter()
-        result: dict[str, Any] = {"machine": machine.describe(engines())}
+        versions = {each.name: each.version for each in engines()}
+        result: dict[str, Any] = {"machine": machine.describe(versions)}
         for section in quick() if arguments.quick else full(arguments.scenes):
             result |= section
             result["wall"] = time.perf_counter() - start

@@ -7,14 +7,12 @@ loop that only counts shows what the machine itself gains by a second thread.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from functools import partial
-from multiprocessing import get_context
 from typing import Any
 
-from benches.peers import scenes
+from benches.peers import scenes, workers
 from benches.peers.engine import Setting
 from benches.peers.engines import NAMES, at, engine
 from benches.peers.scenes import Draw, Scene
@@ -22,7 +20,6 @@ from benches.peers.timing import interleaved, progress
 
 # [s] Of every world.
 _TIME_STEP = 1e-3
-_SPINS = 2_000_000
 
 
 def batches(
@@ -33,12 +30,12 @@ def batches(
     for name in names:
         progress(f"batches: {name}")
         variants = [scenes.load(name).vary(draw) for draw in draws]
-        with _pools() as pools:
+        with workers.pools((1, 2), _warm) as pools:
             jobs: dict[tuple[str, int], Callable[[], float]] = {}
-            for workers, pool in pools.items():
+            for count, pool in pools.items():
                 for each in engines:
-                    jobs[each, workers] = _job(each, variants, workers, pool)
-                jobs["spin", workers] = partial(_spread, pool, _spin, [_SPINS] * len(draws))
+                    jobs[each, count] = _job(each, variants, count, pool)
+                jobs["spin", count] = partial(workers.spin, pool, len(draws))
             times = interleaved(jobs, repeats)
         steps = len(variants) * variants[0].duration / _TIME_STEP
         for each in (*engines, "spin"):
@@ -51,15 +48,15 @@ def batches(
 
 
 def _job(
-    name: str, variants: list[Scene], workers: int, pool: ProcessPoolExecutor
+    name: str, variants: list[Scene], count: int, pool: ProcessPoolExecutor
 ) -> Callable[[], float]:
     setting = at(engine(name), _TIME_STEP, tuned=True)
     if name == "crawler2d":
-        return partial(_crawler2d, variants, setting, workers)
+        return partial(_crawler2d, variants, setting, count)
     if name == "MuJoCo":
-        return partial(_mujoco, variants, setting, workers)
+        return partial(_mujoco, variants, setting, count)
     tasks = [(name, scene, setting) for scene in variants]
-    return partial(_spread, pool, _one_world, tasks)
+    return partial(workers.spread, pool, _one_world, tasks)
 
 
 def _crawler2d(variants: list[Scene], setting: Setting, threads: int) -> float:
@@ -89,32 +86,6 @@ def _mujoco(variants: list[Scene], setting: Setting, threads: int) -> float:
 def _one_world(task: tuple[str, Scene, Setting]) -> None:
     name, scene, setting = task
     engine(name).wall_time(scene, setting, scene.duration)
-
-
-def _spin(count: int) -> None:
-    while count > 0:
-        count -= 1
-
-
-def _spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequence[Any]) -> float:
-    """[s] Do all tasks in a pool."""
-    start = time.perf_counter()
-    list(pool.map(work, tasks))
-    return time.perf_counter() - start
-
-
-@contextmanager
-def _pools() -> Iterator[dict[int, ProcessPoolExecutor]]:
-    """Open a pool of one process and one of two, everything imported."""
-    context = get_context("spawn")
-    with (
-        ProcessPoolExecutor(1, context) as one,
-        ProcessPoolExecutor(2, context) as two,
-    ):
-        pools = {1: one, 2: two}
-        for workers, pool in pools.items():
-            list(pool.map(_warm, range(4 * workers)))
-        yield pools
 
 
 def _warm(_: int) -> None:

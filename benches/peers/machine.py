@@ -5,15 +5,13 @@ from __future__ import annotations
 import datetime
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from benches.peers.engine import Engine
 
-
-def describe(engines: Sequence[Engine]) -> dict[str, Any]:
-    """Name the processor, its load by others, the interpreter and the engines' versions."""
+def describe(versions: Mapping[str, str]) -> dict[str, Any]:
+    """Name the processor, its load by others, the interpreter and what was measured."""
     return {
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "processor": _processor(),
@@ -21,8 +19,19 @@ def describe(engines: Sequence[Engine]) -> dict[str, Any]:
         "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
-        "versions": {engine.name: engine.version for engine in engines},
+        "versions": dict(versions),
     }
+
+
+def sentence(machine: Mapping[str, Any], wall: float) -> str:
+    """Write for a report what `describe` found, and how long [s] the measurement took."""
+    versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
+    load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
+    return (
+        f"Measured on {machine['date']} in {wall / 60.0:.0f} minutes: {machine['processor']},"
+        f" {machine['cores']} cores, load {load} at the beginning, {machine['system']},"
+        f" Python {machine['python']}. Versions: {versions}."
+    )
 
 
 def _processor() -> str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterable, Sequence
 from typing import Any
 
+from benches.peers import machine, markdown
 from benches.peers.accuracy import COST_SPAN
 from benches.peers.engines import NAMES
 from benches.peers.errors import JOINT_GAP, PATH, PENETRATION
@@ -24,14 +23,10 @@ def render(result: dict[str, Any]) -> str:
     parts = [_head(result)]
     parts += [write(result[name]) for name, write in sections.items() if name in result]
     parts.append(_LIMITS)
-    blocks = "\n\n".join(part.strip() for part in parts).split("\n\n")
-    return "\n\n".join(_wrap(block) for block in blocks) + "\n"
+    return markdown.page(parts)
 
 
 def _head(result: dict[str, Any]) -> str:
-    machine = result["machine"]
-    versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
-    load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
     return f"""
 # The same job in other engines
 
@@ -41,9 +36,7 @@ or on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The sc
 no engine's own terms, in `benches/peers/scenes`; `tests/test_peer_scenes.py` checks that
 crawler2d's own form of them describes the same robots and grounds.
 
-Measured on {machine["date"]} in {result["wall"] / 60.0:.0f} minutes: {machine["processor"]},
-{machine["cores"]} cores, load {load} at the beginning, {machine["system"]},
-Python {machine["python"]}. Versions: {versions}.
+{machine.sentence(result["machine"], result["wall"])}
 
 - Times are the least of several rounds in which all engines took turns, on one thread. *RTF* is
   the simulated time over the wall time. The loop is each engine's fastest from Python (rapier2d's
@@ -178,7 +171,7 @@ def _yardstick(rows: Rows) -> str:
             " rapier2d, all with steps of 1 ms and 4 substeps, us a step. The bare engine has its"
             " default tolerances, or (*tuned*) those that suit grousers. `lwa3` is `lwa5` without"
             " its second and fourth wheel. The aim is a ratio of at most 1.25.",
-            _table(head, table),
+            markdown.table(head, table),
         ]
     )
 
@@ -197,7 +190,7 @@ def _batches(rows: Rows) -> str:
             "Worlds with different draws, steps of 1 ms, tuned: on one thread and on two, or one"
             " process and two (pymunk, Box2D, rapier2d). *spin* is a loop that only counts: what"
             " the machine itself gained in the same sitting.",
-            _table(head, table),
+            markdown.table(head, table),
         ]
     )
 
@@ -221,18 +214,7 @@ def _by_scene(rows: Rows, cell: Any) -> str:
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     cells = {(row["scene"], row["engine"]): cell(row) for row in rows}
     table = [[scene, *(cells.get((scene, name), "") for name in NAMES)] for scene in scenes]
-    return _table(["scene", *NAMES], table)
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def _wrap(block: str) -> str:
-    """Break the lines of a paragraph anew; figures have changed their lengths."""
-    is_paragraph = not block.startswith(("|", "#", "-"))
-    return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block
+    return markdown.table(["scene", *NAMES], table)
 
 
 def _millimetres(length: float) -> str:

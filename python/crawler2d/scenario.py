@@ -84,9 +84,9 @@ class Solver(Parameters):
 
     contact: Literal["own", "reference"] = "own"
     time_step: float = 1e-3
-    substeps: int = 1
+    substeps: int = 2
     iterations: int = 30
-    contact_frequency: float = 240.0
+    contact_frequency: float = 1000.0
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5
     prediction_distance: float = 0.001

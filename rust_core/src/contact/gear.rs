@@ -7,7 +7,7 @@
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::Contact;
-use super::lane::{Lane, ROUNDING};
+use super::lane::{Lane, On, ROUNDING, Touch};
 use super::overlap::{self, Tip};
 use crate::outline::Gear;
 use crate::plane::{direction, right_of};
@@ -35,6 +35,21 @@ struct Grouser {
 }
 
 impl Grouser {
+    /// Whether a point is in it.
+    fn holds(&self, point: Vector) -> bool {
+        let mut sides = self.corners.iter().zip(&self.normals);
+        sides.all(|(corner, normal)| (point - *corner).dot(*normal) <= 0.0)
+    }
+
+    /// Whether a corner of the ground that is inside a flank, 0 or 2, is less deep in the other one.
+    fn is_left_opposite(&self, lane: &Lane, flank: usize, touch: &Touch) -> bool {
+        let opposite = 2 - flank;
+        let normal = self.normals[opposite];
+        let gap = (touch.place - self.corners[opposite]).dot(normal);
+        let is_met = || matches!(touch.on, On::Corner(i) if lane.corner(i).faces(-normal));
+        opposite != flank && gap > touch.distance && is_met()
+    }
+
     /// A corner of its tip, 1 or 2.
     fn tip(&self, k: usize) -> Tip {
         Tip {
@@ -80,24 +95,21 @@ impl GearContact {
         }
         let turned = pose.rotation * Rotation::new(-drive / self.wheel.radius);
         if room <= self.gear.root_radius {
-            let depth = self.gear.root_radius;
-            lane.touches_of_disc(
-                center,
-                self.gear.root_radius,
-                (prediction, depth),
-                |touch| {
-                    if self.is_between_grousers(turned.inverse() * -touch.normal) {
-                        contacts.push(touch.contact(self.part));
-                    }
-                },
-            );
+            // A face that the centre has passed is the far side of something thin.
+            let reach = (prediction, 0.0);
+            lane.touches_of_disc(center, self.gear.root_radius, reach, |touch| {
+                if self.is_between_grousers(turned.inverse() * -touch.normal) {
+                    contacts.push(touch.contact(self.part));
+                }
+            });
         }
         let corners_stand_out = lane.may_stand_out(&region);
-        let tip = self.grouser.corners[2];
+        let [_, _, tip, base] = self.grouser.corners;
         for along in &self.directions {
             let axis = turned * *along;
-            // The lower corner of its tip.
-            if room + tip.x * axis.y - tip.y * axis.x.abs() > 0.0 {
+            let lower = |corner: Vector| corner.x * axis.y - corner.y * axis.x.abs();
+            // A grouser that points up is lowest at its base.
+            if room + lower(tip).min(lower(base)) > 0.0 {
                 continue;
             }
             let grouser = Grouser {
@@ -122,7 +134,10 @@ impl GearContact {
         for tip in [grouser.tip(1), grouser.tip(2)] {
             let reach = (prediction, self.height());
             lane.touches_of_disc(tip.place, 0.0, reach, |touch| {
-                if tip.faces(-touch.normal) && !overlap::tip_yields(lane, &tip, &touch) {
+                // Behind a face lies the ground, but beyond thin ground the open again.
+                let is_real =
+                    touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
+                if is_real && tip.faces(-touch.normal) && !overlap::tip_yields(lane, &tip, &touch) {
                     contacts.push(touch.contact(self.part));
                 }
             });
@@ -137,15 +152,20 @@ impl GearContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
+        let thickness = self.gear.base_thickness;
         // Ground that is deeper inside has come in elsewhere.
-        let half = 0.5 * self.gear.base_thickness;
-        for (i, depth) in [half, self.height(), half].into_iter().enumerate() {
+        for (i, depth) in [thickness, self.height(), thickness]
+            .into_iter()
+            .enumerate()
+        {
             let ends = (grouser.corners[i], grouser.corners[i + 1]);
             let outward = grouser.normals[i];
             lane.touches_of_run(ends, outward, (prediction, depth), |touch| {
                 // A flank has one end at the tip, and the tip has two.
                 let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
-                if !tips.any(|tip| overlap::run_yields(lane, outward, &tip, &touch)) {
+                let is_real = touch.distance >= 0.0
+                    || (grouser.holds(touch.place) && !grouser.is_left_opposite(lane, i, &touch));
+                if is_real && !tips.any(|tip| overlap::run_yields(lane, outward, &tip, &touch)) {
                     contacts.push(touch.contact(self.part));
                 }
             });

@@ -10,11 +10,16 @@ use rapier2d_f64::math::{Pose, Vector};
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region};
+use super::overlap::{self, Tip};
 use crate::outline::{Disc, Envelope};
+use crate::plane::direction;
 use crate::robot::{Part, Shape};
 
 /// [m] Ground that is deeper inside did not get there by sinking in.
 const SHALLOW: f64 = 1e-3;
+/// [rad] On a face that is parallel to a run but for this, both ends of the run bear: an arc reaches
+/// less than 0.1 mm out of the hull where it goes on by as much.
+const NEARLY: f64 = 0.05;
 
 /// A part that is the hull of discs, or of points.
 pub(super) struct HullContact {
@@ -30,17 +35,23 @@ struct Arc {
     from: f64,
     /// [rad] How far it turns from there, clockwise.
     sweep: f64,
+    /// Outward normals of the runs that meet it, counter-clockwise.
+    runs: [Vector; 2],
 }
 
 impl Arc {
-    /// Whether its outward directions hold `outward`, or nearly: on a face that is all but parallel to
-    /// a run both ends of the run bear.
-    fn faces(&self, outward: Vector) -> bool {
-        /// [rad] An arc reaches less than 0.1 mm out of the hull where it goes on by this.
-        const NEARLY: f64 = 0.05;
+    /// The same as a sharp corner.
+    fn tip(&self, pose: Pose) -> Tip {
+        Tip {
+            place: pose.transform_point(self.disc.center),
+            normals: self.runs.map(|n| pose.rotation * n),
+        }
+    }
 
-        let turn = self.from - libm::atan2(outward.y, outward.x) + NEARLY;
-        turn.rem_euclid(TAU) <= self.sweep + 2.0 * NEARLY
+    /// Whether its outward directions hold `outward`, or one within `margin` [rad].
+    fn faces(&self, outward: Vector, margin: f64) -> bool {
+        let turn = self.from - libm::atan2(outward.y, outward.x) + margin;
+        turn.rem_euclid(TAU) <= self.sweep + 2.0 * margin
     }
 }
 
@@ -52,13 +63,15 @@ impl HullContact {
             _ => part.discs().map(|(tip, _)| tip).collect(),
         };
         let hull = Envelope::new(&discs);
+        let arc = |(disc, from, sweep)| Arc {
+            disc,
+            from,
+            sweep,
+            runs: [from - sweep, from].map(direction),
+        };
         Self {
             part: index,
-            arcs: hull
-                .arcs()
-                .into_iter()
-                .map(|(disc, from, sweep)| Arc { disc, from, sweep })
-                .collect(),
+            arcs: hull.arcs().into_iter().map(arc).collect(),
             hull,
         }
     }
@@ -86,7 +99,12 @@ impl HullContact {
             let reach = (prediction, SHALLOW);
             lane.touches_of_disc(center(arc), arc.disc.radius, reach, |touch| {
                 let on_face = matches!(touch.on, On::Face(_));
-                if on_face && arc.faces(pose.rotation.inverse() * -touch.normal) {
+                let yields =
+                    || arc.disc.radius == 0.0 && overlap::tip_yields(lane, &arc.tip(pose), &touch);
+                if on_face
+                    && arc.faces(pose.rotation.inverse() * -touch.normal, NEARLY)
+                    && !yields()
+                {
                     contacts.push(touch.contact(self.part));
                 }
             });
@@ -110,15 +128,59 @@ impl HullContact {
                 continue;
             }
             let place = pose.inverse_transform_point(corner.center);
-            let depth = self.hull.depth(place) + corner.radius;
+            let inside = self.hull.depth(place);
+            let depth = inside + corner.radius;
             if -depth >= prediction {
                 continue;
             }
-            let normal = -(pose.rotation * self.hull.outward_at(place));
+            let normal = -(pose.rotation * self.outward_at(place, inside));
             // Deep inside, every corner bears on the hull by itself.
             if depth > SHALLOW || corner.faces(normal) {
                 contacts.push(corner.touch(i, normal, -depth).contact(self.part));
+            } else if let Some((depth, normal)) = self.way_out(corner, place, pose) {
+                contacts.push(corner.touch(i, normal, -depth).contact(self.part));
             }
         }
+    }
+
+    /// Depth and normal of the run that a corner of the ground has come through where the nearest is
+    /// none that it faces, unless the hull is less deep in a face beside.
+    fn way_out(&self, corner: &Corner, place: Vector, pose: Pose) -> Option<(f64, Vector)> {
+        let of_run = |arc: &Arc| {
+            let [outward, _] = arc.runs;
+            let inside = (arc.disc.center - place).dot(outward) + arc.disc.radius;
+            (inside, -(pose.rotation * outward))
+        };
+        let below_face = |normal: Vector| {
+            let inward = pose.rotation.inverse() * -normal;
+            let reach = |arc: &Arc| (arc.disc.center - place).dot(inward) + arc.disc.radius;
+            self.arcs.iter().map(reach).fold(0.0, f64::max)
+        };
+        let limit = corner
+            .normals
+            .map(below_face)
+            .into_iter()
+            .fold(SHALLOW, f64::min);
+        let met = self
+            .arcs
+            .iter()
+            .map(of_run)
+            .filter(|(_, normal)| corner.faces(*normal));
+        let (inside, normal) = met.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        // Where two sharp corners have crossed, it lies beside the hull, by less than that.
+        let is_met = 0.0 < inside && inside < limit && -self.hull.depth(place) < inside;
+        is_met.then_some((inside + corner.radius, normal))
+    }
+
+    /// The outward normal where the hull lies nearest to a place, which is `depth` [m] inside.
+    fn outward_at(&self, place: Vector, depth: f64) -> Vector {
+        // Close to an arc's end its run is as near but for rounding, but faces another way.
+        let of_arc = |arc: &Arc| {
+            let spoke = place - arc.disc.center;
+            let is_nearest = arc.disc.radius - spoke.length() <= depth && arc.faces(spoke, 0.0);
+            spoke.try_normalize().filter(|_| is_nearest)
+        };
+        let outward = self.arcs.iter().find_map(of_arc);
+        outward.unwrap_or_else(|| self.hull.outward_at(place))
     }
 }

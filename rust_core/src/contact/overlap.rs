@@ -33,28 +33,33 @@ impl Tip {
 
 /// Whether a tip that is inside a face of the ground leaves it another way.
 pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
-    let On::Face(face) = touch.on else {
-        return false;
+    outer_ends(lane, touch).any(|(corner, beside)| {
+        let below = (corner.center - tip.place).dot(beside) + corner.radius;
+        // Outside of a face that it could meet it has met nothing there.
+        let is_outside = below < 0.0 && tip.faces(-beside);
+        let leaves_run = |m: &Vector| {
+            let spoke = tip.place - (corner.center - *m * corner.radius);
+            let holds_corner = tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
+            holds_corner && shorter(touch, -*m, spoke.dot(*m), || corner.faces(-*m))
+        };
+        is_outside
+            || shorter(touch, beside, below, || tip.faces(-beside))
+            || tip.normals.iter().any(leaves_run)
+    })
+}
+
+/// The corners that stand out at both ends of a face that something is inside of, each with the normal of the
+/// face beside.
+fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Corner, Vector)> {
+    let face = match touch.on {
+        On::Face(face) if touch.distance < 0.0 => Some(face),
+        _ => None,
     };
-    let yields_at = |corner: &Corner, beside: Vector| {
-        let below = (corner.center - tip.place).dot(beside);
-        // The ground ends before it gets there.
-        if below < 0.0 {
-            return true;
-        }
-        let beyond = |outward: Vector| (tip.place - corner.center).dot(outward);
-        shorter(touch, beside, below, || tip.faces(-beside))
-            || tip
-                .normals
-                .iter()
-                .any(|m| shorter(touch, -*m, beyond(*m), || corner.faces(-*m)))
-    };
-    let ends = [(face, 0), (face + 1, 1)];
-    touch.distance < 0.0
-        && ends.into_iter().any(|(i, side)| {
-            let corner = lane.corner(i);
-            is_sharp(corner) && yields_at(corner, corner.normals[side])
-        })
+    let ends = face.into_iter().flat_map(|face| [(face, 0), (face + 1, 1)]);
+    let corners = ends.map(|(i, side)| (lane.corner(i), side));
+    corners
+        .filter(|(corner, _)| corner.stands_out)
+        .map(|(corner, side)| (corner, corner.normals[side]))
 }
 
 /// Whether a corner of the ground that is inside a run of a part, which ends in `tip`, leaves it
@@ -64,26 +69,21 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
         return false;
     };
     let corner = lane.corner(i);
-    if touch.distance >= 0.0 || !is_sharp(corner) {
+    if touch.distance >= 0.0 || !corner.stands_out {
         return false;
     }
     let [before, behind] = tip.normals;
     let beside = if outward == before { behind } else { before };
-    let below = (tip.place - corner.center).dot(beside);
-    if below < 0.0 {
+    let below = (tip.place - corner.center).dot(beside) + corner.radius;
+    if below < 0.0 && corner.faces(-beside) {
         return true;
     }
-    let beyond = |normal: Vector| (corner.center - tip.place).dot(normal);
+    let beyond = |normal: Vector| (corner.center - tip.place).dot(normal) + corner.radius;
     shorter(touch, -beside, below, || corner.faces(-beside))
         || corner
             .normals
             .iter()
             .any(|n| shorter(touch, *n, beyond(*n), || tip.faces(-*n)))
-}
-
-/// A corner without an arc, that stands out.
-fn is_sharp(corner: &Corner) -> bool {
-    corner.stands_out && corner.radius == 0.0
 }
 
 /// Whether a way of `depth` along `normal` is shorter than the one of `touch`, and open.

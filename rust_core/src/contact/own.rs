@@ -2,6 +2,9 @@
 //!
 //! Contacts are of this very pose, nothing is kept, and no memory is taken but for the list of contacts.
 
+#[cfg(test)]
+mod tests;
+
 use rapier2d_f64::math::{Pose, Vector};
 
 use super::gear::GearContact;

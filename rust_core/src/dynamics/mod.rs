@@ -246,8 +246,12 @@ impl Dynamics {
         let middle = state.moved(half);
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
         self.rows.clear();
+        let mut last = Last {
+            contacts: &mut self.loaded,
+            from: 0,
+        };
         for contact in contacts {
-            let last = take_nearest(&mut self.loaded, contact);
+            let last = last.take_nearest(contact);
             let mut row = Row::new(contact, last, state, &self.model, (middle, half));
             row.friction = row.friction.min(self.friction);
             row.friction_guess *= fading;
@@ -277,18 +281,29 @@ impl Dynamics {
     }
 }
 
-/// The last step's contact of the same part that lies nearest, if near enough; each is taken once.
-fn take_nearest(loaded: &mut [LoadedContact], contact: &Contact) -> Option<LoadedContact> {
-    let near = |l: &LoadedContact| (l.contact.point - contact.point).length();
-    let last = loaded
-        .iter_mut()
-        .filter(|l| {
-            !l.carried_over
-                && l.contact.part == contact.part
-                && l.contact.normal.dot(contact.normal) > 0.9
-        })
-        .filter(|l| near(l) < CARRIED_OVER)
-        .min_by(|a, b| near(a).total_cmp(&near(b)))?;
-    last.carried_over = true;
-    Some(*last)
+/// The last step's contacts, from the left in each part as this step's are.
+struct Last<'a> {
+    contacts: &'a mut [LoadedContact],
+    /// Those before this one lie too far left for all that come.
+    from: usize,
+}
+
+impl Last<'_> {
+    /// The contact of the same part that lies nearest, if near enough; each is taken once.
+    fn take_nearest(&mut self, contact: &Contact) -> Option<LoadedContact> {
+        let place = (contact.part, contact.point.x);
+        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + CARRIED_OVER) < place;
+        while self.contacts.get(self.from).is_some_and(behind) {
+            self.from += 1;
+        }
+        let near = |l: &LoadedContact| (l.contact.point - contact.point).length();
+        let last = self.contacts[self.from..]
+            .iter_mut()
+            .take_while(|l| (l.contact.part, l.contact.point.x - CARRIED_OVER) <= place)
+            .filter(|l| !l.carried_over && l.contact.normal.dot(contact.normal) > 0.9)
+            .filter(|l| near(l) < CARRIED_OVER)
+            .min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        last.carried_over = true;
+        Some(*last)
+    }
 }

@@ -73,7 +73,7 @@ fn clamped(state: &State) -> [Contact; 2] {
         edge: -1,
         point: state.center + Vector::new(0.0, y),
         normal: Vector::new(0.0, up),
-        distance: -5e-6,
+        distance: -3e-7,
     };
     [at(-0.064, 1.0), at(0.064, -1.0)]
 }

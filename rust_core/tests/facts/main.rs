@@ -9,6 +9,7 @@
 
 mod common;
 mod engine_world;
+mod judge;
 
 mod another_engine;
 mod basics;
@@ -18,6 +19,7 @@ mod drawn;
 mod drive;
 mod gears;
 mod ghosts;
+mod judged;
 mod repeat;
 mod robustness;
 mod seizure;

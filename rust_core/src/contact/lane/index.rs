@@ -45,6 +45,11 @@ impl Region {
         self.0.len() > FEW
     }
 
+    /// The pieces of the region.
+    pub(super) fn pieces(&self) -> Range<usize> {
+        self.0.clone()
+    }
+
     /// The corners of the region, both ends among them.
     pub(crate) fn corners(&self) -> RangeInclusive<usize> {
         self.0.start..=self.0.end
@@ -261,7 +266,11 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
             normals: [normal; 2],
             ..place(&face.begin)
         };
-        let parts = points.map(place).chain(normals.map(facing));
+        // The points of an arc need not hold its top.
+        let peak = corner.center + Vector::Y * corner.radius;
+        let has_peak = corner.normals[0].x < 0.0 && corner.normals[1].x > 0.0;
+        let peak = has_peak.then(|| place(&peak));
+        let parts = points.map(place).chain(peak).chain(normals.map(facing));
         parts.fold(place(&face.begin), Stretch::join)
     };
     (0..faces.len()).map(of_piece).collect()

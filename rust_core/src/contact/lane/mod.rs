@@ -4,6 +4,8 @@
 //! disc of a corner, and rounded edges are true arcs.
 
 mod index;
+#[cfg(test)]
+mod tests;
 
 use rapier2d_f64::math::Vector;
 
@@ -218,12 +220,44 @@ impl Lane {
         );
     }
 
+    /// Whether a point is in the ground below an inner corner, past the ends of both its faces and by
+    /// less than their lengths: it is behind both.
+    fn is_under(&self, i: usize, point: Vector) -> bool {
+        if i == 0 || i == self.faces.len() {
+            return false;
+        }
+        let corner = &self.corners[i];
+        let [before, behind] = corner.normals;
+        let spoke = point - corner.center;
+        !corner.stands_out
+            && cross(before, spoke) <= 0.0
+            && cross(behind, spoke) >= 0.0
+            && spoke.dot(before + behind) < 0.0
+            && spoke.length() < self.faces[i - 1].length.min(self.faces[i].length)
+            && self.holds(point)
+    }
+
+    /// Whether a point is in the ground.
+    pub(super) fn holds(&self, point: Vector) -> bool {
+        let under = self.region(point.x, point.x);
+        under.pieces().all(|i| {
+            let (corner, face) = (&self.corners[i], &self.faces[i]);
+            if face.begin.x <= point.x {
+                return (point - face.begin).dot(face.normal) < 0.0;
+            }
+            let spoke = point - corner.center;
+            spoke.y < 0.0 || spoke.length() < corner.radius
+        })
+    }
+
     /// The foot of a disc's centre on a face.
     fn face_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
         let face = &self.faces[i];
         let spoke = center - face.begin;
         let along = spoke.dot(face.along);
-        if !(0.0..=face.length).contains(&along) {
+        let is_past = (along < 0.0 && !self.is_under(i, center))
+            || (along > face.length && !self.is_under(i + 1, center));
+        if is_past {
             return None;
         }
         let edge = if along < AT_CORNER {

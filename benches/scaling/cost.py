@@ -1,0 +1,56 @@
+"""What a step costs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import crawler2d as c2d
+from benches.peers.timing import interleaved
+from benches.scaling.scenes import Point
+
+
+def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
+    """Time points in turns: all of them once, then all of them again.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        What belongs together.
+    repeats : int
+        Rounds.
+
+    Returns
+    -------
+    list of dict
+        One a point: `per_step` [s] is the least of the rounds, `final_x` [m] where the robot ends.
+    """
+    ends: dict[int, float] = {}
+    jobs: dict[int, Callable[[], float]] = {
+        index: partial(_drive, point, index, ends) for index, point in enumerate(points)
+    }
+    times = interleaved(jobs, repeats)
+    return [
+        {
+            "figure": point.figure,
+            "panel": point.panel,
+            "curve": point.curve,
+            "x": point.x,
+            "per_step": times[index].least,
+            "final_x": ends[index],
+        }
+        for index, point in enumerate(points)
+    ]
+
+
+def _drive(point: Point, index: int, ends: dict[int, float]) -> float:
+    """[s] Drive to the scenario's end: the time of a step in the mean."""
+    scenario = point.scenario
+    simulation = c2d.Simulation(scenario)
+    start = time.perf_counter()
+    simulation.advance(scenario.duration)
+    wall = time.perf_counter() - start
+    ends[index] = float(simulation.state().position[0])
+    return wall / round(scenario.duration / scenario.solver.time_step)

@@ -1,0 +1,139 @@
+"""The figures of the study."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from benches.scaling.slopes import Curve, curves
+
+# Okabe and Ito's palette: told apart by colour-blind readers; the markers say it again.
+_COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+_MARKERS = ("o", "s", "^", "D")
+_GREY = "#666666"
+_LABELS = {
+    "wheels": "wheels a side",
+    "grousers": "grousers a wheel",
+    "points": "pieces of the ground, 6 m long",
+}
+_COLUMNS = 3
+
+
+def plot(result: dict[str, Any], folder: Path) -> None:
+    """Write a picture a figure into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    # Text stays text, and drawings of the same figures are equal.
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "crawler2d"}):
+        for figure in _LABELS:
+            drawn = _costs(figure, curves(result["rows"], figure))
+            _save(drawn, folder / f"{figure}.svg")
+        _save(_time_steps(curves(result["rows"], "time step")), folder / "time_step.svg")
+        _save(_threads(result["threads"]), folder / "threads.svg")
+
+
+def _save(figure: Figure, path: Path) -> None:
+    figure.savefig(path, metadata={"Date": None})
+
+
+def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
+    """Draw us a step, a panel a scene; a line of slope 1 beside."""
+    panels = list(dict.fromkeys(curve.panel for curve in drawn))
+    labels = list(dict.fromkeys(curve.name for curve in drawn))
+    styles = dict(zip(labels, _styles(), strict=False))
+    figure = Figure(figsize=(8.0, 3.8), layout="constrained")
+    axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+    for panel, ax in zip(panels, axes, strict=True):
+        own = [curve for curve in drawn if curve.panel == panel]
+        for curve in own:
+            heights = [value * 1e6 for value in curve.per_step]
+            ax.loglog(curve.x, heights, label=curve.name, **styles[curve.name])
+        ax.set_title(panel, fontsize="medium")
+        ax.set_xlabel(_LABELS[name])
+        _grid(ax)
+        if name != "points":
+            _plain_ticks(ax, own[0].x)
+    _whole_decades(axes)
+    _proportional(axes[0])
+    axes[0].set_ylabel("wall time a step [µs]")
+    handles, names = axes[0].get_legend_handles_labels()
+    columns = min(_COLUMNS, len(names))
+    figure.legend(handles, names, loc="outside lower center", ncols=columns, frameon=False)
+    return figure
+
+
+def _time_steps(drawn: Sequence[Curve]) -> Figure:
+    """Draw what a step costs, and what a simulated second costs, a curve a scene."""
+    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
+    step, second = figure.subplots(1, 2)
+    for curve, style in zip(drawn, _styles(), strict=False):
+        x = [value * 1e3 for value in curve.x]
+        step.loglog(x, [value * 1e6 for value in curve.per_step], label=curve.panel, **style)
+        costs = [cost / length for length, cost in zip(curve.x, curve.per_step, strict=True)]
+        second.loglog(x, [value * 1e3 for value in costs], **style)
+        for ax in (step, second):
+            ax.set_xlabel("time step [ms]")
+            _plain_ticks(ax, x)
+    step.set_ylabel("wall time a step [µs]")
+    second.set_ylabel("wall time a simulated second [ms]")
+    for ax in (step, second):
+        _grid(ax)
+        _whole_decades([ax])
+    figure.legend(loc="outside lower center", ncols=len(drawn), frameon=False)
+    return figure
+
+
+def _threads(rows: Sequence[dict[str, Any]]) -> Figure:
+    """Draw the speed-ups over one thread."""
+    figure = Figure(figsize=(4.6, 3.4), layout="constrained")
+    ax = figure.subplots()
+    counts = [row["threads"] for row in rows]
+    ax.plot(counts, counts, color=_GREY, linestyle=":", label="as many times as fast")
+    for kind, name, color, marker in zip(
+        ("worlds", "loops"), ("worlds", "a loop that counts"), _COLORS, _MARKERS, strict=False
+    ):
+        heights = [row[kind] for row in rows]
+        ax.plot(counts, heights, color=color, marker=marker, markersize=5, label=name)
+    ax.set(xlabel="threads", ylabel="speed-up over one thread", ylim=(0.0, None), xticks=counts)
+    _grid(ax)
+    ax.legend(loc="lower right", frameon=False)
+    return figure
+
+
+def _styles() -> list[dict[str, Any]]:
+    return [
+        {"color": color, "marker": marker, "markersize": 5}
+        for color, marker in zip(_COLORS, _MARKERS, strict=True)
+    ]
+
+
+def _whole_decades(axes: Sequence[Axes]) -> None:
+    """Widen the heights of panels to powers of ten: a decade has too few labels otherwise."""
+    lows, highs = zip(*(ax.dataLim.intervaly for ax in axes), strict=True)
+    low, high = math.floor(math.log10(min(lows))), math.ceil(math.log10(max(highs)))
+    for ax in axes:
+        ax.set_ylim(10.0**low, 10.0**high)
+
+
+def _proportional(ax: Axes) -> None:
+    """Draw what cost in proportion would look like, at the top left, over half a decade."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    rise = 10.0**0.5
+    x, y = (1.3 * left, 1.3 * left * rise), (0.7 * high / rise, 0.7 * high)
+    ax.plot(x, y, color=_GREY, linestyle=":", label="in proportion")
+    ax.set(xlim=(left, right), ylim=(low, high))
+
+
+def _plain_ticks(ax: Axes, values: Sequence[float]) -> None:
+    ax.set_xticks(values, [f"{value:g}" for value in values])
+
+
+def _grid(ax: Axes) -> None:
+    ax.minorticks_off()
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)

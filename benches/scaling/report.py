@@ -1,0 +1,206 @@
+"""The page of the study: Markdown from the figures of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from benches.peers import machine, markdown
+from benches.scaling.scenes import BLOCKS, CUT, FLAT, LEVEL, STEP
+from benches.scaling.slopes import Curve, curves
+
+AIM = 1.3
+"""[-] What flat ground in the most pieces may cost at most, over whole ground."""
+
+
+def render(result: dict[str, Any]) -> str:
+    """Write the page of a run."""
+    rows = result["rows"]
+    return markdown.page(
+        [
+            _head(result),
+            _WHEELS,
+            _exponents(curves(rows, "wheels"), (FLAT, STEP)),
+            _stopped(rows),
+            _WHEELS_MEAN,
+            _GROUSERS,
+            _exponents(curves(rows, "grousers"), (FLAT, STEP)),
+            _POINTS,
+            _exponents(curves(rows, "points"), (CUT, BLOCKS)),
+            _ratios(rows),
+            _POINTS_MEAN,
+            _THREADS,
+            _speed_ups(result["threads"]),
+            _TIME_STEPS,
+            _steps(curves(rows, "time step")),
+        ]
+    )
+
+
+def _head(result: dict[str, Any]) -> str:
+    return f"""
+# What a step costs, and how that grows
+
+What `make bench-scaling` measures. One robot throughout, the Servosila Engineer without flippers,
+drives at 0.4 m/s over flat ground (4 m, 11 s) or over a step of 50 mm (6 s); one number grows along
+each curve. Neither a goal nor a stop ends a run: all of a panel take the same simulated time.
+`python -m benches.scaling --quick` tries all of it in half a minute.
+
+{machine.sentence(result["machine"], result["wall"])}
+
+- *A step* is the wall time of `Simulation.advance` over its steps: reading the scenario and
+  building the model do not count, and nothing is recorded. The solver's settings are the defaults,
+  with steps of 1 ms.
+- Each time is the least of several rounds in which all points of a panel took turns, on one thread.
+- An *exponent* is the slope of a curve on logarithmic scales: 0 costs the same, 1 grows in
+  proportion. The first is fitted to all points, the second is that between the last two.
+"""
+
+
+_WHEELS = """
+## Wheels
+
+![What a step costs against the number of wheels](scaling/wheels.svg)
+
+Only the number changes: wheels of a line keep the outline's radius of 64 mm and overlap from 4 on,
+circumferential ones keep 16 mm, are spaced equally and overlap from 33 on. Three circumferential
+wheels carry the robot just so: two stand on the ground.
+"""
+
+_WHEELS_MEAN = """
+- Cost grows about in proportion to the wheels that bear: all of a line, the lower third of
+  circumferential ones. Those in the air are passed over quickly.
+- A line of gear wheels is much dearer from 12 wheels on than with 6. So many grousers bear that the
+  solver finds no answer for all of them at once, and goes on by sweeps, often up to
+  `solver.iterations`. These are lines of large wheels pushed into one another: nothing that one
+  would model a track with.
+"""
+
+_GROUSERS = """
+## Grousers
+
+![What a step costs against the number of grousers](scaling/grousers.svg)
+
+Gear wheels alone: a line of 3, and 24 circumferential ones of 16 mm with tips 1 mm thick, for 48
+must fit on them. Only grousers near the ground are looked at, but the more there are the more of
+them bear at once.
+"""
+
+_POINTS = """
+## Pieces of the ground
+
+![What a step costs against the pieces of the ground](scaling/points.svg)
+
+Ground 6 m long, cut into pieces of one length, the heights of all their ends drawn within 0.1 um up
+and down: points that lie level to 1 nm would be read as one straight piece. 100,000 pieces are
+0.06 mm long each. The blocks are 0.2 m long and up to 30 mm high, their tops cut the same way.
+Runs of 2 s; the first point is whole ground.
+"""
+
+_POINTS_MEAN = """
+- Finding contacts is a small share of it: a hierarchy over them leads to those
+  that face a wheel. Pieces that lie level are joined when the scenario is read.
+- A belt lies on all corners within the depth that it sinks in, some um here, more than the ground
+  is rough: hundreds of contacts share the load, of thousands that might. Each is paired with the
+  nearest of the step before by looking at all of them: their number squared.
+- Between two grousers flat ground reaches up to 2.6 mm into the taut belt round gear wheels. Every
+  time that the monitor looks for ground inside the track it visits all pieces there.
+"""
+
+_THREADS = """
+## Threads
+
+![Speed-up against threads](scaling/threads.svg)
+
+`simulate_many` with 64 lines of 3 gear wheels over the step, from the scenarios to the runs, and as
+a yardstick loops that only count, one process a core: what the machine itself gained in the same
+sitting. Where these gain little either, other jobs had the rest of the cores.
+"""
+
+_TIME_STEPS = """
+## Time step
+
+![What a step and a simulated second cost against the time step](scaling/time_step.svg)
+
+A line of 3 gear wheels. More happens in a longer step, which is cut where a part strikes the
+ground; a simulated second is the cheaper all the same.
+"""
+
+
+def _exponents(drawn: Sequence[Curve], panels: tuple[str, str]) -> str:
+    """Tell the ends and the exponents of curves, those of both panels side by side."""
+    found = {(curve.panel, curve.name): curve for curve in drawn}
+    table = [
+        [name, *(_ends(found.get((panel, name))) for panel in panels)]
+        for name in dict.fromkeys(curve.name for curve in drawn)
+    ]
+    cells = "us a step at the first and the last point; exponent of all, of the last two"
+    return f"Cells: {cells}.\n\n" + markdown.table(["curve", *panels], table)
+
+
+def _ends(curve: Curve | None) -> str:
+    if curve is None:
+        return ""
+    first, last = curve.per_step[0] * 1e6, curve.per_step[-1] * 1e6
+    return f"{_short(first)} to {_short(last)}; {curve.slope:.2f}, {curve.last_slope:.2f}"
+
+
+def _stopped(rows: Sequence[dict[str, Any]]) -> str:
+    """Name the robots that the step holds up, whose cost is that of a robot at a stop."""
+    held: dict[str, list[str]] = {}
+    for row in rows:
+        if row["figure"] == "wheels" and row["panel"] == STEP and row["final_x"] < 0.0:
+            held.setdefault(row["curve"], []).append(f"{row['x']:g}")
+    names = [f"{curve}, {', '.join(counts)}" for curve, counts in held.items()]
+    return f"Still before the step at the end: {'; '.join(names) or 'none'}."
+
+
+def _ratios(rows: Sequence[dict[str, Any]]) -> str:
+    """Compare the finest cuts of flat ground with whole ground."""
+    own = {(row["curve"], row["x"]): row["per_step"] for row in rows if row["panel"] == CUT}
+    most = max(x for _, x in own)
+    names = [name for name, x in own if x == 1]
+    endings = {"level": f", {LEVEL}", "rough": ""}
+    cuts = {kind: end for kind, end in endings.items() if (names[0] + end, most) in own}
+    table = []
+    for name in names:
+        whole, costs = own[name, 1], [own[name + end, most] for end in cuts.values()]
+        ratios = [f"{cost / whole:.2f}" for cost in costs]
+        table.append([name, *(_short(cost * 1e6) for cost in (whole, *costs)), *ratios])
+    head = ["track", "whole", *cuts, *(f"{kind} / whole" for kind in cuts)]
+    text = f"""
+Flat ground in {most:,} pieces, us a step: *level* are pieces of one height, *rough* those of the
+figure. The aim is a ratio of at most {AIM}.
+"""
+    return text + "\n" + markdown.table(head, table)
+
+
+def _speed_ups(rows: Sequence[dict[str, Any]]) -> str:
+    table = [
+        [
+            str(row["threads"]),
+            f"{row['steps_per_second']:,.0f}",
+            f"{row['worlds']:.2f}",
+            f"{row['loops']:.2f}",
+        ]
+        for row in rows
+    ]
+    return markdown.table(["threads", "steps/s", "speed-up", "of a loop that counts"], table)
+
+
+def _steps(drawn: Sequence[Curve]) -> str:
+    table = [
+        [
+            f"{length * 1e3:g}",
+            *(_short(curve.per_step[i] * 1e6) for curve in drawn),
+            *(f"{length / curve.per_step[i]:,.0f}x" for curve in drawn),
+        ]
+        for i, length in enumerate(drawn[0].x)
+    ]
+    panels = [curve.panel for curve in drawn]
+    head = ["time step [ms]", *(f"{panel}, us a step" for panel in panels)]
+    return markdown.table([*head, *(f"{panel}, real time" for panel in panels)], table)
+
+
+def _short(value: float) -> str:
+    return f"{value:,.0f}" if value >= 100.0 else f"{value:.3g}"

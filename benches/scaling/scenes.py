@@ -1,0 +1,176 @@
+"""The scenes: the same robot throughout, and one number that grows along each curve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import crawler2d as c2d
+from crawler2d.scenario import Scenario
+from crawler2d.terrain import Lane
+from crawler2d.track import Track, Wheel
+
+WHEELS = (3, 6, 12, 24, 48, 96)
+GROUSERS = (6, 12, 24, 48)
+PIECES = (10, 100, 1_000, 10_000, 100_000)
+TIME_STEPS = (0.5e-3, 1e-3, 2e-3, 4e-3, 8e-3)
+"""[s]"""
+
+FLAT, STEP = "flat ground", "step of 50 mm"
+CUT, BLOCKS = "flat ground in pieces", "blocks in pieces"
+LEVEL = "level"
+"""The curve's ending for the flat ground whose pieces lie level: it is read as one."""
+
+_SHAPES: tuple[Wheel, ...] = (c2d.RoundWheel(), c2d.GearWheel())
+# [m] Of circumferential wheels: three of them carry the Engineer just so, and 96 overlap.
+_WHEEL_RADIUS = 0.016
+# [m] Thin enough for 48 grousers on such a wheel.
+_TIP_THICKNESS = 1e-3
+
+# [s] 4 m at 0.4 m/s, the way to full speed included; over the step and on.
+_DURATIONS = {FLAT: 11.0, STEP: 6.0}
+# [s] On ground in pieces, where each step may be dear.
+_SHORT = 2.0
+
+# [m] Ground in pieces reaches from here to there.
+_GROUND = (-1.0, 5.0)
+# [m] Heights of the points: below 1e-9 m they would be read as one straight piece.
+JITTER = 1e-7
+# [m] Size of the blocks, the first right before the robot.
+_BLOCK, _HEIGHT = 0.2, 0.03
+
+
+class Point(NamedTuple):
+    """One place on a curve of a figure."""
+
+    figure: str
+    panel: str
+    curve: str
+    x: float
+    scenario: Scenario
+
+
+def points() -> Iterator[Point]:
+    """Make every point of the study."""
+    yield from _wheels()
+    yield from _grousers()
+    yield from _pieces()
+    yield from _time_steps()
+
+
+def panels(points: Iterable[Point]) -> dict[tuple[str, str], list[Point]]:
+    """Group points by figure and panel, in their order."""
+    groups: dict[tuple[str, str], list[Point]] = {}
+    for point in points:
+        groups.setdefault((point.figure, point.panel), []).append(point)
+    return groups
+
+
+def line_of_gears() -> Scenario:
+    """Make the scene of the threads: a line of 3 gear wheels over the step."""
+    return _over(c2d.LineOfWheels(3, wheel=c2d.GearWheel()), STEP)
+
+
+def _wheels() -> Iterator[Point]:
+    for panel in (FLAT, STEP):
+        for wheel in _SHAPES:
+            for count in WHEELS:
+                line = c2d.LineOfWheels(count, wheel=wheel)
+                yield Point("wheels", panel, f"line, {wheel.kind}", count, _over(line, panel))
+            for count in WHEELS:
+                around = c2d.CircumferentialWheels(count, wheel_radius=_WHEEL_RADIUS, wheel=wheel)
+                name = f"circumferential, {wheel.kind}"
+                yield Point("wheels", panel, name, count, _over(around, panel))
+
+
+def _grousers() -> Iterator[Point]:
+    for panel in (FLAT, STEP):
+        for count in GROUSERS:
+            gear = c2d.GearWheel(grouser_count=count)
+            line = c2d.LineOfWheels(3, wheel=gear)
+            yield Point("grousers", panel, "line of 3", count, _over(line, panel))
+        for count in GROUSERS:
+            gear = c2d.GearWheel(grouser_count=count, tip_thickness=_TIP_THICKNESS)
+            around = c2d.CircumferentialWheels(24, wheel_radius=_WHEEL_RADIUS, wheel=gear)
+            yield Point("grousers", panel, "24 circumferential", count, _over(around, panel))
+
+
+def _pieces() -> Iterator[Point]:
+    tracks: dict[str, Track] = {
+        "line of 3 round": c2d.LineOfWheels(3),
+        "line of 3 gear": c2d.LineOfWheels(3, wheel=c2d.GearWheel()),
+        "belt": c2d.BeltTrack(),
+    }
+    for name, track in tracks.items():
+        whole = _on(track, c2d.terrains.from_points([(x, 0.0) for x in _GROUND], goal=0.0))
+        yield Point("points", CUT, name, 1, whole)
+        for count in PIECES:
+            yield Point("points", CUT, name, count, _on(track, flat(count, JITTER)))
+        level = _on(track, flat(PIECES[-1], 0.0))
+        yield Point("points", CUT, f"{name}, {LEVEL}", PIECES[-1], level)
+    for name, track in tracks.items():
+        # Ten pieces are too few for the blocks.
+        for count in PIECES[1:]:
+            yield Point("points", BLOCKS, name, count, _on(track, blocks(count)))
+
+
+def _time_steps() -> Iterator[Point]:
+    track = c2d.LineOfWheels(3, wheel=c2d.GearWheel())
+    for panel in (FLAT, STEP):
+        for time_step in TIME_STEPS:
+            scenario = _over(track, panel).replace({"solver.time_step": time_step})
+            yield Point("time step", panel, "line of 3 gear", time_step, scenario)
+
+
+def flat(count: int, jitter: float, seed: int = 0) -> Lane:
+    """Cut flat ground into pieces of one length, the heights of their ends drawn.
+
+    Parameters
+    ----------
+    count : int
+        Pieces.
+    jitter : float
+        [m] Largest height, up and down.
+    seed : int
+        Of the heights.
+    """
+    x = np.linspace(*_GROUND, count + 1)
+    return _ground(x, np.zeros(count + 1), jitter, seed)
+
+
+def blocks(count: int, seed: int = 0) -> Lane:
+    """Cut the tops of blocks of drawn heights into pieces of one length, vertical faces whole.
+
+    Parameters
+    ----------
+    count : int
+        Pieces, the few vertical faces not counted.
+    seed : int
+        Of the heights.
+    """
+    begins = np.arange(0.0, _GROUND[1], _BLOCK)
+    heights = np.random.default_rng(seed).uniform(0.0, _HEIGHT, begins.size)
+    tops = np.concatenate([[0.0], heights])
+    x = np.unique(np.concatenate([np.linspace(*_GROUND, count + 1), begins]))
+    # Where a block begins there are two points, one above the other.
+    before, behind = (np.searchsorted(begins, x, side=side) for side in ("left", "right"))
+    twice = np.column_stack([np.full(x.size, True), before != behind]).ravel()
+    y = tops[np.column_stack([before, behind])].ravel()
+    return _ground(np.repeat(x, 2)[twice], y[twice], JITTER, seed)
+
+
+def _ground(x: NDArray[np.float64], y: NDArray[np.float64], jitter: float, seed: int) -> Lane:
+    rough = y + np.random.default_rng(seed).uniform(-jitter, jitter, x.size)
+    return c2d.terrains.from_points(np.column_stack([x, rough]), goal=0.0)
+
+
+def _over(track: Track, panel: str) -> Scenario:
+    terrain = c2d.terrains.flat() if panel == FLAT else c2d.terrains.step(0.05)
+    return _on(track, terrain, _DURATIONS[panel])
+
+
+def _on(track: Track, terrain: Lane, duration: float = _SHORT) -> Scenario:
+    return Scenario(c2d.robots.engineer(track=track), terrain, duration=duration)

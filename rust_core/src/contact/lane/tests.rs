@@ -1,0 +1,164 @@
+//! The index against looking at every piece.
+
+#![allow(clippy::print_stdout)] // a figure is part of what a test tells
+
+use std::cell::Cell;
+
+use super::*;
+
+/// splitmix64
+struct Draw(u64);
+
+impl Draw {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Half a metre of ground: flat, or jittered by this [m] and with upright faces; its edges rounded if they have room.
+fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profile, Lane) {
+    let pitch = 0.5 / points as f64;
+    let mut x = 0.0;
+    let points: Vec<[f64; 2]> = (0..points)
+        .map(|i| {
+            let upright = jitter > 1e-9 && i % 7 == 3;
+            x += if upright { 0.0 } else { pitch };
+            [x, draw.between(-jitter, jitter)]
+        })
+        .collect();
+    let profile = Profile::new("terrain", &points, edge_radius, 0.9, false)
+        .or_else(|_| Profile::new("terrain", &points, 0.0, 0.9, false))
+        .unwrap();
+    let lane = Lane::new(&profile);
+    (profile, lane)
+}
+
+/// What can be told of a touch bit by bit.
+fn key(touch: &Touch) -> (String, [u64; 5]) {
+    let numbers = [
+        touch.place.x,
+        touch.place.y,
+        touch.normal.x,
+        touch.normal.y,
+        touch.distance,
+    ];
+    (format!("{:?}", touch.on), numbers.map(f64::to_bits))
+}
+
+fn sorted(mut touches: Vec<Touch>) -> Vec<(String, [u64; 5])> {
+    touches.sort_by_key(key);
+    touches.iter().map(key).collect()
+}
+
+/// Everything that a disc bears on, by looking at every piece.
+fn touches_one_by_one(
+    lane: &Lane,
+    center: Vector,
+    radius: f64,
+    (prediction, depth): (f64, f64),
+) -> Vec<Touch> {
+    let is_near = |t: &Touch| t.distance < prediction && t.distance + radius > -depth;
+    let faces = (0..lane.faces.len()).filter_map(|i| lane.face_under_disc(i, center, radius));
+    let corners = (0..lane.corners.len()).filter_map(|i| lane.corner_under_disc(i, center, radius));
+    let corners = corners.filter(|t| t.distance < prediction);
+    faces.filter(is_near).chain(corners).collect()
+}
+
+#[test]
+fn the_index_finds_what_looking_at_every_piece_finds() {
+    const SEED: u64 = 20_270_119;
+    let mut draw = Draw(SEED);
+    let (mut poses, mut found) = (0, 0);
+    for count in [10, 30, 100, 1000, 10_000, 100_000] {
+        for (jitter, edge_radius) in [
+            (0.0, 0.0),
+            (1e-6, 0.0),
+            (1e-3, 0.0),
+            (1e-3, 1e-6),
+            (0.03, 1e-4),
+        ] {
+            let (profile, lane) = lane(count, jitter, edge_radius, &mut draw);
+            for _ in 0..(1_000_000 / count).min(300) {
+                let radius = draw.between(0.0, 0.1).max(0.02) - 0.02;
+                let prediction = draw.between(1e-5, 0.01);
+                let x = draw.between(-0.05, 0.55);
+                let top = profile.height_under_disc(x, radius).max(-0.1);
+                let center = Vector::new(x, top + draw.between(-1e-3, 1.2 * prediction));
+                let reach = (prediction, draw.between(0.0, prediction));
+                let mut touches = Vec::new();
+                lane.touches_of_disc(center, radius, reach, |t| touches.push(t));
+                let slow = touches_one_by_one(&lane, center, radius, reach);
+                // A face that lies farther away has not been sunk into.
+                let reaches = |t: &Touch| match t.on {
+                    On::Corner(_) => true,
+                    On::Face(i) => {
+                        let face = &lane.faces[i];
+                        let along = (center - face.begin).dot(face.along);
+                        let nearest = face.begin + face.along * along.clamp(0.0, face.length);
+                        (nearest - center).length() < radius + prediction
+                    }
+                };
+                touches.retain(reaches);
+                let slow: Vec<Touch> = slow.into_iter().filter(reaches).collect();
+                poses += 1;
+                found += slow.len();
+                assert_eq!(
+                    sorted(touches),
+                    sorted(slow),
+                    "{count} {jitter} {center} {radius} {reach:?}"
+                );
+            }
+        }
+    }
+    println!("seed {SEED}: {poses} poses, {found} touches");
+}
+
+#[test]
+fn nothing_rises_above_the_top_of_a_region() {
+    let mut draw = Draw(20_270_120);
+    // An arc's points need not hold its top.
+    for edge_radius in [0.0, 1e-3, 5e-3] {
+        for _ in 0..1000 {
+            let left = draw.between(0.05, 0.2);
+            let points = [
+                [-1.0, 0.0],
+                [0.0, 0.0],
+                [left, 0.1],
+                [0.2 + left, 0.0],
+                [2.0, 0.0],
+            ];
+            let profile = Profile::new("terrain", &points, edge_radius, 0.9, false).unwrap();
+            let lane = Lane::new(&profile);
+            let arc = &lane.corners[2];
+            let top = lane.top(&lane.region(left - 0.1, left + 0.1));
+            assert!(top >= arc.center.y + edge_radius, "{left} {edge_radius}");
+        }
+    }
+}
+
+#[test]
+fn few_pieces_are_looked_at_however_finely_a_flat_is_cut() {
+    let mut draw = Draw(20_270_121);
+    for (count, jitter) in [(1000, 0.0), (100_000, 0.0), (100_000, 1e-9)] {
+        let (_, lane) = lane(count, jitter, 0.0, &mut draw);
+        let (center, radius) = (Vector::new(0.25, 0.1001), 0.1);
+        let reach = radius + 1e-3;
+        let region = lane.region(center.x - reach, center.x + reach);
+        let visited = Cell::new(0);
+        lane.index.visit(
+            &region,
+            |stretch| stretch.may_face(center, reach),
+            |_, _| visited.set(visited.get() + 1),
+        );
+        println!(
+            "{count} points, jitter {jitter}: {} pieces of {:?}",
+            visited.get(),
+            region
+        );
+        assert!(visited.get() <= 64);
+    }
+}

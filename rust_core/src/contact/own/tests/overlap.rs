@@ -1,0 +1,265 @@
+//! Parts that have sunk into the ground.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::super::OwnContact;
+use super::curve::Curve;
+use super::draw::Draw;
+use super::grounds::Ground;
+use super::judge::Judge;
+use super::scene::{Scene, cases};
+use crate::contact::Contact;
+use crate::plane::{cross, left_of};
+use crate::robot::{BodyKind, Part, Shape};
+
+/// [m] What both may differ by.
+const SAME: f64 = 1e-9;
+
+/// One overlap: how deep [m], and the normal out of the ground.
+#[derive(Debug)]
+struct Overlap {
+    depth: f64,
+    normal: Vector,
+}
+
+/// What is beyond a line, seen from the other solid.
+struct Beyond<'a> {
+    /// [m] The line that is crossed twice.
+    line: [Vector; 2],
+    /// Out of the solid that it belongs to.
+    outward: Vector,
+    /// Features of the same solid but for the line.
+    others: Vec<&'a Curve>,
+    /// Features of the other solid from one crossing to the other.
+    inside: Vec<Curve>,
+}
+
+impl Beyond<'_> {
+    /// Depth and whether nothing else is near.
+    fn depth(&self) -> Option<f64> {
+        let [a, b] = self.line;
+        let below = |p: Vector| (a - p).dot(self.outward);
+        let joints = self.inside.windows(2).map(|pair| {
+            let [p, q] = pair[0].ends();
+            let next = pair[1];
+            if (next.nearest(p) - p).length() < (next.nearest(q) - q).length() {
+                p
+            } else {
+                q
+            }
+        });
+        let supports = self.inside.iter().filter_map(|curve| match *curve {
+            Curve::Arc { center, radius, .. } if curve.points(-self.outward) => {
+                Some(center - self.outward * radius)
+            }
+            _ => None,
+        });
+        let joints: Vec<Vector> = joints.collect();
+        if joints.iter().any(|p| below(*p) <= 0.0) {
+            return None;
+        }
+        let deepest = joints
+            .iter()
+            .copied()
+            .chain(supports)
+            .max_by(|p, q| below(*p).total_cmp(&below(*q)))?;
+        let depth = below(deepest);
+        let margin = 2.0 * depth + 1e-7;
+        let along = (b - a).normalize();
+        let foot = (deepest - a).dot(along);
+        let clear = foot > margin
+            && foot < (b - a).length() - margin
+            && self
+                .others
+                .iter()
+                .all(|c| (c.nearest(deepest) - deepest).length() > margin);
+        clear.then_some(depth)
+    }
+}
+
+/// The one overlap of a part with the ground, if it is one of two features.
+fn only_overlap(judge: &Judge) -> Option<Overlap> {
+    let crossings = judge.crossings();
+    let [(i, j, _), (k, l, _)] = crossings[..] else {
+        return None;
+    };
+    let ground = &judge.ground.curves;
+    let except = |curves: &'_ [Curve], n: usize| -> Vec<Curve> {
+        curves
+            .iter()
+            .enumerate()
+            .filter(|(m, _)| *m != n)
+            .map(|(_, c)| *c)
+            .collect()
+    };
+    if j == l
+        && let Curve::Line([a, b]) = ground[j]
+    {
+        let outward = left_of((b - a).normalize());
+        let count = judge.part.len();
+        let way = |from: usize, to: usize| -> Vec<Curve> {
+            let steps = (to + count - from) % count;
+            (0..=steps)
+                .map(|s| judge.part[(from + s) % count])
+                .collect()
+        };
+        let (one, other) = (way(i, k), way(k, i));
+        let inside = if one.len() <= other.len() { one } else { other };
+        let others = except(ground, j);
+        let beyond = Beyond {
+            line: [a, b],
+            outward,
+            others: others.iter().collect(),
+            inside,
+        };
+        return beyond.depth().map(|depth| Overlap {
+            depth,
+            normal: outward,
+        });
+    }
+    if i == k
+        && let Curve::Line([a, b]) = judge.part[i]
+    {
+        let outward = -left_of((b - a).normalize());
+        let inside = ground[j.min(l)..=j.max(l)].to_vec();
+        let others = except(&judge.part, i);
+        let beyond = Beyond {
+            line: [a, b],
+            outward,
+            others: others.iter().collect(),
+            inside,
+        };
+        return beyond.depth().map(|depth| Overlap {
+            depth,
+            normal: -outward,
+        });
+    }
+    if i == k
+        && let Curve::Arc { center, radius, .. } = judge.part[i]
+    {
+        // The foot of the centre.
+        let feet = ground.iter().map(|c| c.nearest(center));
+        let near = |p: &Vector| (*p - center).length();
+        let foot = feet.min_by(|p, q| near(p).total_cmp(&near(q)))?;
+        let (depth, normal) = (radius - near(&foot), (center - foot).normalize());
+        let others = except(&judge.part, i);
+        let margin = 2.0 * depth + 1e-7;
+        let clear = judge.part[i].points(-normal)
+            && center.y > judge.ground.height(center.x)
+            && others
+                .iter()
+                .all(|c| (c.nearest(foot) - foot).length() > margin);
+        return clear.then_some(Overlap { depth, normal });
+    }
+    None
+}
+
+#[test]
+fn no_penetration_is_missed_and_that_of_two_features_has_its_depth_and_normal() {
+    const SEED: u64 = 20_270_115;
+    let mut draw = Draw(SEED);
+    let count = cases(10_000, 1_000_000);
+    let mut judged = 0;
+    for number in 0..count {
+        let mut scene = Scene::random(number, &mut draw);
+        let depth = draw.size(1e-8, 1e-3);
+        scene.approach(-depth);
+        let judge = scene.judge(depth);
+        // Two needles may have passed each other.
+        if judge.is_clear() {
+            continue;
+        }
+        let contacts = scene.contacts(1e-3);
+        let distances = contacts.iter().map(|c| c.distance);
+        let deepest = distances.fold(f64::INFINITY, f64::min);
+        assert!(deepest < 0.0, "{depth} {contacts:?} {}", scene.tell());
+        if let Some(overlap) = only_overlap(&judge) {
+            judged += 1;
+            let is_it = |c: &Contact| {
+                (c.distance + overlap.depth).abs() < SAME
+                    && (c.normal - overlap.normal).length() < 1e-6
+            };
+            let is_told = contacts.iter().any(is_it) && (deepest + overlap.depth).abs() < SAME;
+            assert!(is_told, "{overlap:?} {contacts:?} {}", scene.tell());
+        }
+    }
+    println!("seed {SEED}: {count} poses, {judged} of two features");
+    assert!(judged > count / 2);
+}
+
+/// The shortest way that leaves no contact with a penetration, if there is one.
+fn way_out(contacts: &[Contact], slack: f64) -> Option<Vector> {
+    let room = |c: &Contact| slack - c.distance;
+    let of_one = contacts.iter().map(|c| c.normal * room(c));
+    let of_two = contacts.iter().enumerate().flat_map(|(i, a)| {
+        contacts[..i].iter().filter_map(move |b| {
+            let area = cross(a.normal, b.normal);
+            let way = (left_of(a.normal) * room(b) - left_of(b.normal) * room(a)) / area;
+            (area.abs() > 1e-6).then_some(way)
+        })
+    });
+    std::iter::once(Vector::ZERO)
+        .chain(of_one)
+        .chain(of_two)
+        .filter(|way| {
+            contacts
+                .iter()
+                .all(|c| way.dot(c.normal) >= room(c) - 1e-12)
+        })
+        .min_by(|a, b| a.length().total_cmp(&b.length()))
+}
+
+#[test]
+fn a_part_leaves_the_ground_along_its_contacts() {
+    const SEED: u64 = 20_270_116;
+    const PREDICTION: f64 = 3e-3;
+    let mut draw = Draw(SEED);
+    let count = cases(10_000, 1_000_000);
+    let mut moved = 0;
+    for number in 0..count {
+        let mut scene = Scene::random(number, &mut draw);
+        let depth = draw.size(1e-6, 3e-4);
+        scene.approach(-depth);
+        scene.push(Vector::new(
+            draw.between(-depth, depth),
+            draw.between(-depth, depth),
+        ));
+        scene.turn(draw.between(-depth, depth) / scene.outline.reach);
+        let contacts = scene.contacts(PREDICTION);
+        // None where it is wedged, and on a long way there is more in it.
+        let Some(way) = way_out(&contacts, 1e-8).filter(|w| w.length() < PREDICTION) else {
+            continue;
+        };
+        let before = scene.tell();
+        scene.push(way);
+        moved += 1;
+        assert!(scene.judge(0.0).is_clear(), "{way} {contacts:?} {before}");
+    }
+    println!("seed {SEED}: {count} poses, {moved} moved out");
+    assert!(moved > count / 2);
+}
+
+#[test]
+fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
+    let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
+    let ground = Ground::new(&corners, 0.0).unwrap();
+    let triangle = [[0.0, 0.0], [-0.05, 0.05], [-0.05, 0.01]].map(|[x, y]| Vector::new(x, y));
+    let part = Part {
+        kind: BodyKind::Belly,
+        shape: Shape::Polygon {
+            corners: triangle.to_vec(),
+        },
+        drive: None,
+        friction_limit: f64::INFINITY,
+    };
+    let contact = OwnContact::new(&[part], &ground.profile);
+    let mut contacts = Vec::new();
+    for (behind, below) in [(1e-9, 1e-9), (1e-6, 1e-4), (1e-4, 1e-6), (5e-4, 5e-4)] {
+        let pose = Pose::from_translation(Vector::new(behind, -below));
+        contact.find(pose, &[], 1e-3, &mut contacts);
+        for (normal, depth) in [(Vector::Y, below), (-Vector::X, behind)] {
+            let is_it = |c: &Contact| c.normal == normal && (c.distance + depth).abs() < 1e-15;
+            assert!(contacts.iter().any(is_it), "{behind} {below} {contacts:?}");
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Parts that do not touch the ground.
+
+use std::f64::consts::TAU;
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::super::OwnContact;
+use super::draw::Draw;
+use super::judge::Approach;
+use super::scene::{Scene, cases};
+use crate::contact::Contact;
+use crate::robot::{BodyKind, Part, Shape};
+use crate::terrain::Profile;
+
+/// [m] What both may differ by.
+const SAME: f64 = 1e-9;
+
+/// Whether the place is a contact, or between two others of one plane face that make up for it.
+fn is_told(approach: &Approach, contacts: &[Contact]) -> bool {
+    let [p, q] = approach.ends;
+    let (middle, distance) = (0.5 * (p + q), approach.distance());
+    // Where the gap is no more than rounding, so is its direction.
+    let alike = |c: &&Contact| distance < 1e-6 || (c.normal - approach.normal()).length() < 1e-6;
+    let alike: Vec<&Contact> = contacts.iter().filter(alike).collect();
+    let is_it =
+        |c: &Contact| (c.distance - distance).abs() < SAME && (c.point - middle).length() < 1e-6;
+    let makes_up = |a: &Contact, b: &Contact| {
+        let share =
+            (middle - a.point).dot(b.point - a.point) / (b.point - a.point).length_squared();
+        let chord = a.distance + (b.distance - a.distance) * share;
+        (0.0..=1.0).contains(&share) && (chord - distance).abs() < 2.0 * SAME
+    };
+    alike.iter().any(|c| is_it(c))
+        || alike.iter().any(|a| {
+            alike
+                .iter()
+                .any(|b| !std::ptr::eq(*a, *b) && makes_up(a, b))
+        })
+}
+
+#[test]
+fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
+    const SEED: u64 = 20_270_114;
+    let mut draw = Draw(SEED);
+    let (mut places, mut within) = (0, 0);
+    let count = cases(30_000, 1_000_000);
+    for number in 0..count {
+        let mut scene = Scene::random(number, &mut draw);
+        let gap = draw.size(1e-6, 20e-3);
+        scene.approach(gap);
+        // Often only just enough, and sometimes too little.
+        let just = draw.chance(0.3);
+        let ahead = if just {
+            draw.size(2e-9, 1e-6)
+        } else {
+            gap * draw.between(-0.2, 3.0)
+        };
+        let prediction = gap + ahead;
+        let judge = scene.judge(1.5 * prediction.max(gap));
+        assert!(judge.is_clear(), "{}", scene.tell());
+        let contacts = scene.contacts(prediction);
+        let least = judge.nearest(1.0).map_or(f64::INFINITY, |a| a.distance());
+        let told = contacts
+            .iter()
+            .map(|c| c.distance)
+            .fold(f64::INFINITY, f64::min);
+        assert!(
+            told > least - SAME,
+            "{told}, not {least} {contacts:?} {}",
+            scene.tell()
+        );
+        let approaches = judge.approaches(prediction - SAME);
+        for approach in &approaches {
+            assert!(
+                is_told(approach, &contacts),
+                "{approach:?} {prediction} {}",
+                scene.tell()
+            );
+        }
+        places += approaches.len();
+        within += usize::from(least < prediction);
+    }
+    println!("seed {SEED}: {count} poses, {within} within the prediction, {places} places");
+    assert!(within > count / 2);
+}
+
+#[test]
+fn a_rounded_edge_is_a_true_arc() {
+    const SEED: u64 = 20_270_118;
+    let mut draw = Draw(SEED);
+    for _ in 0..10_000 {
+        let (edge_radius, radius) = (draw.size(0.5e-3, 20e-3), draw.size(1e-3, 0.12));
+        let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
+        let profile = Profile::new("terrain", &corners, edge_radius, 0.9, true).unwrap();
+        let part = Part {
+            kind: BodyKind::Wheel,
+            shape: Shape::Disc {
+                center: Vector::ZERO,
+                radius,
+            },
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+        };
+        let contact = OwnContact::new(&[part], &profile);
+        let angle = draw.between(0.25, 0.5) * TAU;
+        let outward = Vector::new(angle.cos(), angle.sin());
+        let middle = Vector::new(edge_radius, 0.1 - edge_radius);
+        let gap = draw.between(-1e-4, 1e-3);
+        let pose = Pose::from_translation(middle + outward * (edge_radius + radius + gap));
+        let mut contacts = Vec::new();
+        contact.find(pose, &[0.0], 2e-3, &mut contacts);
+        let is_it =
+            |c: &Contact| (c.distance - gap).abs() < 1e-12 && (c.normal - outward).length() < 1e-9;
+        assert!(
+            contacts.iter().any(is_it),
+            "{edge_radius} {radius} {angle} {gap} {contacts:?}"
+        );
+    }
+}
