@@ -204,7 +204,7 @@ def test_it_agrees_with_what_crawler2d_sees(name: str) -> None:
     scene, engine = scenes.load(name), Crawler2D()
     step = engine.defaults.time_step
     motion = engine.record(scene, engine.defaults, 6.0, step)
-    # A gap is followed along its normal of the middle of the step: a corner that turns round an edge
-    # closely, 0.2 mm in half a step, is off by some 10 um.
+    # A gap is followed along its normal of the middle of the step: a corner that closely turns
+    # round an edge, 0.2 mm in half a step, is off by some 10 um.
     assert geometry.penetration(scene, motion) == pytest.approx(motion.penetration, abs=2e-5)
     assert geometry.joint_gap(scene, motion) < 1e-12

@@ -61,8 +61,9 @@ class Solver(Parameters):
     Parameters
     ----------
     contact : {"own", "reference"}
-        Who finds the contacts: our own exact geometry, or the engine's queries of convex pieces on one
-        polyline, which are slower and cut rounded edges into facets; it is there to compare with.
+        Who finds the contacts: our own exact geometry, or the engine's queries of convex pieces on
+        one polyline, which are slower and cut rounded edges into facets; these are there to compare
+        with.
     time_step : float
         [s] Time between two looks for contacts.
     substeps : int
