@@ -15,6 +15,7 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::Grip;
+use crate::plane::right_of;
 pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
@@ -58,13 +59,12 @@ pub(crate) struct LoadedContact {
     pub carried_over: bool,
 }
 
-/// Leaves out contacts that add nothing: those that repeat another of the same part, and those
-/// between two others of the same plane face, for two points carry a rigid face.
+/// Leaves out contacts that add nothing: those that repeat another of the same part, and those that lie
+/// between two others of the same direction and no deeper than these: a rigid part comes down on its
+/// neighbours first.
 pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
     /// Normals closer than this are one direction; f64 keeps about 1e-16.
     const SAME_DIRECTION: f64 = 1e-12;
-    /// [m] Gaps closer than this to the chord of their neighbours lie on one face.
-    const SAME_FACE: f64 = 1e-9;
 
     // A stable order: by part, then from the left, so that neighbours lie side by side.
     contacts.sort_by(|a, b| a.part.cmp(&b.part).then(a.point.x.total_cmp(&b.point.x)));
@@ -72,23 +72,30 @@ pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
         a.part == b.part && 1.0 - a.normal.dot(b.normal) < SAME_DIRECTION
     };
     contacts.dedup_by(|b, a| same(a, b) && (a.point - b.point).length() < 1e-9);
+    let is_covered = |first: &Contact, middle: &Contact, last: &Contact| {
+        same(first, middle) && same(middle, last) && lies_above(first, middle, last)
+    };
     let mut kept = 0;
     for i in 0..contacts.len() {
-        if kept >= 2 {
-            let (first, middle, last) = (contacts[kept - 2], contacts[kept - 1], contacts[i]);
-            if same(&first, &middle) && same(&middle, &last) {
-                let (a, b) = (
-                    (middle.point - first.point).length(),
-                    (last.point - middle.point).length(),
-                );
-                let chord = (first.distance * b + last.distance * a) / (a + b);
-                if (middle.distance - chord).abs() < SAME_FACE {
-                    kept -= 1;
-                }
-            }
+        while kept >= 2 && is_covered(&contacts[kept - 2], &contacts[kept - 1], &contacts[i]) {
+            kept -= 1;
         }
         contacts[kept] = contacts[i];
         kept += 1;
     }
     contacts.truncate(kept);
+}
+
+/// Whether the gap in the middle is no smaller than that of the chord of its neighbours.
+fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
+    /// [m] Gaps closer than this to the chord lie on one face.
+    const SAME_FACE: f64 = 1e-9;
+
+    let along = right_of(middle.normal);
+    let (a, b) = (
+        (middle.point - first.point).dot(along),
+        (last.point - middle.point).dot(along),
+    );
+    let chord = (first.distance * b + last.distance * a) / (a + b);
+    a * b > 0.0 && middle.distance > chord - SAME_FACE
 }

@@ -35,21 +35,23 @@ impl Tip {
 pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
     outer_ends(lane, touch).any(|(corner, beside)| {
         let below = (corner.center - tip.place).dot(beside) + corner.radius;
-        // Outside of a face that it could meet it has met nothing there.
-        let is_outside = below < 0.0 && tip.faces(-beside);
+        let leaves_face = || tip.faces(-beside);
         let leaves_run = |m: &Vector| {
             let spoke = tip.place - (corner.center - *m * corner.radius);
-            let holds_corner = tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
-            holds_corner && shorter(touch, -*m, spoke.dot(*m), || corner.faces(-*m))
+            let beyond = spoke.dot(*m);
+            let leaves = || corner.faces(-*m);
+            let holds_corner = || tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
+            (beyond < 0.0 && leaves()) || (shorter(touch, -*m, beyond, leaves) && holds_corner())
         };
-        is_outside
-            || shorter(touch, beside, below, || tip.faces(-beside))
+        // With a gap to a face, or a run, that could meet they have not met at all.
+        (below < 0.0 && leaves_face())
+            || shorter(touch, beside, below, leaves_face)
             || tip.normals.iter().any(leaves_run)
     })
 }
 
-/// The corners that stand out at both ends of a face that something is inside of, each with the normal of the
-/// face beside.
+/// The corners that stand out at both ends of a face that something is inside of, each with the normal
+/// of the face beside.
 fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Corner, Vector)> {
     let face = match touch.on {
         On::Face(face) if touch.distance < 0.0 => Some(face),

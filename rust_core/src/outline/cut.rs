@@ -133,19 +133,24 @@ impl Piece<'_> {
 
     /// The point of its chords that lies deepest below an envelope.
     pub(crate) fn deepest_on_chords(&self, belt: &Envelope) -> Vector {
-        let segments = self.chords().flat_map(|c| c.points.windows(2));
-        let mut deepest = (f64::NEG_INFINITY, Vector::ZERO);
-        for ends in segments {
+        let points = self.chords().flat_map(|c| &c.points);
+        let of_points = points.map(|p| (belt.depth(*p), *p));
+        let mut deepest = of_points.fold((f64::NEG_INFINITY, Vector::ZERO), deeper);
+        for ends in self.chords().flat_map(|c| c.points.windows(2)) {
             let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
-            // The depth below a convex rim is concave along a line.
-            let share = maximise(0.0, 1.0, |t| belt.depth(at(t)));
-            for point in [ends[0], at(share), ends[1]] {
-                let depth = belt.depth(point);
-                if depth > deepest.0 {
-                    deepest = (depth, point);
-                }
+            // The depth changes by no more than the way: most segments cannot hold the deepest point.
+            let length = (ends[1] - ends[0]).length();
+            if 0.5 * (belt.depth(ends[0]) + belt.depth(ends[1]) + length) > deepest.0 {
+                // The depth below a convex rim is concave along a line.
+                let point = at(maximise(0.0, 1.0, |t| belt.depth(at(t))));
+                deepest = deeper(deepest, (belt.depth(point), point));
             }
         }
         deepest.1
     }
+}
+
+/// The deeper one of two; the first of equals.
+fn deeper(a: (f64, Vector), b: (f64, Vector)) -> (f64, Vector) {
+    if b.0 > a.0 { b } else { a }
 }

@@ -19,7 +19,8 @@ impl Draw {
     }
 }
 
-/// Half a metre of ground: flat, or jittered by this [m] and with upright faces; its edges rounded if they have room.
+/// Half a metre of ground: flat, or jittered by this [m] and with upright faces; its edges rounded if
+/// they have room.
 fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profile, Lane) {
     let pitch = 0.5 / points as f64;
     let mut x = 0.0;

@@ -13,6 +13,8 @@ pub(super) struct Outline {
     pub part: Part,
     /// [m] Farthest point from the centre of the part.
     pub reach: f64,
+    /// [m] Thickness of a grouser, or of all of it.
+    pub thinnest: f64,
     /// Counter-clockwise, in the chassis frame.
     curves: Vec<Curve>,
     /// [m] Centre in the chassis frame.
@@ -52,6 +54,10 @@ impl Outline {
                 (Shape::Gear { center, gear }, wheel(center, &gear), radius)
             }
         };
+        let thinnest = match &shape {
+            Shape::Gear { gear, .. } => gear.tip_thickness,
+            _ => reach,
+        };
         let part = Part {
             kind: BodyKind::Wheel,
             shape,
@@ -61,6 +67,7 @@ impl Outline {
         Self {
             part,
             reach,
+            thinnest,
             curves,
             center,
         }
@@ -143,7 +150,8 @@ fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f
 
 fn gear(radius: f64, draw: &mut Draw) -> Gear {
     let grousers = 6 + draw.below(43) as u32;
-    let root_radius = radius * draw.between(0.7, 0.95);
+    // Higher than what they sink in.
+    let root_radius = radius - draw.between(1.1e-3_f64.max(0.05 * radius), 0.3 * radius);
     let room = 2.0 * root_radius * (0.5 * TAU / f64::from(grousers)).sin();
     let base_thickness = room * draw.between(0.15, 0.8);
     let parallel = draw.chance(0.5);

@@ -83,7 +83,8 @@ impl Scene {
         Judge::new(self.outline.at(self.pose, self.drive), &self.ground, sight)
     }
 
-    /// Brings the part along the way of nearest approach to this gap [m] at most, negative in penetration.
+    /// Brings the part along the way of nearest approach to this gap [m] at most; negative in
+    /// penetration.
     pub(super) fn approach(&mut self, gap: f64) -> Approach {
         let nearest = self.judge(1.0).nearest(f64::INFINITY).unwrap();
         self.push(nearest.normal() * (gap - nearest.distance()).min(0.0));

@@ -15,7 +15,8 @@ use crate::terrain::Profile;
 /// [m] What both may differ by.
 const SAME: f64 = 1e-9;
 
-/// Whether the place is a contact, or between two others of one plane face that make up for it.
+/// Whether the place is a contact, or between two others of the same direction and no nearer than
+/// these.
 fn is_told(approach: &Approach, contacts: &[Contact]) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
@@ -28,7 +29,7 @@ fn is_told(approach: &Approach, contacts: &[Contact]) -> bool {
         let share =
             (middle - a.point).dot(b.point - a.point) / (b.point - a.point).length_squared();
         let chord = a.distance + (b.distance - a.distance) * share;
-        (0.0..=1.0).contains(&share) && (chord - distance).abs() < 2.0 * SAME
+        (0.0..=1.0).contains(&share) && distance > chord - 2.0 * SAME
     };
     alike.iter().any(|c| is_it(c))
         || alike.iter().any(|a| {
