@@ -7,11 +7,14 @@
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::Contact;
-use super::lane::{Lane, On, ROUNDING, Touch};
+use super::lane::{Lane, On, Touch};
 use super::overlap::{self, Tip};
 use crate::outline::Gear;
 use crate::plane::{direction, right_of};
 use crate::robot::TurningWheel;
+
+/// [m] Ground does not sink into a flank by more than this.
+const SUNK: f64 = 1e-3;
 
 /// A gear wheel of a robot.
 pub(super) struct GearContact {
@@ -182,6 +185,7 @@ impl GearContact {
         let angle = libm::atan2(outward.y, outward.x) - self.gear.phase;
         let pitch = self.gear.angle();
         let off = (angle / pitch - (angle / pitch).round()) * pitch;
-        off.abs() >= self.half_base - ROUNDING
+        // What has sunk into a flank at its foot bears on the root circle, too.
+        off.abs() >= self.half_base - SUNK / self.gear.root_radius
     }
 }

@@ -175,3 +175,24 @@ fn explicit_line_equals_hybrid_wheels_at_the_same_places() {
     });
     assert_eq!(summary(&scenario).metrics, line);
 }
+
+#[test]
+fn ground_never_sinks_into_a_gear_wheel_by_a_millimetre() {
+    let mut deepest: f64 = 0.0;
+    for track in [
+        line_of(3, paper_gear()),
+        line_of(5, paper_gear()),
+        hybrid(paper_gear()),
+    ] {
+        for i in 0..32 {
+            let mut scenario = engineer();
+            scenario.robot.track = track.clone();
+            scenario.terrain = step(0.05 + 0.01 * f64::from(i % 8), 0.9);
+            scenario.start.track_phase = 0.0015 * f64::from(i);
+            scenario.duration = 6.0;
+            deepest = deepest.max(summary(&scenario).metrics.max_penetration);
+        }
+    }
+    println!("{:.3} mm", 1e3 * deepest);
+    assert!(deepest < 1e-3);
+}
