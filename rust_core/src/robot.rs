@@ -135,9 +135,14 @@ impl Model {
         })
     }
 
+    /// [kg m^2] Moment of inertia of one drive.
+    pub(crate) fn drive_inertia(&self) -> f64 {
+        self.drive_mass * self.drive_radius * self.drive_radius
+    }
+
     /// [kg m^2] Moment of inertia of the chassis with one drive locked to it.
     pub(crate) fn locked_inertia(&self) -> f64 {
-        self.moment_of_inertia + self.drive_mass * self.drive_radius * self.drive_radius
+        self.moment_of_inertia + self.drive_inertia()
     }
 
     /// The same robot with a closed belt, taut round the bodies of its track: their circumscribed

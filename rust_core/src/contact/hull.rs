@@ -16,7 +16,7 @@ use crate::plane::direction;
 use crate::robot::{Part, Shape};
 
 /// [m] Ground that is deeper inside did not get there by sinking in.
-const SHALLOW: f64 = 1e-3;
+pub(super) const SHALLOW: f64 = 1e-3;
 /// [rad] On a face that is parallel to a run but for this, both ends of the run bear: an arc reaches
 /// less than 0.1 mm out of the hull where it goes on by as much.
 const NEARLY: f64 = 0.05;

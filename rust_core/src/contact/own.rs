@@ -8,14 +8,11 @@ mod tests;
 use rapier2d_f64::math::{Pose, Vector};
 
 use super::gear::GearContact;
-use super::hull::HullContact;
+use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
 use super::{Contact, without_redundant};
 use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
-
-/// [m] Ground above the centre of a disc by more than this did not get there by sinking in.
-const SHALLOW: f64 = 1e-3;
 
 /// Outlines of one robot and one ground.
 pub(crate) struct OwnContact {

@@ -48,16 +48,15 @@ impl Grip {
 }
 
 /// The linear system, and what the drives with a spin of their own add to it.
-#[derive(Default)]
 pub(super) struct System {
-    pub rows: [[f64; 4]; 3],
-    pub spins: Vec<Spin>,
+    rows: [[f64; 4]; 3],
+    spins: Vec<Spin>,
 }
 
 /// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the velocity's
 /// equations have `rows x spin`.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Spin {
+struct Spin {
     inertia: f64,
     moment: f64,
     columns: [f64; 3],
@@ -67,6 +66,14 @@ pub(super) struct Spin {
 }
 
 impl System {
+    /// Of a robot with so many drives.
+    pub(super) fn new(drives: usize) -> Self {
+        Self {
+            rows: [[0.0; 4]; 3],
+            spins: vec![Spin::default(); drives],
+        }
+    }
+
     /// Adds a constraint whose impulse along `force` is `impulse - stiffness x speed` along `action`.
     fn add(
         &mut self,
@@ -193,7 +200,7 @@ impl Dynamics {
     /// The system of the constraints as they are guessed.
     fn assemble(&mut self, phase: &Phase) {
         let m = &self.model;
-        let (moment, drive_inertia) = (self.free_moment(phase), self.drive_inertia());
+        let (moment, drive_inertia) = (self.free_moment(phase), self.model.drive_inertia());
         let system = &mut self.system;
         system.rows = [
             [m.mass, 0.0, 0.0, m.mass * phase.velocity.x],
@@ -202,7 +209,7 @@ impl Dynamics {
         ];
         for (k, motor) in self.motors.iter().enumerate() {
             let share = motor.share().unwrap_or_default();
-            let of_motor = share * m.drive_force * phase.elapsed * m.drive_radius;
+            let of_motor = phase.motor_turn(share, m);
             system.spins[k] = Spin {
                 inertia: drive_inertia,
                 moment: drive_inertia * phase.spins[k] - of_motor,
@@ -276,8 +283,8 @@ impl Row {
     fn follow_velocities(&mut self, state: &State, spin: f64) -> (Grip, f64) {
         let [n, t] = &self.actions;
         let ((at_rest, stiffness), (stuck, along)) = self.dampers();
-        let normal = at_rest - stiffness * n.speed(state, spin);
-        let friction = stuck - along * t.speed(state, spin);
+        let normal = at_rest - stiffness * n.speed(state.velocity, state.angular_velocity, spin);
+        let friction = stuck - along * t.speed(state.velocity, state.angular_velocity, spin);
         let limit = self.friction * normal;
         let (grip, friction) = if normal <= 0.0 {
             (Grip::Open, 0.0)
@@ -309,7 +316,9 @@ impl Push {
 
     /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
     fn follow_velocities(&mut self, state: &State) -> f64 {
-        let slip = self.action.speed(state, state.drives[0].spin);
+        let slip = self
+            .action
+            .speed(state.velocity, state.angular_velocity, state.drives[0].spin);
         self.impulse = self.center - slip / (DAMPING * self.admittance);
         slip.abs()
     }

@@ -23,7 +23,7 @@ use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
 pub(crate) use direct::Grip;
-use direct::{Spin, System};
+use direct::System;
 use law::Softness;
 use motors::Motor;
 pub(crate) use motors::push_axis;
@@ -90,10 +90,7 @@ impl Dynamics {
             motors: (0..model.drives).map(motor).collect(),
             torques: vec![0.0; model.drives],
             inertia: model.moment_of_inertia,
-            system: System {
-                spins: vec![Spin::default(); model.drives],
-                ..System::default()
-            },
+            system: System::new(model.drives),
             phase: Phase::default(),
             push: model.pushes_chassis.then(Push::default),
             model,

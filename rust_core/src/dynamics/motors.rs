@@ -91,18 +91,12 @@ impl Dynamics {
 
     /// [N s] What a motor has given so far.
     pub(super) fn motor_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
-        let m = &self.model;
         if let Some(share) = self.motors[k].share() {
-            return share * m.drive_force * phase.elapsed;
+            return phase.motor_impulse(share, &self.model);
         }
         // What the contacts have not, the motor has changed of the spin.
-        let change = self.drive_inertia() * (state.drives[k].spin - phase.spins[k]);
-        (self.torques[k] - change) / m.drive_radius
-    }
-
-    /// [kg m^2] Of one drive.
-    pub(super) fn drive_inertia(&self) -> f64 {
-        self.model.drive_mass * self.model.drive_radius * self.model.drive_radius
+        let change = self.model.drive_inertia() * (state.drives[k].spin - phase.spins[k]);
+        (self.torques[k] - change) / self.model.drive_radius
     }
 }
 

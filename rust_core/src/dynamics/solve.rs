@@ -7,6 +7,7 @@ use super::law::{Admittance, Softness, coulomb};
 use super::motors::{Motor, push_axis};
 use super::row::{Direction, Row};
 use super::state::State;
+use crate::robot::Model;
 
 /// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
@@ -29,6 +30,18 @@ pub(super) struct Phase {
     pub set_point: f64,
     /// [s] Time in which motors can push.
     pub elapsed: f64,
+}
+
+impl Phase {
+    /// [N s] What a motor at that share of its limit has given so far, ...
+    pub(super) fn motor_impulse(&self, share: f64, model: &Model) -> f64 {
+        share * model.drive_force * self.elapsed
+    }
+
+    /// [N m s] ... and what that has turned its drive back with.
+    pub(super) fn motor_turn(&self, share: f64, model: &Model) -> f64 {
+        self.motor_impulse(share, model) * model.drive_radius
+    }
 }
 
 /// A direction in which a constraint acts, with the motors as they are in this solve.
@@ -78,9 +91,9 @@ impl Action {
     }
 
     /// [m/s] Speed along it.
-    pub(super) fn speed(&self, state: &State, spin: f64) -> f64 {
-        self.unit.dot(state.velocity)
-            + self.lever * state.angular_velocity
+    pub(super) fn speed(&self, velocity: Vector, angular_velocity: f64, spin: f64) -> f64 {
+        self.unit.dot(velocity)
+            + self.lever * angular_velocity
             + self.spin_lever * spin
             + self.offset
     }
@@ -111,10 +124,7 @@ struct Body {
 
 impl Body {
     fn speed(&self, action: &Action, spin: f64) -> f64 {
-        action.unit.dot(self.velocity)
-            + action.lever * self.angular_velocity
-            + action.spin_lever * spin
-            + action.offset
+        action.speed(self.velocity, self.angular_velocity, spin)
     }
 
     /// An impulse; the change of the spin is returned.
@@ -168,7 +178,8 @@ impl Dynamics {
     pub(super) fn set_actions(&mut self, state: &State, phase: &Phase) {
         let motors = &self.motors;
         let held = motors.iter().filter(|motor| motor.share().is_none());
-        self.inertia = self.model.moment_of_inertia + held.count() as f64 * self.drive_inertia();
+        self.inertia =
+            self.model.moment_of_inertia + held.count() as f64 * self.model.drive_inertia();
         let spin_of_set_point = phase.set_point / self.model.drive_radius;
         let body = self.body(state);
         for row in &mut self.rows {
@@ -199,8 +210,8 @@ impl Dynamics {
         let m = &self.model;
         let spin_of_set_point = phase.set_point / m.drive_radius;
         let of_drive = |(motor, spin): (&Motor, &f64)| match motor.share() {
-            Some(share) => share * m.drive_force * phase.elapsed * m.drive_radius,
-            None => self.drive_inertia() * (spin + spin_of_set_point),
+            Some(share) => phase.motor_turn(share, m),
+            None => self.model.drive_inertia() * (spin + spin_of_set_point),
         };
         let of_drives: f64 = self.motors.iter().zip(&phase.spins).map(of_drive).sum();
         m.moment_of_inertia * phase.angular_velocity + of_drives
@@ -225,9 +236,9 @@ impl Dynamics {
         let m = &self.model;
         for (k, motor) in self.motors.iter().enumerate() {
             if let Some(share) = motor.share() {
-                let of_motor = share * m.drive_force * phase.elapsed * m.drive_radius;
+                let of_motor = phase.motor_turn(share, m);
                 state.drives[k].spin =
-                    phase.spins[k] + (self.torques[k] - of_motor) / self.drive_inertia();
+                    phase.spins[k] + (self.torques[k] - of_motor) / self.model.drive_inertia();
             }
         }
     }
@@ -238,7 +249,7 @@ impl Dynamics {
             angular_velocity: state.angular_velocity,
             mass: 1.0 / self.model.mass,
             inertia: 1.0 / self.inertia,
-            drive: 1.0 / self.drive_inertia(),
+            drive: 1.0 / self.model.drive_inertia(),
         }
     }
 
