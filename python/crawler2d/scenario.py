@@ -69,8 +69,7 @@ class Solver(Parameters):
     substeps : int
         Substeps of a step; one in which a part strikes the ground is cut there.
     iterations : int
-        Largest number of sweeps over the constraints of a substep, where solving them all at once
-        finds no answer.
+        Largest number of rounds in search of the forces that all contacts agree on; one as a rule.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float

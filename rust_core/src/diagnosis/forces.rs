@@ -4,8 +4,9 @@ use super::linear_program::Rows;
 
 /// Multiple of the weight beyond which a force counts as without limit.
 pub(super) const WITHOUT_LIMIT: f64 = 1e3;
-/// Share of the weight by which a balance may miss besides: rounding, far below what a push feels.
-const SLACK: f64 = 1e-8;
+/// Shares of the weight by which a balance may miss besides: rounding, far below what a push feels. The
+/// next is tried where the solver finds nothing within the first.
+const SLACKS: [f64; 3] = [1e-8, 1e-7, 1e-6];
 
 /// Columns of a linear program: what a unit of each force does, its bounds, whose it is.
 #[derive(Clone, Default)]
@@ -95,10 +96,11 @@ impl Forces {
         push[0] = direction;
         pushed.push(Source::Outside, push, (0.0, WITHOUT_LIMIT));
         let missed = pushed.imbalance().filter(|missed| *missed <= tolerance)?;
-        let rows = pushed.rows((0.0, missed + SLACK));
         let mut cost = pushed.cost(0.0);
         cost[n] = -1.0;
-        let found = rows.minimise(&cost)?;
+        let found = SLACKS
+            .iter()
+            .find_map(|slack| pushed.rows((0.0, missed + slack)).minimise(&cost))?;
         let mut bearing: Vec<usize> = (0..n)
             .filter(|j| found[*j] > BEARS)
             .filter_map(|j| match self.sources[j] {

@@ -47,22 +47,55 @@ impl Grip {
     }
 }
 
+/// An impulse that falls with the speed along its direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Damper {
+    /// [N s] At rest.
+    impulse: f64,
+    /// [kg]
+    pub stiffness: f64,
+}
+
+impl Damper {
+    /// One that no speed changes.
+    pub(super) fn constant(impulse: f64) -> Self {
+        Self {
+            impulse,
+            stiffness: 0.0,
+        }
+    }
+
+    /// [N s] Its impulse at a speed.
+    pub(super) fn at(self, speed: f64) -> f64 {
+        self.impulse - self.stiffness * speed
+    }
+
+    /// [m/s] The speed at which it has an impulse.
+    pub(super) fn speed_for(self, impulse: f64) -> f64 {
+        (self.impulse - impulse) / self.stiffness
+    }
+}
+
 /// The linear system, and what the drives with a spin of their own add to it.
 pub(super) struct System {
     rows: [[f64; 4]; 3],
-    spins: Vec<Spin>,
+    pub(super) spins: Vec<Spin>,
 }
 
 /// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the velocity's
 /// equations have `rows x spin`.
 #[derive(Clone, Copy, Default)]
-struct Spin {
+pub(super) struct Spin {
     inertia: f64,
     moment: f64,
     columns: [f64; 3],
     rows: [f64; 3],
     /// Whether a constraint acts on it.
     acts: bool,
+    /// [rad/s] As it was solved.
+    pub value: f64,
+    /// [rad/s] What a step of the descent changes it by.
+    pub change: f64,
 }
 
 impl System {
@@ -74,16 +107,16 @@ impl System {
         }
     }
 
-    /// Adds a constraint whose impulse along `force` is `impulse - stiffness x speed` along `action`.
-    fn add(
+    /// Adds a constraint whose impulse along `force` is that of a damper along `action`.
+    pub(super) fn add(
         &mut self,
         force: &Action,
         action: &Action,
         spin: Option<usize>,
-        (impulse, stiffness): (f64, f64),
+        damper: Damper,
     ) {
         let (f, d) = (force.body(), action.body());
-        let impulse = impulse - stiffness * action.offset;
+        let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
         for (row, f) in self.rows.iter_mut().zip(f) {
             for (entry, d) in row.iter_mut().zip(d) {
                 *entry += stiffness * f * d;
@@ -104,7 +137,7 @@ impl System {
     }
 
     /// Velocity and angular velocity; none if the constraints contradict each other.
-    fn solve(&mut self) -> Option<(Vector, f64)> {
+    pub(super) fn solve(&mut self) -> Option<(Vector, f64)> {
         for spin in self.spins.iter().filter(|spin| spin.acts) {
             for i in 0..3 {
                 let share = spin.rows[i] / spin.inertia;
@@ -114,7 +147,12 @@ impl System {
                 self.rows[i][3] -= share * spin.moment;
             }
         }
-        let [x, y, turn] = eliminate(self.rows)?;
+        let body = eliminate(self.rows)?;
+        for spin in &mut self.spins {
+            let of_body: f64 = (0..3).map(|i| spin.columns[i] * body[i]).sum();
+            spin.value = (spin.moment - of_body) / spin.inertia;
+        }
+        let [x, y, turn] = body;
         Some((Vector::new(x, y), turn))
     }
 }
@@ -155,15 +193,12 @@ impl Dynamics {
                 return false;
             };
             (state.velocity, state.angular_velocity) = (velocity, turn);
-            for (k, spin) in self.system.spins.iter().enumerate() {
-                let [x, y, z] = spin.columns;
-                let of_body = x * velocity.x + y * velocity.y + z * turn;
-                state.drives[k].spin = (spin.moment - of_body) / spin.inertia;
+            for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
+                drive.spin = spin.value;
             }
             let (mut fits, mut change) = (true, 0.0_f64);
             for row in self.rows.iter_mut().filter(|row| row.bears) {
-                let spin = row.drive.map_or(0.0, |k| state.drives[k].spin);
-                let (fitting, moved) = row.follow_velocities(state, spin);
+                let (fitting, moved) = row.follow_velocities(state);
                 change = change.max(moved);
                 let grip = row.grip.towards(fitting);
                 fits &= grip == row.grip;
@@ -190,15 +225,15 @@ impl Dynamics {
     }
 
     /// Makes the impulses the ones that constraints are damped about.
-    fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         self.rows.iter_mut().for_each(Row::settle);
         if let Some(push) = &mut self.push {
             push.center = push.impulse;
         }
     }
 
-    /// The system of the constraints as they are guessed.
-    fn assemble(&mut self, phase: &Phase) {
+    /// The system without constraints.
+    pub(super) fn assemble_bodies(&mut self, phase: &Phase) {
         let m = &self.model;
         let (moment, drive_inertia) = (self.free_moment(phase), self.model.drive_inertia());
         let system = &mut self.system;
@@ -216,9 +251,15 @@ impl Dynamics {
                 ..Spin::default()
             };
         }
+    }
+
+    /// The system of the constraints as they are guessed.
+    fn assemble(&mut self, phase: &Phase) {
+        self.assemble_bodies(phase);
+        let system = &mut self.system;
         for row in self.rows.iter().filter(|row| row.bears) {
             let [normal, tangent] = &row.actions;
-            let (n, t) = row.dampers();
+            let [n, t] = row.dampers();
             match row.grip {
                 Grip::Open => {}
                 Grip::Sticks => {
@@ -235,8 +276,14 @@ impl Dynamics {
                 }
             }
         }
+        self.add_push();
+    }
+
+    /// Adds the push of a track that is modelled by a force alone to the system.
+    pub(super) fn add_push(&mut self) {
         if let Some(push) = &self.push {
-            system.add(&push.action, &push.action, Some(0), push.damper());
+            let along = &push.action;
+            self.system.add(along, along, Some(0), push.damper());
         }
     }
 }
@@ -266,29 +313,42 @@ impl Row {
         };
     }
 
-    /// Impulse at rest and stiffness, along normal and tangent.
-    fn dampers(&self) -> ((f64, f64), (f64, f64)) {
+    /// Those of normal and tangent while nothing limits them.
+    pub(super) fn dampers(&self) -> [Damper; 2] {
         let (normal, friction) = self.center;
         let damping = DAMPING * self.admittance.normal;
         let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
-        let along = 1.0 / (DAMPING * self.admittance.tangent);
-        (
-            (stiffness * (damping * normal - self.bias), stiffness),
-            (friction, along),
-        )
+        [
+            Damper {
+                impulse: stiffness * (damping * normal - self.bias),
+                stiffness,
+            },
+            Damper {
+                impulse: friction,
+                stiffness: 1.0 / (DAMPING * self.admittance.tangent),
+            },
+        ]
+    }
+
+    /// [m/s] Along normal and tangent.
+    pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
+        let spin = self.drive.map_or(0.0, |k| state.drives[k].spin);
+        let speed = |action: &Action| action.speed(state.velocity, state.angular_velocity, spin);
+        let [n, t] = &self.actions;
+        [speed(n), speed(t)]
     }
 
     /// Takes the impulses that belong to the velocities: the grip that fits them, and how far its
     /// velocities are from what they should be [m/s].
-    fn follow_velocities(&mut self, state: &State, spin: f64) -> (Grip, f64) {
-        let [n, t] = &self.actions;
-        let ((at_rest, stiffness), (stuck, along)) = self.dampers();
-        let normal = at_rest - stiffness * n.speed(state.velocity, state.angular_velocity, spin);
-        let friction = stuck - along * t.speed(state.velocity, state.angular_velocity, spin);
+    fn follow_velocities(&mut self, state: &State) -> (Grip, f64) {
+        let [approach, slip] = self.speeds(state);
+        let [n, t] = self.dampers();
+        let (normal, friction) = (n.at(approach), t.at(slip));
         let limit = self.friction * normal;
         let (grip, friction) = if normal <= 0.0 {
             (Grip::Open, 0.0)
-        } else if friction > limit {
+        } else if friction > limit || limit == 0.0 {
+            // Which way it slides makes no difference without friction.
             (Grip::Forwards, limit)
         } else if friction < -limit {
             (Grip::Backwards, -limit)
@@ -309,17 +369,24 @@ impl Row {
 }
 
 impl Push {
-    /// Impulse at rest and stiffness.
-    fn damper(&self) -> (f64, f64) {
-        (self.center, 1.0 / (DAMPING * self.admittance))
+    pub(super) fn damper(&self) -> Damper {
+        Damper {
+            impulse: self.center,
+            stiffness: 1.0 / (DAMPING * self.admittance),
+        }
+    }
+
+    /// [m/s] Of the rail that its axis runs on.
+    pub(super) fn slip(&self, state: &State) -> f64 {
+        let spin = state.drives[0].spin;
+        self.action
+            .speed(state.velocity, state.angular_velocity, spin)
     }
 
     /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
-    fn follow_velocities(&mut self, state: &State) -> f64 {
-        let slip = self
-            .action
-            .speed(state.velocity, state.angular_velocity, state.drives[0].spin);
-        self.impulse = self.center - slip / (DAMPING * self.admittance);
+    pub(super) fn follow_velocities(&mut self, state: &State) -> f64 {
+        let slip = self.slip(state);
+        self.impulse = self.damper().at(slip);
         slip.abs()
     }
 }

@@ -6,8 +6,8 @@
 //! the soft step of Erin Catto's 2D solvers (2024). A surface speed is found together with the contact
 //! forces, so that the force limit of its motor acts on the net traction inside the step.
 
+mod descent;
 mod direct;
-mod law;
 mod motors;
 mod row;
 mod solve;
@@ -24,12 +24,11 @@ use crate::robot::Model;
 use crate::scenario::Solver;
 pub(crate) use direct::Grip;
 use direct::System;
-use law::Softness;
 use motors::Motor;
 pub(crate) use motors::push_axis;
 use row::Row;
 pub(crate) use row::{Direction, Levers};
-use solve::{Phase, Push};
+use solve::{Phase, Push, Softness};
 pub(crate) use state::{DriveState, State};
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
@@ -62,6 +61,8 @@ pub(crate) struct Dynamics {
     /// [kg m^2] Of the chassis with the drives that turn with it.
     inertia: f64,
     system: System,
+    /// Where the potential of a descent has kinks along a step.
+    kinks: Vec<f64>,
     phase: Phase,
     loaded: Vec<LoadedContact>,
     /// [N] Push of the surroundings at the centre of mass.
@@ -91,6 +92,7 @@ impl Dynamics {
             torques: vec![0.0; model.drives],
             inertia: model.moment_of_inertia,
             system: System::new(model.drives),
+            kinks: Vec::new(),
             phase: Phase::default(),
             push: model.pushes_chassis.then(Push::default),
             model,

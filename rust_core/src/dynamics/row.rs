@@ -2,9 +2,8 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
-use super::direct::Grip;
-use super::law::Admittance;
-use super::solve::Action;
+use super::direct::{Damper, Grip};
+use super::solve::{Action, Admittance};
 use super::state::State;
 use crate::contact::{Contact, LoadedContact};
 use crate::plane::{cross, right_of};
@@ -32,6 +31,10 @@ pub(super) struct Row {
     pub friction_impulse: f64,
     /// What it does.
     pub grip: Grip,
+    /// [N s] Largest friction in a descent, ...
+    pub limit: f64,
+    /// ... and what normal and tangent are below it.
+    pub frozen: [Damper; 2],
     /// [N s] What a direct solve starts from.
     pub center: (f64, f64),
     /// [N] As they were last, to start from.
@@ -161,6 +164,8 @@ impl Row {
             normal_impulse: 0.0,
             friction_impulse: 0.0,
             grip: last.map_or(Grip::Open, |l| l.grip),
+            limit: 0.0,
+            frozen: [Damper::default(); 2],
             center: (0.0, 0.0),
             normal_guess: last.map_or(0.0, |l| l.normal_guess),
             friction_guess: last.map_or(0.0, |l| l.friction_guess),

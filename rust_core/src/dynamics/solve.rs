@@ -1,19 +1,16 @@
-//! The velocities at which all constraints agree, by projected Gauss-Seidel.
+//! The velocities at which all constraints agree: which contacts bear, grip and slide, and which motors hold.
 
 use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
-use super::law::{Admittance, Softness, coulomb};
 use super::motors::{Motor, push_axis};
 use super::row::{Direction, Row};
 use super::state::State;
 use crate::robot::Model;
 
-/// [m/s] The sweeps end when no constraint changes a velocity by more than this: over a step of 1 ms
+/// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
 pub(super) const AGREEMENT: f64 = 1e-7;
-/// Sweeps over the contacts between two tries to solve them all at once.
-const SWEEPS: u32 = 3;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -92,10 +89,12 @@ impl Action {
 
     /// [m/s] Speed along it.
     pub(super) fn speed(&self, velocity: Vector, angular_velocity: f64, spin: f64) -> f64 {
-        self.unit.dot(velocity)
-            + self.lever * angular_velocity
-            + self.spin_lever * spin
-            + self.offset
+        self.change(velocity, angular_velocity, spin) + self.offset
+    }
+
+    /// [m/s] What a change of the velocities changes of its speed.
+    pub(super) fn change(&self, velocity: Vector, angular_velocity: f64, spin: f64) -> f64 {
+        self.unit.dot(velocity) + self.lever * angular_velocity + self.spin_lever * spin
     }
 }
 
@@ -113,32 +112,30 @@ pub(super) struct Push {
     pub admittance: f64,
 }
 
-/// Velocities and inverse inertias during the sweeps.
-struct Body {
-    velocity: Vector,
-    angular_velocity: f64,
-    mass: f64,
-    inertia: f64,
-    drive: f64,
+/// [1/kg] Velocity along normal and tangent for a unit impulse along them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Admittance {
+    pub normal: f64,
+    pub tangent: f64,
 }
 
-impl Body {
-    fn speed(&self, action: &Action, spin: f64) -> f64 {
-        action.speed(self.velocity, self.angular_velocity, spin)
-    }
+/// Coefficients of a damped spring integrated implicitly.
+#[derive(Clone, Copy)]
+pub(super) struct Softness {
+    /// [1/s] Share of a penetration that is pushed out in a second.
+    pub push_rate: f64,
+    /// Compliance in units of the contact's own admittance.
+    pub compliance: f64,
+}
 
-    /// An impulse; the change of the spin is returned.
-    fn push(&mut self, action: &Action, impulse: f64) -> f64 {
-        self.velocity += action.unit * (impulse * self.mass);
-        self.angular_velocity += action.lever * impulse * self.inertia;
-        action.spin_lever * impulse * self.drive
-    }
-
-    /// Velocity along one direction for an impulse along another.
-    fn admittance(&self, a: &Action, b: &Action) -> f64 {
-        a.unit.dot(b.unit) * self.mass
-            + a.lever * b.lever * self.inertia
-            + a.spin_lever * b.spin_lever * self.drive
+impl Softness {
+    pub(super) fn new(frequency: f64, damping_ratio: f64, h: f64) -> Self {
+        let omega = std::f64::consts::TAU * frequency;
+        let a1 = 2.0 * damping_ratio + h * omega;
+        Self {
+            push_rate: omega / a1,
+            compliance: 1.0 / (h * omega * a1),
+        }
     }
 }
 
@@ -146,32 +143,14 @@ impl Dynamics {
     /// Finds the impulses that all constraints agree on.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
         self.set_actions(state, phase);
-        let rounds = self.solver.iterations.div_ceil(SWEEPS);
-        let agree = |_| self.solve_at_once(state, phase) || self.solve_one_by_one(state, phase);
+        let rounds = self.solver.iterations;
+        // What they agree on with limits of friction is a better guess of what grips and what slides.
+        let agree = |_| self.solve_at_once(state, phase) || self.descend(state, phase);
         if !(0..rounds).any(agree) && self.limit_motors(state, phase) {
             self.set_actions(state, phase);
         }
         // From the impulses, so that momentum is kept to the last digit.
         self.balance(state, phase);
-    }
-
-    /// Sweeps over the contacts, each solved by itself; whether they agree.
-    ///
-    /// However slowly, they get nearer, and what grips and what slides is soon right.
-    fn solve_one_by_one(&mut self, state: &mut State, phase: &Phase) -> bool {
-        self.balance(state, phase);
-        for _ in 0..SWEEPS {
-            let change = self.sweep(state);
-            self.turn_with_chassis(state, phase);
-            if self.switch_motors(state, phase) {
-                self.set_actions(state, phase);
-                self.balance(state, phase);
-            } else if change < AGREEMENT {
-                return true;
-            }
-        }
-        self.rows.iter_mut().for_each(Row::guess_grip);
-        false
     }
 
     /// How constraints act while the motors do what they do.
@@ -181,26 +160,26 @@ impl Dynamics {
         self.inertia =
             self.model.moment_of_inertia + held.count() as f64 * self.model.drive_inertia();
         let spin_of_set_point = phase.set_point / self.model.drive_radius;
-        let body = self.body(state);
-        for row in &mut self.rows {
+        for i in 0..self.rows.len() {
+            let row = &self.rows[i];
             let held = row.drive.is_some_and(|k| motors[k].share().is_none());
             let n = Action::new(&row.normal, held, spin_of_set_point);
             let t = Action::new(&row.tangent, held, spin_of_set_point);
-            row.admittance = Admittance {
-                normal: body.admittance(&n, &n),
-                tangent: body.admittance(&t, &t),
-                cross: body.admittance(&n, &t),
+            let admittance = Admittance {
+                normal: self.admittance(&n),
+                tangent: self.admittance(&t),
             };
-            row.actions = [n, t];
+            let row = &mut self.rows[i];
+            (row.actions, row.admittance) = ([n, t], admittance);
         }
-        if let Some(push) = &mut self.push {
+        if self.push.is_some() {
             let held = motors[0].share().is_none();
-            push.action = Action::new(
-                &push_axis(&self.model, state.angle),
-                held,
-                spin_of_set_point,
-            );
-            push.admittance = body.admittance(&push.action, &push.action);
+            let axis = push_axis(&self.model, state.angle);
+            let action = Action::new(&axis, held, spin_of_set_point);
+            let admittance = self.admittance(&action);
+            if let Some(push) = &mut self.push {
+                (push.action, push.admittance) = (action, admittance);
+            }
         }
     }
 
@@ -218,7 +197,7 @@ impl Dynamics {
     }
 
     /// Velocities from all impulses so far, with the motors as they are.
-    fn balance(&mut self, state: &mut State, phase: &Phase) {
+    pub(super) fn balance(&mut self, state: &mut State, phase: &Phase) {
         let m = &self.model;
         let (mut impulse, mut moment) = (Vector::ZERO, self.free_moment(phase));
         for row in &self.rows {
@@ -243,39 +222,11 @@ impl Dynamics {
         }
     }
 
-    fn body(&self, state: &State) -> Body {
-        Body {
-            velocity: state.velocity,
-            angular_velocity: state.angular_velocity,
-            mass: 1.0 / self.model.mass,
-            inertia: 1.0 / self.inertia,
-            drive: 1.0 / self.model.drive_inertia(),
-        }
-    }
-
-    /// One sweep over the constraints; the largest change of a velocity [m/s].
-    fn sweep(&mut self, state: &mut State) -> f64 {
-        let mut body = self.body(state);
-        let mut change: f64 = 0.0;
-        let mut no_drive = 0.0;
-        for row in self.rows.iter_mut().filter(|row| row.bears) {
-            let spin = match row.drive {
-                Some(k) => &mut state.drives[k].spin,
-                None => &mut no_drive,
-            };
-            change = change.max(row.solve(&mut body, spin));
-        }
-        if let Some(push) = &mut self.push {
-            let spin = &mut state.drives[0].spin;
-            let slip = body.speed(&push.action, *spin);
-            let impulse = -slip / push.admittance;
-            push.impulse += impulse;
-            *spin += body.push(&push.action, impulse);
-            change = change.max(slip.abs());
-        }
-        state.velocity = body.velocity;
-        state.angular_velocity = body.angular_velocity;
-        change
+    /// [1/kg] Velocity along an action for a unit impulse along it.
+    fn admittance(&self, action: &Action) -> f64 {
+        action.unit.length_squared() / self.model.mass
+            + action.lever * action.lever / self.inertia
+            + action.spin_lever * action.spin_lever / self.model.drive_inertia()
     }
 
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
@@ -360,31 +311,6 @@ impl Row {
             // The load of half the time stands for the load of all of it.
             self.compliance = 2.0 * soft.compliance;
         }
-    }
-
-    /// Solves the contact by itself, exactly: open, sticking or sliding.
-    fn solve(&mut self, body: &mut Body, spin: &mut f64) -> f64 {
-        let [n, t] = &self.actions;
-        let a = self.admittance;
-        let approach = body.speed(n, *spin) + self.bias;
-        if approach >= 0.0 && self.normal_impulse == 0.0 {
-            return 0.0;
-        }
-        // Velocities that the contact would have without its impulses.
-        let free_approach =
-            approach - a.normal * self.normal_impulse - a.cross * self.friction_impulse;
-        let free_slip = body.speed(t, *spin)
-            - a.cross * self.normal_impulse
-            - a.tangent * self.friction_impulse;
-        let compliance = self.compliance * a.normal;
-        let (normal, friction) = coulomb(free_approach, free_slip, a, compliance, self.friction);
-        let more = (
-            normal - self.normal_impulse,
-            friction - self.friction_impulse,
-        );
-        *spin += body.push(n, more.0) + body.push(t, more.1);
-        (self.normal_impulse, self.friction_impulse) = (normal, friction);
-        (more.0.abs() * a.normal).max(more.1.abs() * a.tangent)
     }
 
     /// [N m s] What its impulses turn the drive with.

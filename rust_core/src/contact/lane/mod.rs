@@ -4,6 +4,7 @@
 //! disc of a corner, and rounded edges are true arcs.
 
 mod index;
+mod roof;
 #[cfg(test)]
 mod tests;
 
@@ -12,13 +13,16 @@ use rapier2d_f64::math::Vector;
 use super::Contact;
 use crate::plane::{cross, left_of};
 use crate::terrain::Profile;
-pub(super) use index::Region;
-use index::{Index, Stretch};
+use index::Index;
+pub(super) use index::{Region, Stretch};
+use roof::Chord;
 
 /// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// [m] A point this close to an arc is on it.
 const SHARED: f64 = 1e-10;
+/// Corners at either end of finely cut ground among which one that bears is looked for.
+const NEAR_END: usize = 16;
 /// [m] A contact this close to the end of a face touches the edge there.
 const AT_CORNER: f64 = 1e-7;
 
@@ -176,6 +180,11 @@ impl Lane {
         &self.corners[corner]
     }
 
+    /// That part of a region's corners which lies between two x, and those on either side.
+    pub(super) fn split(&self, region: &Region, [low, high]: [f64; 2]) -> [Region; 3] {
+        self.index.split(region, low, high)
+    }
+
     /// The ground between two x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         self.index.region(low, high)
@@ -201,7 +210,16 @@ impl Lane {
         mut found: impl FnMut(Touch),
     ) {
         let reach = radius + prediction;
-        let region = self.region(center.x - reach, center.x + reach);
+        let mut region = self.region(center.x - reach, center.x + reach);
+        if region.is_long() {
+            // Where all of the ground lies below the centre, only a part of it is near.
+            let room = (center.y - self.top(&region)).max(0.0);
+            if room > reach {
+                return;
+            }
+            let half = (reach * reach - room * room).sqrt();
+            region = self.region(center.x - half, center.x + half);
+        }
         self.index.visit(
             &region,
             |node: &Stretch| node.may_face(center, reach),
@@ -309,25 +327,63 @@ impl Lane {
         // An arc's centre lies off its corner by its radius at most.
         let margin = prediction + self.index.largest_radius();
         let region = self.region(low - margin, high + margin);
-        self.index.visit(
+        self.visit_corners_below_run(
             &region,
-            |node: &Stretch| node.may_have(-outward),
-            |i, _| {
+            |stretch| stretch.may_have(-outward),
+            |i| {
                 let corner = &self.corners[i];
-                if !corner.stands_out {
-                    return;
-                }
                 let spoke = corner.center - begin;
                 let gap = spoke.dot(outward) - corner.radius;
-                if gap < prediction
+                let bears = corner.stands_out
+                    && gap < prediction
                     && gap > -depth
                     && (0.0..=length).contains(&spoke.dot(along))
-                    && corner.faces(-outward)
-                {
-                    found(corner.touch(i, -outward, gap));
-                }
+                    && corner.faces(-outward);
+                let touch = bears.then(|| corner.touch(i, -outward, gap));
+                touch.inspect(|touch| found(*touch))
             },
         );
+    }
+
+    /// Calls `meet` with the corners of a region that may matter.
+    pub(super) fn visit_corners(
+        &self,
+        region: &Region,
+        matters: impl Fn(&Stretch) -> bool,
+        mut meet: impl FnMut(usize),
+    ) {
+        let matters = |stretch: &Stretch| stretch.stands_out && matters(stretch);
+        self.index.visit(region, matters, |i, _| meet(i));
+    }
+
+    /// The same below a straight run of a part: `meet` returns how the corner bears on it, if it does. Of
+    /// finely cut ground only what rises above the chord of two such corners near its ends matters.
+    pub(super) fn visit_corners_below_run(
+        &self,
+        region: &Region,
+        matters: impl Fn(&Stretch) -> bool,
+        mut meet: impl FnMut(usize) -> Option<Touch>,
+    ) {
+        let mut corners = region.corners();
+        let mut chord = None;
+        if region.is_long() && self.index.any(region, |s| s.stands_out && matters(s)) {
+            let first = corners.by_ref().take(NEAR_END).find_map(&mut meet);
+            let last = corners.by_ref().rev().take(NEAR_END).find_map(&mut meet);
+            let ends = first.zip(last);
+            chord = ends.and_then(|(first, last)| Chord::new(&first, &last));
+        }
+        let hides = |hidden: &dyn Fn(&Chord) -> bool| chord.as_ref().is_some_and(hidden);
+        if !corners.is_empty() {
+            self.visit_corners(
+                &Region::between(*corners.start(), *corners.end()),
+                |stretch| matters(stretch) && !hides(&|chord| chord.hides_all(&stretch.roof)),
+                |i| {
+                    if !hides(&|chord| chord.hides_corner(&self.corners[i])) {
+                        meet(i);
+                    }
+                },
+            );
+        }
     }
 }
 

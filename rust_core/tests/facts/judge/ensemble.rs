@@ -1,6 +1,6 @@
 //! Many runs of one scene, by the judge and by the core, and how far apart they are.
 
-use crawler2d_core::{Ground, Scenario, Simulation};
+use crawler2d_core::{Ground, Reading, Scenario, Simulation};
 
 use super::motion::{Judge, Settings};
 use super::scenes::Scene;
@@ -41,20 +41,51 @@ fn by_judge(scenario: &Scenario, settings: Settings) -> Verdict {
 }
 
 fn by_core(scenario: &Scenario) -> Verdict {
-    let goal = goal(scenario);
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
-    let x = loop {
-        let x = simulation.reading().position.x;
-        if x > goal || simulation.is_over() || simulation.steps() >= scenario.step_count() {
-            break x;
-        }
-        simulation.step().expect("the state stays finite");
-    };
+    let end = end_by_core(scenario);
     Verdict {
-        passed: x > goal,
-        x,
+        passed: end.position.x > goal(scenario),
+        x: end.position.x,
         deepest: 0.0,
     }
+}
+
+/// Where the core's run ends: past the goal, at the end of its time or in a stop.
+fn end_by_core(scenario: &Scenario) -> Reading {
+    let goal = goal(scenario);
+    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    loop {
+        let reading = simulation.reading();
+        let is_last = simulation.is_over() || simulation.steps() >= scenario.step_count();
+        if reading.position.x > goal || is_last {
+            return reading;
+        }
+        simulation.step().expect("the state stays finite");
+    }
+}
+
+/// Runs that the core ends at a standstill, and how many of these stand still in the judge, too, when it
+/// is put there at rest.
+pub(crate) fn standstills(scene: &Scene, runs: u32) -> (u32, u32) {
+    // About as stiff as the core's contacts, so that the overlap that it comes to rest with bears the
+    // same load: springs that hold more push the robot off.
+    let d = Settings::default();
+    let settings = Settings {
+        time_step: d.time_step / 4.0,
+        stiffness: d.stiffness * 16.0,
+    };
+    let (mut found, mut kept) = (0, 0);
+    for i in 0..runs {
+        let scenario = scene.run(i);
+        let end = end_by_core(&scenario);
+        if end.velocity.length() > 1e-4 {
+            continue;
+        }
+        let mut judge = Judge::at_rest(&scenario, settings, &end);
+        judge.advance(1.0);
+        found += 1;
+        kept += u32::from((judge.position() - end.position).length() < 1e-3);
+    }
+    (found, kept)
 }
 
 /// One scene, judged, and run by something else.

@@ -1,6 +1,6 @@
 //! The motion of one rigid body with drives, in steps of some microseconds.
 
-use crawler2d_core::{Ground, Scenario, Simulation, Vector};
+use crawler2d_core::{Ground, Reading, Scenario, Simulation, Vector};
 
 use super::distance::{Finder, Touch};
 use super::ground::Lane;
@@ -89,6 +89,18 @@ impl Judge {
             robot,
             ground,
         };
+        judge.look_round();
+        judge
+    }
+
+    /// At rest where a reading has it, with the motors on.
+    pub(crate) fn at_rest(scenario: &Scenario, settings: Settings, there: &Reading) -> Self {
+        let mut judge = Self::new(scenario, settings);
+        judge.angle = there.chassis_angle;
+        judge.center =
+            there.position + Turn::by(there.chassis_angle).of(judge.robot.center_of_mass);
+        judge.ways.fill(there.track_position);
+        judge.set_point = judge.command;
         judge.look_round();
         judge
     }

@@ -227,12 +227,13 @@ fn a_part_leaves_the_ground_along_its_contacts() {
         ));
         scene.turn(draw.between(-depth, depth) / scene.outline.reach);
         let before = scene.tell();
+        let least = 1e-8 + scene.untold();
         let mut is_free = true;
         // Once more where the face beside is deeper than the one that it was in.
         for _ in 0..2 {
             let contacts = scene.contacts(PREDICTION);
             // None where it is wedged, and on a long way there is more in it.
-            let way = way_out(&contacts, 1e-8).filter(|w| w.length() < PREDICTION);
+            let way = way_out(&contacts, least).filter(|w| w.length() < PREDICTION);
             is_free &= way.is_some();
             scene.push(way.unwrap_or_default());
         }

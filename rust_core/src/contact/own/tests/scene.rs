@@ -84,6 +84,16 @@ impl Scene {
     }
 
     /// Brings the part along the way of nearest approach to this gap [m] at most; negative in
+    /// [m] How far ground may rise above the chord of two contacts and be none: rounding, or a micrometre
+    /// where it is finely cut.
+    pub(super) fn untold(&self) -> f64 {
+        if self.ground.curves.len() > 16 {
+            1e-6
+        } else {
+            2e-9
+        }
+    }
+
     /// penetration.
     pub(super) fn approach(&mut self, gap: f64) -> Approach {
         let nearest = self.judge(1.0).nearest(f64::INFINITY).unwrap();

@@ -9,6 +9,7 @@ use super::draw::Draw;
 use super::judge::Approach;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
+use crate::plane::left_of;
 use crate::robot::{BodyKind, Part, Shape};
 use crate::terrain::Profile;
 
@@ -17,19 +18,20 @@ const SAME: f64 = 1e-9;
 
 /// Whether the place is a contact, or between two others of the same direction and no nearer than
 /// these.
-fn is_told(approach: &Approach, contacts: &[Contact]) -> bool {
+fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
-    // Where the gap is no more than rounding, so is its direction.
-    let alike = |c: &&Contact| distance < 1e-6 || (c.normal - approach.normal()).length() < 1e-6;
+    // Where the gap is no more than rounding, so is its direction; contacts count as parallel up to
+    // 1.4e-6 rad.
+    let alike = |c: &&Contact| distance < 1e-6 || (c.normal - approach.normal()).length() < 3e-6;
     let alike: Vec<&Contact> = contacts.iter().filter(alike).collect();
     let is_it =
         |c: &Contact| (c.distance - distance).abs() < SAME && (c.point - middle).length() < 1e-6;
     let makes_up = |a: &Contact, b: &Contact| {
-        let share =
-            (middle - a.point).dot(b.point - a.point) / (b.point - a.point).length_squared();
+        let along = left_of(approach.normal());
+        let share = (middle - a.point).dot(along) / (b.point - a.point).dot(along);
         let chord = a.distance + (b.distance - a.distance) * share;
-        (0.0..=1.0).contains(&share) && distance > chord - 2.0 * SAME
+        (0.0..=1.0).contains(&share) && distance > chord - scene.untold()
     };
     alike.iter().any(|c| is_it(c))
         || alike.iter().any(|a| {
@@ -73,8 +75,8 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         let approaches = judge.approaches(prediction - SAME);
         for approach in &approaches {
             assert!(
-                is_told(approach, &contacts),
-                "{approach:?} {prediction} {}",
+                is_told(approach, &contacts, &scene),
+                "{approach:?} {prediction} {contacts:?} {}",
                 scene.tell()
             );
         }

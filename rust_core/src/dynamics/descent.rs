@@ -1,0 +1,226 @@
+//! What all constraints agree on while the limits of friction stay as they are: it always exists.
+//!
+//! With frozen limits the impulses are the slope of a convex potential of the velocities. Newton's method,
+//! each step no longer than the potential falls along it, ends at the one minimum from wherever it
+//! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
+//! energy, so that a solve which never agrees on the limits does no harm either.
+
+use rapier2d_f64::math::Vector;
+
+use super::Dynamics;
+use super::direct::Damper;
+use super::row::Row;
+use super::solve::{AGREEMENT, Phase};
+use super::state::State;
+
+/// Newton steps at most; a dozen contacts take three to six.
+const STEPS: u32 = 30;
+/// [m/s] A change that is smaller is rounding: at a kink the potential falls no further.
+const ROUNDING: f64 = 1e-14;
+
+/// A change of velocity and angular velocity; the system knows that of the spins.
+struct Change {
+    velocity: Vector,
+    turn: f64,
+}
+
+impl Dynamics {
+    /// Goes down to the minimum for the limits that the normal impulses give; whether it gives the same
+    /// limits.
+    pub(super) fn descend(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.settle();
+        for row in &mut self.rows {
+            row.limit = row.friction * row.normal_impulse;
+        }
+        self.choose_dampers(state);
+        for _ in 0..STEPS {
+            self.assemble_frozen(phase);
+            let Some((velocity, turn)) = self.system.solve() else {
+                return false;
+            };
+            let change = Change {
+                velocity: velocity - state.velocity,
+                turn: turn - state.angular_velocity,
+            };
+            for (k, spin) in self.system.spins.iter_mut().enumerate() {
+                let is_free = self.motors[k].share().is_some();
+                spin.change = if is_free {
+                    spin.value - state.drives[k].spin
+                } else {
+                    0.0
+                };
+            }
+            let share = self.share_that_falls(state, &change, phase);
+            state.velocity += change.velocity * share;
+            state.angular_velocity += change.turn * share;
+            for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
+                drive.spin += spin.change * share;
+            }
+            let same = self.choose_dampers(state);
+            if (same && share == 1.0) || share * self.largest(&change) < ROUNDING {
+                break;
+            }
+        }
+        let mut off: f64 = 0.0;
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            off = off.max(row.follow_frozen(state));
+            row.guess_grip();
+        }
+        if let Some(push) = &mut self.push {
+            off = off.max(push.follow_velocities(state));
+        }
+        self.turn_with_chassis(state, phase);
+        if self.switch_motors(state, phase) {
+            self.set_actions(state, phase);
+            return false;
+        }
+        off < AGREEMENT
+    }
+
+    /// [m/s] A bound of what a change moves anything by, to the order.
+    fn largest(&self, change: &Change) -> f64 {
+        let spins = self.system.spins.iter();
+        let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
+        of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max)
+    }
+
+    /// Gives each contact the dampers that it is at these velocities; whether they are those that it had.
+    fn choose_dampers(&mut self, state: &State) -> bool {
+        let mut same = true;
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            let frozen = row.frozen_dampers(row.speeds(state));
+            same &= frozen == row.frozen;
+            row.frozen = frozen;
+        }
+        same
+    }
+
+    /// The system of the contacts as they are at these velocities.
+    fn assemble_frozen(&mut self, phase: &Phase) {
+        self.assemble_bodies(phase);
+        for row in self.rows.iter().filter(|row| row.bears) {
+            for (action, damper) in row.actions.iter().zip(row.frozen) {
+                self.system.add(action, action, row.drive, damper);
+            }
+        }
+        self.add_push();
+    }
+
+    /// The share of a change after which the potential falls no more.
+    fn share_that_falls(&mut self, state: &State, change: &Change, phase: &Phase) -> f64 {
+        if self.slope(state, change, phase, 1.0) <= 0.0 {
+            return 1.0;
+        }
+        // The slope rises, and between two kinks in a straight line.
+        let mut kinks = std::mem::take(&mut self.kinks);
+        kinks.clear();
+        for row in self.rows.iter().filter(|row| row.bears) {
+            let changes = self.changes_of(row, change);
+            row.kinks(state, changes, |share| {
+                if 0.0 < share && share < 1.0 {
+                    kinks.push(share);
+                }
+            });
+        }
+        kinks.sort_unstable_by(f64::total_cmp);
+        let falls = |share: &f64| self.slope(state, change, phase, *share) <= 0.0;
+        let next = kinks.partition_point(falls);
+        let low = if next > 0 { kinks[next - 1] } else { 0.0 };
+        let high = kinks.get(next).copied().unwrap_or(1.0);
+        self.kinks = kinks;
+        let [at_low, at_high] = [low, high].map(|share| self.slope(state, change, phase, share));
+        if at_high > at_low {
+            low + (high - low) * (at_low / (at_low - at_high)).clamp(0.0, 1.0)
+        } else {
+            low
+        }
+    }
+
+    /// [m/s] What a change of the velocities changes along a contact's normal and tangent.
+    fn changes_of(&self, row: &Row, change: &Change) -> [f64; 2] {
+        let spin = row.drive.map_or(0.0, |k| self.system.spins[k].change);
+        row.actions
+            .map(|action| action.change(change.velocity, change.turn, spin))
+    }
+
+    /// The slope of the potential along a change, a share of it further on.
+    fn slope(&self, state: &State, change: &Change, phase: &Phase, share: f64) -> f64 {
+        let m = &self.model;
+        let velocity = state.velocity + change.velocity * share - phase.velocity;
+        let moment = self.inertia * (state.angular_velocity + change.turn * share);
+        let mut slope = m.mass * velocity.dot(change.velocity)
+            + (moment - self.free_moment(phase)) * change.turn;
+        let inertia = m.drive_inertia();
+        for (k, spin) in self.system.spins.iter().enumerate() {
+            if let Some(of_motor) = self.motors[k].share() {
+                let free = inertia * phase.spins[k] - phase.motor_turn(of_motor, m);
+                let moment = inertia * (state.drives[k].spin + spin.change * share);
+                slope += (moment - free) * spin.change;
+            }
+        }
+        for row in self.rows.iter().filter(|row| row.bears) {
+            let [of_approach, of_slip] = self.changes_of(row, change);
+            let [approach, slip] = row.speeds(state);
+            let speeds = [approach + of_approach * share, slip + of_slip * share];
+            let [normal, tangent] = row.frozen_dampers(speeds);
+            slope -= normal.at(speeds[0]) * of_approach + tangent.at(speeds[1]) * of_slip;
+        }
+        if let Some(push) = &self.push {
+            let spin = self.system.spins[0].change;
+            let of_push = push.action.change(change.velocity, change.turn, spin);
+            slope -= push.damper().at(push.slip(state) + of_push * share) * of_push;
+        }
+        slope
+    }
+}
+
+impl Row {
+    /// What normal and tangent are at such speeds while the limit of friction is frozen: beyond a limit,
+    /// an impulse that no speed changes.
+    fn frozen_dampers(&self, [approach, slip]: [f64; 2]) -> [Damper; 2] {
+        let [normal, tangent] = self.dampers();
+        let stuck = tangent.at(slip);
+        [
+            if normal.at(approach) > 0.0 {
+                normal
+            } else {
+                Damper::default()
+            },
+            if stuck.abs() <= self.limit {
+                tangent
+            } else if self.limit > 0.0 {
+                Damper::constant(self.limit.copysign(stuck))
+            } else {
+                Damper::default()
+            },
+        ]
+    }
+
+    /// Calls `found` with the shares of a change at which its dampers begin or end.
+    fn kinks(&self, state: &State, changes: [f64; 2], mut found: impl FnMut(f64)) {
+        let [approach, slip] = self.speeds(state);
+        let [normal, tangent] = self.dampers();
+        found((normal.speed_for(0.0) - approach) / changes[0]);
+        for limit in [-self.limit, self.limit] {
+            found((tangent.speed_for(limit) - slip) / changes[1]);
+        }
+    }
+
+    /// Takes the impulses that belong to the velocities, its friction within its new limit; how much
+    /// velocity the change of the limit is worth [m/s].
+    fn follow_frozen(&mut self, state: &State) -> f64 {
+        let [approach, slip] = self.speeds(state);
+        let [normal, tangent] = self.frozen;
+        let friction = tangent.at(slip);
+        self.normal_impulse = normal.at(approach);
+        let limit = self.friction * self.normal_impulse;
+        self.friction_impulse = friction.clamp(-limit, limit);
+        let slides = tangent.stiffness == 0.0;
+        let off = if slides {
+            limit - self.limit
+        } else {
+            friction - self.friction_impulse
+        };
+        off.abs() * self.admittance.tangent
+    }
+}
