@@ -259,7 +259,8 @@ def test_the_post_enters_the_slot_of_the_public_wheel_model() -> None:
     found = posts(runs)
     for (height, belly), run in runs.items():
         own = [post for post in found if (post.height, post.belly) == (height, belly)]
-        deepest = max(own, key=lambda post: post.depth)
+        # Of two slots that it enters as deep, the last.
+        deepest = max(own, key=lambda post: (round(post.depth, 5), post.end))
         first, second = map(int, deepest.bodies.split())
         assert first == second + 1
         # The belly hangs 50 mm above the ground between the wheels.
