@@ -12,6 +12,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.statistics import newcombe
 from crawler2d.track import Track
+from judge import STOPS
 
 RUNS = 400
 
@@ -80,7 +81,7 @@ def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
                     a.metrics["final_y"] - b.metrics["final_y"],
                 )
                 for a, b in zip(base, runs, strict=True)
-                if a.outcome == b.outcome == "stopped"
+                if a.outcome == b.outcome and a.outcome in STOPS
             ]
             print(
                 f"{track} friction {friction} step {height}: rate {cleared / RUNS:.3f}; "
