@@ -57,7 +57,7 @@ impl Dynamics {
                 drive.spin += spin.change * share;
             }
             let same = self.choose_dampers(state);
-            if (same && share == 1.0) || share * self.largest(&change) < ROUNDING {
+            if (same && share >= 1.0) || share * self.largest(&change) < ROUNDING {
                 break;
             }
         }

@@ -137,7 +137,7 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
         low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
     };
     for iterations in [1, 30] {
-        let (mut jams, mut least) = (0, f64::INFINITY);
+        let mut jams = 0;
         for case in 0..2000 {
             let (mut dynamics, mut state) = setup(|s| {
                 s.robot.drivetrain.max_torque = 0.0;
@@ -164,7 +164,6 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
             let before = energy(dynamics.model(), &state);
             advance(&mut dynamics, &mut state, 1, 0.0, &contacts);
             let left = energy(dynamics.model(), &state) / before;
-            least = left.min(least);
             jams += u32::from(left < 1e-6);
             assert!(left < 1.0 + 1e-9, "case {case}: {left} of the energy");
             for l in dynamics.loaded() {
@@ -172,8 +171,7 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                 assert!(l.normal_force >= 0.0 && l.friction_force.abs() <= most * (1.0 + 1e-9));
             }
         }
-        println!("{iterations} rounds: {jams} of 2000 jam, least energy left {least:.1e}");
-        assert!(jams > 200);
+        assert!(jams > 200, "{jams} of 2000 jam");
     }
 }
 

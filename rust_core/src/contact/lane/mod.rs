@@ -3,6 +3,7 @@
 //! A sharp corner is a rounded one of radius 0, so that everything bears either on a face or on the
 //! disc of a corner, and rounded edges are true arcs.
 
+mod corner;
 mod index;
 mod roof;
 #[cfg(test)]
@@ -13,14 +14,14 @@ use rapier2d_f64::math::Vector;
 use super::Contact;
 use crate::plane::{cross, left_of};
 use crate::terrain::Profile;
+pub(super) use corner::Corner;
+use corner::corners_of;
 use index::Index;
 pub(super) use index::{Region, Stretch};
 use roof::Chord;
 
 /// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// [m] A point this close to an arc is on it.
-const SHARED: f64 = 1e-10;
 /// Corners at either end of finely cut ground among which one that bears is looked for.
 const NEAR_END: usize = 16;
 /// [m] A contact this close to the end of a face touches the edge there.
@@ -48,25 +49,6 @@ pub(super) struct Face {
     facet: usize,
     /// Edges at both ends.
     edges: [i32; 2],
-}
-
-/// Where two faces meet.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    /// [m] Centre of its arc.
-    pub center: Vector,
-    /// [m] Radius of its arc.
-    pub radius: f64,
-    /// Normals of the faces before and behind it, from which and to which the arc turns clockwise.
-    pub normals: [Vector; 2],
-    /// Whether it stands out, so that something can bear on it.
-    pub stands_out: bool,
-    /// Edge that it is.
-    pub edge: i32,
-    /// First facet of its arc, or the facet that begins at it.
-    facet: usize,
-    /// Facets that its arc is drawn with.
-    facets: usize,
 }
 
 /// Where something bears on the ground, or nearly.
@@ -103,39 +85,6 @@ impl Touch {
             point: self.place + self.normal * (0.5 * self.distance),
             normal: self.normal,
             distance: self.distance,
-        }
-    }
-}
-
-impl Corner {
-    /// Whether the ground has a normal in that direction at the corner, but for rounding.
-    pub(super) fn faces(&self, direction: Vector) -> bool {
-        let [before, behind] = self.normals;
-        cross(direction, before) >= -ROUNDING
-            && cross(behind, direction) >= -ROUNDING
-            && direction.dot(before + behind) > 0.0
-    }
-
-    /// The facet of the profile at a normal of the arc.
-    fn facet_at(&self, normal: Vector) -> usize {
-        if self.facets == 0 {
-            return self.facet;
-        }
-        let [from, to] = self.normals;
-        let angle = |a: Vector, b: Vector| libm::atan2(cross(b, a), a.dot(b));
-        let share = angle(from, normal) / angle(from, to);
-        self.facet + ((share * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
-    }
-
-    /// Something bears on it, along a normal of its own.
-    pub(super) fn touch(&self, corner: usize, normal: Vector, distance: f64) -> Touch {
-        Touch {
-            place: self.center + normal * self.radius,
-            normal,
-            distance,
-            facet: self.facet_at(normal),
-            edge: self.edge,
-            on: On::Corner(corner),
         }
     }
 }
@@ -385,54 +334,4 @@ impl Lane {
             );
         }
     }
-}
-
-/// The corners of a profile, its two ends among them; the points of an arc are one corner.
-fn corners_of(profile: &Profile) -> Vec<Corner> {
-    let points = &profile.points;
-    let last = points.len() - 1;
-    let mut corners = Vec::new();
-    let mut i = 0;
-    while i <= last {
-        let edge = profile.edge_of_point[i];
-        let rounded = usize::try_from(edge)
-            .ok()
-            .map(|e| &profile.edges[e])
-            .filter(|e| e.radius > 0.0);
-        // An arc that adjoins the last one shares its end.
-        let shares_point = rounded.is_some_and(|e| {
-            let on_arc = |p: Vector| ((p - e.center).length() - e.radius).abs() < SHARED;
-            i > 0 && edge != profile.edge_of_point[i - 1] && on_arc(points[i - 1])
-        });
-        let first = i - usize::from(shares_point);
-        while rounded.is_some() && i < last && profile.edge_of_point[i + 1] == edge {
-            i += 1;
-        }
-        let normal_of = |a: usize, b: usize| left_of((points[b] - points[a]).normalize());
-        let (center, normals) = match rounded {
-            Some(e) => {
-                let normal = |p: Vector| (p - e.center) / e.radius;
-                (e.center, [normal(points[first]), normal(points[i])])
-            }
-            // The ends of the ground have one normal only.
-            None => (
-                points[i],
-                [
-                    normal_of(i.saturating_sub(1), i.max(1)),
-                    normal_of(i.min(last - 1), (i + 1).min(last)),
-                ],
-            ),
-        };
-        corners.push(Corner {
-            center,
-            radius: rounded.map_or(0.0, |e| e.radius),
-            stands_out: 0 < first && i < last && cross(normals[1], normals[0]) > 0.0,
-            normals,
-            edge,
-            facet: first,
-            facets: i - first,
-        });
-        i += 1;
-    }
-    corners
 }

@@ -64,3 +64,64 @@ impl Chord {
         roof.iter().all(|end| self.hides(*end))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::lane::Lane;
+    use crate::terrain::Profile;
+
+    #[test]
+    fn nothing_between_its_ends_rises_above_a_roof() {
+        let points = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 0.4],
+            [1.1, 0.4],
+            [1.1, 0.1],
+            [1.6, 0.3],
+            [1.7, 0.31],
+            [1.7, 0.9],
+            [3.0, 0.2],
+        ];
+        for edge_radius in [0.0, 0.02] {
+            let profile = Profile::new("ground", &points, edge_radius, 0.9, true).expect("valid");
+            let lane = Lane::new(&profile);
+            let count = lane.corners.len();
+            for (first, last) in (0..count).flat_map(|i| (i..count).map(move |j| (i, j))) {
+                let corners = &lane.corners[first..=last];
+                let [a, b] = roof(corners);
+                for c in corners {
+                    let top = c.center + Vector::Y * c.radius;
+                    let share = ((top.x - a.x) / (b.x - a.x).max(1e-12)).clamp(0.0, 1.0);
+                    assert!(
+                        top.y <= a.y + (b.y - a.y) * share + 1e-12,
+                        "{first} to {last}"
+                    );
+                    assert!(a.x <= c.center.x - c.radius && c.center.x + c.radius <= b.x);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_chord_hides_what_lies_between_its_ends_and_no_higher() {
+        let at = |x: f64, y: f64| Touch {
+            place: Vector::new(x, y),
+            normal: Vector::Y,
+            distance: 0.0,
+            facet: 0,
+            edge: 0,
+            on: crate::contact::lane::On::Corner(0),
+        };
+        let chord = Chord::new(&at(0.0, 0.0), &at(2.0, 0.2)).expect("they bear on one run");
+        assert!(chord.hides(Vector::new(1.0, 0.1 + 0.5e-6)));
+        assert!(!chord.hides(Vector::new(1.0, 0.1 + 2e-6)));
+        assert!(!chord.hides(Vector::new(2.1, 0.0)));
+        let tilted = Touch {
+            normal: Vector::new(0.1, 0.995),
+            ..at(2.0, 0.2)
+        };
+        assert!(Chord::new(&at(0.0, 0.0), &tilted).is_none());
+    }
+}
