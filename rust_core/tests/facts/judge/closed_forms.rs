@@ -10,6 +10,7 @@ fn refinements() -> [Settings; 3] {
     let with = |time_step, stiffness| Settings {
         time_step,
         stiffness,
+        ..Settings::default()
     };
     [with(1e-5, 1e7), with(5e-6, 1e7), Settings::default()]
 }

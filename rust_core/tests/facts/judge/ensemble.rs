@@ -72,6 +72,7 @@ pub(crate) fn standstills(scene: &Scene, runs: u32) -> (u32, u32) {
     let settings = Settings {
         time_step: d.time_step / 4.0,
         stiffness: d.stiffness * 16.0,
+        ..d
     };
     let (mut found, mut kept) = (0, 0);
     for i in 0..runs {
@@ -109,6 +110,7 @@ impl Tally {
         let finer = Settings {
             time_step: 0.5 * settings.time_step,
             stiffness: 4.0 * settings.stiffness,
+            ..settings
         };
         let scenarios: Vec<Scenario> = (0..runs).map(|i| scene.run(i)).collect();
         Self {

@@ -1,11 +1,10 @@
 //! The force at one place of overlap: a damped spring, and a bristle that slips at Coulomb's limit.
 
 use super::distance::Touch;
+use super::motion::Settings;
 
-/// Damping of an impact over the critical one: a blow then returns 1 / (4 x 4^2), under 2 %, of its speed.
-const IMPACT_DAMPING: f64 = 4.0;
-/// Damping of a bristle over the critical one.
-const BRISTLE_DAMPING: f64 = 1.0;
+/// Damping of a bristle beside that of an impact.
+const BRISTLE_DAMPING: f64 = 0.25;
 
 /// What friction remembers of a touch.
 #[derive(Clone, Copy)]
@@ -47,18 +46,22 @@ impl Bristles {
         &mut self,
         touch: &Touch,
         friction: f64,
-        stiffness: f64,
-        dt: f64,
+        settings: Settings,
         [normal, tangent]: [Motion; 2],
     ) -> [f64; 2] {
-        let damper = 2.0 * IMPACT_DAMPING * (stiffness * normal.mass).sqrt();
+        let Settings {
+            time_step,
+            stiffness,
+            damping,
+        } = settings;
+        let damper = 2.0 * damping * (stiffness * normal.mass).sqrt();
         let pressing = (stiffness * touch.depth - damper * normal.speed).max(0.0);
         // A face and the corner at its end pass a round part on to each other.
         let before = self.last.iter().find(|b| {
             b.part == touch.part && b.feature == touch.feature && b.place.abs_diff(touch.place) <= 1
         });
-        let bend = before.map_or(0.0, |b| b.bend) + tangent.speed * dt;
-        let damper = 2.0 * BRISTLE_DAMPING * (stiffness * tangent.mass).sqrt();
+        let bend = before.map_or(0.0, |b| b.bend) + tangent.speed * time_step;
+        let damper = 2.0 * BRISTLE_DAMPING * damping * (stiffness * tangent.mass).sqrt();
         let limit = friction * pressing;
         let holding = -(stiffness * bend + damper * tangent.speed);
         let dragging = holding.clamp(-limit, limit);

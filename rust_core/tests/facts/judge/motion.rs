@@ -15,6 +15,9 @@ pub(crate) struct Settings {
     pub time_step: f64,
     /// [N/m] Of every touch, along its normal and along its tangent.
     pub stiffness: f64,
+    /// Damping of an impact over the critical one: at 4 a blow returns 1 / (4 x 4^2), under 2 %, of its
+    /// speed.
+    pub damping: f64,
 }
 
 /// With a quarter of the stiffness contacts settle slowly enough, in 6 ms, to help a robot out of a jam.
@@ -23,6 +26,7 @@ impl Default for Settings {
         Self {
             time_step: 5e-6,
             stiffness: 4e7,
+            damping: 4.0,
         }
     }
 }
@@ -217,8 +221,9 @@ impl Judge {
             };
             let tangent = right_of(touch.normal);
             let motions = [along(touch.normal), along(tangent)];
-            let k = self.settings.stiffness;
-            let [pressing, dragging] = self.bristles.force(touch, part.friction, k, dt, motions);
+            let [pressing, dragging] =
+                self.bristles
+                    .force(touch, part.friction, self.settings, motions);
             let total = touch.normal * pressing + tangent * dragging;
             force += total;
             moment += cross(arm, total);
