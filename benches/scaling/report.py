@@ -70,10 +70,8 @@ wheels carry the robot just so: two stand on the ground.
 _WHEELS_MEAN = """
 - Cost grows about in proportion to the wheels that bear: all of a line, the lower third of
   circumferential ones. Those in the air are passed over quickly.
-- A line of gear wheels is much dearer from 12 wheels on than with 6. So many grousers bear that the
-  solver finds no answer for all of them at once, and goes on by sweeps, often up to
-  `solver.iterations`. These are lines of large wheels pushed into one another: nothing that one
-  would model a track with.
+- Where many grousers bear at once, as in a line of 96 gear wheels, the solver takes longer to find
+  which of them grip.
 """
 
 _GROUSERS = """
@@ -98,11 +96,11 @@ Runs of 2 s; the first point is whole ground.
 """
 
 _POINTS_MEAN = """
-- Finding contacts is a small share of it: a hierarchy over them leads to those
-  that face a wheel. Pieces that lie level are joined when the scenario is read.
-- A belt lies on all corners within the depth that it sinks in, some um here, more than the ground
-  is rough: hundreds of contacts share the load, of thousands that might. Each is paired with the
-  nearest of the step before by looking at all of them: their number squared.
+- Finding contacts is a small share of it: a hierarchy leads to the pieces that face a wheel, and
+  below a belt to those that rise above the chord of its first and last contact. Pieces that lie
+  level are joined when the scenario is read.
+- What costs is that the contacts change: with a few pieces passed in each step other corners bear
+  each time, and who bears, grips and slides is solved anew.
 - Between two grousers flat ground reaches up to 2.6 mm into the taut belt round gear wheels. Every
   time that the monitor looks for ground inside the track it visits all pieces there.
 """
