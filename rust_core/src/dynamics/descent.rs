@@ -3,7 +3,8 @@
 //! With frozen limits the impulses are the slope of a convex potential of the velocities. Newton's method,
 //! each step no longer than the potential falls along it, ends at the one minimum from wherever it
 //! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
-//! energy, so that a solve which never agrees on the limits does no harm either.
+//! energy. Where the limits never agree, friction is cut to Coulomb's at the end, which in about one of
+//! 20,000 random jams adds some.
 
 use rapier2d_f64::math::Vector;
 
