@@ -19,6 +19,8 @@ mod bodies;
 mod check;
 mod contact;
 mod diagnosis;
+#[cfg(test)]
+mod draw;
 mod drive;
 mod dynamics;
 mod error;

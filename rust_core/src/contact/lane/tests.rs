@@ -5,19 +5,7 @@
 use std::cell::Cell;
 
 use super::*;
-
-/// splitmix64
-struct Draw(u64);
-
-impl Draw {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use crate::draw::Draw;
 
 /// Half a metre of ground: flat, or jittered by this [m] and with upright faces; its edges rounded if
 /// they have room.

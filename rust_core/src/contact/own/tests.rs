@@ -4,7 +4,6 @@
 #![allow(clippy::print_stdout)] // a figure is part of what a test tells
 
 mod curve;
-mod draw;
 mod grounds;
 mod judge;
 mod motion;

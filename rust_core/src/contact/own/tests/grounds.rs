@@ -3,7 +3,7 @@
 use rapier2d_f64::math::Vector;
 
 use super::curve::{Curve, Extent};
-use super::draw::Draw;
+use crate::draw::Draw;
 use crate::plane::{cross, left_of};
 use crate::terrain::Profile;
 

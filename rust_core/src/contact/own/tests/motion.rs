@@ -2,8 +2,8 @@
 
 use rapier2d_f64::math::Vector;
 
-use super::draw::Draw;
 use super::scene::{Scene, cases};
+use crate::draw::Draw;
 
 /// [m] Deeper overlaps may be left by another way from step to step.
 const SHALLOW: f64 = 5e-5;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::curve::Curve;
-use super::draw::Draw;
+use crate::draw::Draw;
 use crate::outline::{Disc, Gear};
 use crate::robot::{BodyKind, Part, Shape};
 

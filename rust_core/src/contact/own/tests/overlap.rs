@@ -4,11 +4,11 @@ use rapier2d_f64::math::{Pose, Vector};
 
 use super::super::OwnContact;
 use super::curve::Curve;
-use super::draw::Draw;
 use super::grounds::Ground;
 use super::judge::Judge;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
+use crate::draw::Draw;
 use crate::plane::{cross, left_of};
 use crate::robot::{BodyKind, Part, Shape};
 

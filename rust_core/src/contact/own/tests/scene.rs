@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::super::OwnContact;
-use super::draw::Draw;
 use super::grounds::{self, Ground};
 use super::judge::{Approach, Judge};
 use super::outlines::{self, Outline};
 use crate::contact::Contact;
+use crate::draw::Draw;
 
 /// More cases where time allows.
 pub(super) fn cases(few: usize, many: usize) -> usize {

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use rapier2d_f64::math::{Pose, Vector};
 
 use super::super::OwnContact;
-use super::draw::Draw;
 use super::judge::Approach;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
+use crate::draw::Draw;
 use crate::plane::left_of;
 use crate::robot::{BodyKind, Part, Shape};
 use crate::terrain::Profile;
