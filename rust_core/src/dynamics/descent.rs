@@ -3,8 +3,7 @@
 //! With frozen limits the impulses are the slope of a convex potential of the velocities. Newton's method,
 //! each step no longer than the potential falls along it, ends at the one minimum from wherever it
 //! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
-//! energy. Where the limits never agree, friction is cut to Coulomb's at the end, which in about one of
-//! 20,000 random jams adds some.
+//! energy.
 
 use rapier2d_f64::math::Vector;
 
@@ -18,6 +17,8 @@ use super::state::State;
 const STEPS: u32 = 30;
 /// [m/s] A change that is smaller is rounding: at a kink the potential falls no further.
 const ROUNDING: f64 = 1e-14;
+/// What is left at most of a limit of friction beyond Coulomb's law where no limits agree: so the end comes.
+const SHRINKING: f64 = 0.9;
 
 /// A change of velocity and angular velocity; the system knows that of the spins.
 struct Change {
@@ -29,15 +30,78 @@ impl Dynamics {
     /// Goes down to the minimum for the limits that the normal impulses give; whether it gives the same
     /// limits.
     pub(super) fn descend(&mut self, state: &mut State, phase: &Phase) -> bool {
-        self.settle();
+        self.freeze_limits();
+        let off = self.go_down(state, phase);
+        self.obey_coulombs_law();
+        if self.switch_motors(state, phase) {
+            self.set_actions(state, phase);
+            return false;
+        }
+        off < AGREEMENT
+    }
+
+    /// Ends a search in which the limits never agreed: with the last impulses, if they gain no energy.
+    pub(super) fn end_search(&mut self, state: &mut State, phase: &Phase) {
+        if self.limit_motors(state, phase) {
+            self.set_actions(state, phase);
+        }
+        self.balance(state, phase);
+        if self.energy_of_contacts(state) > 0.0 {
+            self.give_way(state, phase);
+            while self.limit_motors(state, phase) {
+                self.set_actions(state, phase);
+                self.give_way(state, phase);
+            }
+        }
+    }
+
+    /// From here the limits only shrink, until all friction is within Coulomb's law. What slides may then
+    /// slide under less than its law allows, but gains nothing.
+    fn give_way(&mut self, state: &mut State, phase: &Phase) {
+        self.freeze_limits();
+        loop {
+            self.go_down(state, phase);
+            let mut fits = true;
+            for row in &mut self.rows {
+                let limit = row.friction * row.normal_impulse;
+                let beyond = row.friction_impulse.abs() - limit;
+                if beyond * row.admittance.tangent > AGREEMENT {
+                    row.limit = limit.min(SHRINKING * row.limit);
+                    fits = false;
+                }
+            }
+            if fits {
+                break;
+            }
+        }
+        self.obey_coulombs_law();
+    }
+
+    /// Limits friction by what the loads allow that each contact had last.
+    fn freeze_limits(&mut self) {
         for row in &mut self.rows {
             row.limit = row.friction * row.normal_impulse;
         }
+    }
+
+    /// Cuts friction to what the loads allow that each contact has now.
+    fn obey_coulombs_law(&mut self) {
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            let limit = row.friction * row.normal_impulse;
+            row.friction_impulse = row.friction_impulse.clamp(-limit, limit);
+            row.guess_grip();
+        }
+    }
+
+    /// Goes down to the minimum for the limits as they are; how much velocity the change of a limit is
+    /// worth that would fit the loads there [m/s].
+    fn go_down(&mut self, state: &mut State, phase: &Phase) -> f64 {
+        self.settle();
         self.choose_dampers(state);
         for _ in 0..STEPS {
             self.assemble_frozen(phase);
             let Some((velocity, turn)) = self.system.solve() else {
-                return false;
+                break;
             };
             let change = Change {
                 velocity: velocity - state.velocity,
@@ -65,17 +129,12 @@ impl Dynamics {
         let mut off: f64 = 0.0;
         for row in self.rows.iter_mut().filter(|row| row.bears) {
             off = off.max(row.follow_frozen(state));
-            row.guess_grip();
         }
         if let Some(push) = &mut self.push {
             off = off.max(push.follow_velocities(state));
         }
         self.turn_with_chassis(state, phase);
-        if self.switch_motors(state, phase) {
-            self.set_actions(state, phase);
-            return false;
-        }
-        off < AGREEMENT
+        off
     }
 
     /// [m/s] A bound of what a change moves anything by, to the order.
@@ -207,21 +266,20 @@ impl Row {
         }
     }
 
-    /// Takes the impulses that belong to the velocities, its friction within its new limit; how much
-    /// velocity the change of the limit is worth [m/s].
+    /// Takes the impulses that belong to the velocities; how much velocity the change of its limit is
+    /// worth that would fit the load [m/s].
     fn follow_frozen(&mut self, state: &State) -> f64 {
         let [approach, slip] = self.speeds(state);
         let [normal, tangent] = self.frozen;
-        let friction = tangent.at(slip);
         self.normal_impulse = normal.at(approach);
+        self.friction_impulse = tangent.at(slip);
         let limit = self.friction * self.normal_impulse;
-        self.friction_impulse = friction.clamp(-limit, limit);
         let slides = tangent.stiffness == 0.0;
         let off = if slides {
-            limit - self.limit
+            (limit - self.limit).abs()
         } else {
-            friction - self.friction_impulse
+            (self.friction_impulse.abs() - limit).max(0.0)
         };
-        off.abs() * self.admittance.tangent
+        off * self.admittance.tangent
     }
 }

@@ -146,8 +146,8 @@ impl Dynamics {
         let rounds = self.solver.iterations;
         // What they agree on with limits of friction is a better guess of what grips and what slides.
         let agree = |_| self.solve_at_once(state, phase) || self.descend(state, phase);
-        if !(0..rounds).any(agree) && self.limit_motors(state, phase) {
-            self.set_actions(state, phase);
+        if !(0..rounds).any(agree) {
+            self.end_search(state, phase);
         }
         // From the impulses, so that momentum is kept to the last digit.
         self.balance(state, phase);
@@ -220,6 +220,33 @@ impl Dynamics {
                     phase.spins[k] + (self.torques[k] - of_motor) / self.model.drive_inertia();
             }
         }
+    }
+
+    /// [J] What the contacts have added to the energy, at the velocities that their impulses give, but
+    /// for the work of pushing out of the ground.
+    pub(super) fn energy_of_contacts(&self, state: &State) -> f64 {
+        let m = &self.model;
+        let (mut work, mut impulse, mut moment) = (0.0, Vector::ZERO, 0.0);
+        for row in &self.rows {
+            let ([n, t], [approach, slip]) = (&row.actions, row.speeds(state));
+            let pushed_out = (-row.bias).max(0.0);
+            work += row.normal_impulse * (approach - pushed_out) + row.friction_impulse * slip;
+            impulse += n.unit * row.normal_impulse + t.unit * row.friction_impulse;
+            moment += n.lever * row.normal_impulse + t.lever * row.friction_impulse;
+        }
+        if let Some(push) = &self.push {
+            work += push.impulse * push.slip(state);
+            impulse += push.action.unit * push.impulse;
+            moment += push.action.lever * push.impulse;
+        }
+        let own = self.motors.iter().zip(&self.torques);
+        let of_spins: f64 = own
+            .filter(|(motor, _)| motor.share().is_some())
+            .map(|(_, torque)| torque * torque / m.drive_inertia())
+            .sum();
+        // An impulse works at the mean of the speeds before and after.
+        let change = impulse.length_squared() / m.mass + moment * moment / self.inertia + of_spins;
+        work - 0.5 * change
     }
 
     /// [1/kg] Velocity along an action for a unit impulse along it.
