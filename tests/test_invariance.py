@@ -15,6 +15,7 @@ from crawler2d.scenario import Scenario
 
 SHIFT = 10.0  # [m]
 PIECE = 0.03  # [m] of a face that is cut finer
+ELSEWHERE = 1e-3  # [m] A robot this far off has come to another stop
 JITTER = 1e-7  # [m] points on a line would be merged
 
 
@@ -91,7 +92,7 @@ def test_what_a_stop_is_called_does_not_depend_on_how_it_is_computed(
     again = c2d.simulate_many([run.scenario for run in base], threads=2)
     assert [said(run) for run in again] == [said(run) for run in base]
     lines = []
-    flips = 0
+    flips = elsewhere = 0
     for name, variant in VARIANTS.items():
         scenarios = [variant(run.scenario) for run in base]
         runs = c2d.simulate_many(scenarios, threads=2, record="summary")
@@ -112,6 +113,10 @@ def test_what_a_stop_is_called_does_not_depend_on_how_it_is_computed(
             )
         lines.append(f"{name}: {other} of {count} called otherwise")
     moving = sum(run.diagnosis is not None and not run.diagnosis.stationary for run in base)
-    lines.append(f"{moving} of {count} not stationary; {flips} stationary ones called otherwise")
+    lines.append(f"{moving} of {count} not stationary; {elsewhere} came to a stop elsewhere")
+    lines.append(f"{flips} stationary ones called otherwise")
     say("\n  ".join(lines))
     assert flips == 0
+    # Three wheels on one face share their load anew when it is off by 0.1 um; where each has a motor of
+    # its own, their traction follows.
+    assert elsewhere <= 0.01 * count * len(VARIANTS)
