@@ -117,6 +117,6 @@ def test_what_a_stop_is_called_does_not_depend_on_how_it_is_computed(
     lines.append(f"{flips} stationary ones called otherwise")
     say("\n  ".join(lines))
     assert flips == 0
-    # Three wheels on one face share their load anew when it is off by 0.1 um; where each has a motor of
-    # its own, their traction follows.
+    # Three wheels on one face share their load anew when it is off by 0.1 um; where each has a
+    # motor of its own, their traction follows.
     assert elsewhere <= 0.01 * count * len(VARIANTS)
