@@ -113,7 +113,7 @@ fn events<'py>(py: Python<'py>, events: &[Event]) -> PyResult<Bound<'py, PyDict>
     columns.set_item("kind", kinds)?;
     columns.set_item("start", column(|e| e.start))?;
     columns.set_item("end", column(|e| e.end))?;
-    columns.set_item("lane", whole(|_| 0))?;
+    columns.set_item("lane", whole(|e| e.side as i64))?;
     columns.set_item("edge", whole(|e| i64::from(e.edge)))?;
     columns.set_item("bodies", bodies)?;
     columns.set_item("depth", column(|e| e.depth))?;
@@ -130,6 +130,7 @@ pub(crate) fn intrusions<'py>(
     let columns = PyDict::new(py);
     let column =
         |value: fn(&Intrusion) -> f64| found.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
+    let lane: Vec<i64> = found.iter().map(|i| i.side as i64).collect();
     let edge: Vec<i64> = found.iter().map(|i| i64::from(i.edge)).collect();
     let edges = found
         .iter()
@@ -139,6 +140,7 @@ pub(crate) fn intrusions<'py>(
         .iter()
         .map(|i| PyTuple::new(py, i.bodies))
         .collect::<PyResult<Vec<_>>>()?;
+    columns.set_item("lane", lane.into_pyarray(py))?;
     columns.set_item("edge", edge.into_pyarray(py))?;
     columns.set_item("edges", edges)?;
     columns.set_item("bodies", bodies)?;
@@ -223,9 +225,10 @@ fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     let column =
         |value: fn(&Edge) -> f64| edges.iter().map(value).collect::<Vec<_>>().into_pyarray(py);
-    let ids = (0_i64..).take(edges.len()).collect::<Vec<_>>();
+    let ids: Vec<i64> = edges.iter().map(|e| i64::from(e.id)).collect();
+    let lanes: Vec<i64> = edges.iter().map(|e| e.side as i64).collect();
     columns.set_item("id", ids.into_pyarray(py))?;
-    columns.set_item("lane", vec![0_i64; edges.len()].into_pyarray(py))?;
+    columns.set_item("lane", lanes.into_pyarray(py))?;
     columns.set_item("x", column(|e| e.x))?;
     columns.set_item("y", column(|e| e.y))?;
     columns.set_item("angle", column(|e| e.angle))?;

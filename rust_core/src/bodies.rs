@@ -4,7 +4,7 @@ use rapier2d_f64::math::Vector;
 
 use crate::robot::{Model, Shape};
 
-/// A wheel, both sides together.
+/// A wheel; both sides together, unless these meet lanes of their own.
 #[derive(Clone, Debug)]
 pub struct WheelBody {
     /// Index of the part.
@@ -53,7 +53,7 @@ impl Model {
                 Shape::Hull { .. } | Shape::Polygon { .. } => None,
             })
             .collect();
-        let share = self.drive_mass * self.drives as f64 / round.len().max(1) as f64;
+        let share = self.drive_masses.iter().sum::<f64>() / round.len().max(1) as f64;
         let wheels: Vec<WheelBody> = round
             .into_iter()
             .map(|(part, center, radius, area, polar_moment)| {
@@ -76,9 +76,7 @@ impl Model {
         let moment: Vector = wheels.iter().map(|w| w.center * w.mass).sum();
         let center_of_mass = (self.center_of_mass * self.mass - moment) / mass;
         let about = |center: Vector| (center - self.center_of_mass).length_squared();
-        let circulating = self.locked_inertia() - self.moment_of_inertia;
-        let whole = self.moment_of_inertia + circulating * self.drives as f64;
-        let moment_of_inertia = whole
+        let moment_of_inertia = self.locked_inertia()
             - mass * about(center_of_mass)
             - wheels
                 .iter()

@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use crate::error::ScenarioError;
-use crate::robot;
 use crate::robot::{Model, Part};
 use crate::scenario::Scenario;
+use crate::start::start_position;
 use crate::terrain::Ground;
 
 impl Scenario {
@@ -70,7 +70,8 @@ impl Scenario {
             ));
         }
         let ground = Ground::new(&self.terrain)?;
-        robot::start_pose(self, &model, &ground)?;
+        let model = Model::on(&self.robot, &ground)?;
+        start_position(self, &model, &ground)?;
         Ok(())
     }
 }

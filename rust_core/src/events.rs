@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Intrusion;
+use crate::terrain::Side;
 
 /// What an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +33,8 @@ pub struct Event {
     pub start: f64,
     /// [s] When it ended; the end of the run if it lasted.
     pub end: f64,
+    /// Lane of that edge; of none, that of both tracks.
+    pub side: Side,
     /// Edge inside the envelope, or -1.
     pub edge: i32,
     /// Bodies on either side of it, first the one that the belt passes before it; none without an edge.
@@ -51,6 +54,7 @@ impl Event {
             kind: EventKind::Stop,
             start,
             end,
+            side: inside.map_or(Side::Both, |e| e.side),
             edge: inside.map_or(-1, |e| e.edge),
             bodies: inside.and_then(|e| e.bodies),
             depth: inside.map_or(0.0, |e| e.depth),
@@ -130,6 +134,7 @@ impl Present {
             kind: EventKind::Intrusion,
             start: time,
             end: time,
+            side: intrusion.side,
             edge: intrusion.edge,
             bodies: Some(intrusion.bodies),
             depth: 0.0,

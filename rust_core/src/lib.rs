@@ -34,7 +34,9 @@ mod robot;
 mod run;
 mod scenario;
 mod shaking;
+mod sides;
 mod simulation;
+mod start;
 mod terrain;
 mod trace;
 mod track;
@@ -56,7 +58,7 @@ pub use scenario::{
     Solver, Start, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
-pub use terrain::{Edge, Ground, Profile};
+pub use terrain::{Edge, Ground, Profile, Side};
 pub use trace::{ContactTable, Record, Trace};
 
 /// The engine that finds the contacts, with its exact version.

@@ -3,10 +3,9 @@
 use rapier2d_f64::math::Vector;
 
 use crate::error::ScenarioError;
-use crate::outline::{self, Disc, Envelope, Gear};
+use crate::outline::{Disc, Envelope, Gear};
 use crate::plane::{left_of, right_of};
-use crate::scenario::{Robot, Scenario};
-use crate::terrain::{Ground, Profile};
+use crate::scenario::Robot;
 use crate::track;
 
 /// Everything about a robot that does not change during a run.
@@ -25,7 +24,7 @@ pub struct Model {
     /// Number of drives with a motor; the others turn freely.
     pub motors: usize,
     /// [kg] Mass that moves at the surface speed of each drive.
-    pub drive_mass: f64,
+    pub drive_masses: Vec<f64>,
     /// [m] Radius that joins surface speed and spin of a drive.
     pub drive_radius: f64,
     /// [N] Largest traction of each motor.
@@ -58,6 +57,8 @@ pub struct Part {
     pub drive: Option<usize>,
     /// Friction of its own; the smaller of this and the ground's counts.
     pub friction_limit: f64,
+    /// Index of the lane of the ground that it meets.
+    pub lane: usize,
 }
 
 /// Forms in the chassis frame.
@@ -101,8 +102,8 @@ pub(crate) struct TurningWheel {
 }
 
 impl Model {
-    /// The model of a robot: mass, centre of mass and moments of inertia are the built robot's,
-    /// whatever the track model.
+    /// The model of a robot, both tracks lumped: mass, centre of mass and moments of inertia are the
+    /// built robot's, whatever the track model.
     ///
     /// # Errors
     /// Wheels that do not fit the robot.
@@ -117,9 +118,9 @@ impl Model {
                 shape,
                 drive: None,
                 friction_limit: f64::INFINITY,
+                lane: 0,
             });
         }
-        let drives = track.drives as f64;
         let radius = robot.outline.rear_radius;
         Ok(Self {
             mass: robot.mass,
@@ -128,7 +129,7 @@ impl Model {
             parts,
             drives: track.drives,
             motors: track.motors,
-            drive_mass: robot.track_mass / drives,
+            drive_masses: vec![robot.track_mass / track.drives as f64; track.drives],
             drive_radius: radius,
             drive_force: robot.drivetrain.max_force(&robot.outline) / track.motors as f64,
             pushes_chassis: track.pushes_chassis,
@@ -136,23 +137,20 @@ impl Model {
     }
 
     /// [kg m^2] Moment of inertia of one drive.
-    pub(crate) fn drive_inertia(&self) -> f64 {
-        self.drive_mass * self.drive_radius * self.drive_radius
+    pub(crate) fn drive_inertia(&self, drive: usize) -> f64 {
+        self.drive_masses[drive] * self.drive_radius * self.drive_radius
     }
 
-    /// [kg m^2] Moment of inertia of the chassis with one drive locked to it.
+    /// [kg m^2] Moment of inertia with all drives locked to the chassis.
     pub(crate) fn locked_inertia(&self) -> f64 {
-        self.moment_of_inertia + self.drive_inertia()
+        let drives = (0..self.drives).map(|k| self.drive_inertia(k));
+        self.moment_of_inertia + drives.sum::<f64>()
     }
 
-    /// The same robot with a closed belt, taut round the bodies of its track: their circumscribed
+    /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed
     /// circles, all their motors' force, their mass.
     pub(crate) fn closed(&self) -> Self {
-        let discs: Vec<Disc> = self
-            .parts
-            .iter()
-            .flat_map(|part| part.discs().map(|(tip, _)| tip).collect::<Vec<_>>())
-            .collect();
+        let discs: Vec<Disc> = self.discs_of_track(0).map(|(tip, _)| tip).collect();
         let belt = Envelope::new(&discs);
         // A closed belt shields a belly that lies inside of it.
         let reaches_out = |part: &&Part| match &part.shape {
@@ -160,32 +158,48 @@ impl Model {
             _ => false,
         };
         let belly = self.parts.iter().filter(reaches_out).cloned();
-        let shape = Shape::Hull { discs };
-        let belt = Part {
+        let tracks = self.tracks();
+        let belts = (0..tracks).map(|lane| Part {
             kind: BodyKind::Belt,
-            shape,
-            drive: Some(0),
+            shape: Shape::Hull {
+                discs: discs.clone(),
+            },
+            drive: Some(lane),
             friction_limit: f64::INFINITY,
-        };
+            lane,
+        });
+        let mass: f64 = self.drive_masses.iter().sum();
+        let force = self.drive_force * self.motors as f64;
         Self {
-            parts: std::iter::once(belt).chain(belly).collect(),
-            drives: 1,
-            motors: 1,
-            drive_mass: self.drive_mass * self.drives as f64,
-            drive_force: self.drive_force * self.motors as f64,
+            parts: belts.chain(belly).collect(),
+            drives: tracks,
+            motors: tracks,
+            drive_masses: vec![mass / tracks as f64; tracks],
+            drive_force: force / tracks as f64,
             pushes_chassis: false,
             ..self.clone()
         }
     }
 
+    /// Number of lanes that tracks meet.
+    pub(crate) fn tracks(&self) -> usize {
+        let of_tracks = self
+            .parts
+            .iter()
+            .filter(|part| part.kind != BodyKind::Belly);
+        of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
+    }
+
+    /// Circumscribed and root circles of the bodies of the track on a lane.
+    fn discs_of_track(&self, lane: usize) -> impl Iterator<Item = (Disc, Disc)> + '_ {
+        let on_lane = self.parts.iter().filter(move |part| part.lane == lane);
+        on_lane.flat_map(|part| part.discs().collect::<Vec<_>>())
+    }
+
     /// The taut belts round the circumscribed and the root circles of the track's bodies, as points
     /// of the chassis frame, counter-clockwise; an arc is cut every `turn` [rad].
     pub fn envelopes(&self, turn: f64) -> [Vec<Vector>; 2] {
-        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self
-            .parts
-            .iter()
-            .flat_map(|part| part.discs().collect::<Vec<_>>())
-            .unzip();
+        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0).unzip();
         [tips, roots].map(|discs| {
             let mut points = Envelope::new(&discs).polyline(turn);
             points.reverse();
@@ -267,98 +281,4 @@ impl Part {
             Shape::Gear { gear, .. } => right_of(spoke) / gear.radius,
         }
     }
-}
-
-/// Position of the chassis frame at time 0: on the ground, `start.approach` before the first edge.
-pub(crate) fn start_pose(
-    scenario: &Scenario,
-    model: &Model,
-    ground: &Ground,
-) -> Result<Vector, ScenarioError> {
-    let (sine, cosine) = libm::sincos(scenario.start.angle);
-    let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
-    let turned_disc = |d: Disc| Disc {
-        center: turned(d.center),
-        ..d
-    };
-    // What touches the ground: discs, and segments between points.
-    let mut discs: Vec<Disc> = Vec::new();
-    let mut segments: Vec<[Vector; 2]> = Vec::new();
-    for part in &model.parts {
-        discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
-        match &part.shape {
-            Shape::Disc { .. } => {}
-            Shape::Hull { discs: round } => {
-                let placed = &discs[discs.len() - round.len()..];
-                segments.extend(
-                    placed
-                        .windows(2)
-                        .map(|pair| outline::lower_tangent(pair[0], pair[1])),
-                );
-            }
-            Shape::Gear { center, gear } => {
-                let start = -scenario.start.track_phase / gear.radius;
-                for direction in gear.directions() {
-                    let corners = gear.corners(direction + start);
-                    segments.extend(closed(&corners.map(|c| turned(*center + c))));
-                }
-            }
-            Shape::Polygon { corners } => {
-                let corners: Vec<Vector> = corners.iter().map(|c| turned(*c)).collect();
-                segments.extend(closed(&corners));
-            }
-        }
-    }
-    // The built outline sets where the robot begins, too, although it need not touch the ground.
-    let outline = outline::end_discs(&scenario.robot.outline).into_iter();
-    let tips = model.parts.iter().flat_map(Part::discs).map(|(tip, _)| tip);
-    let of_discs = outline
-        .chain(tips)
-        .map(turned_disc)
-        .map(|d| (d.center.x - d.radius, d.center.x + d.radius));
-    let of_segments = segments.iter().flatten().map(|p| (p.x, p.x));
-    let (rear, front) = of_discs
-        .chain(of_segments)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
-            (low.min(a), high.max(b))
-        });
-    let x = ground.first_edge - scenario.start.approach - front;
-    let (low, high) = ground.profile.extent();
-    if x + rear < low || x + front > high {
-        let rule = format!(
-            "must reach under the whole robot at its start, from x = {:.4} to {:.4} m",
-            x + rear,
-            x + front
-        );
-        return Err(ScenarioError::new(
-            "terrain",
-            format!("x from {low} to {high} m"),
-            rule,
-        ));
-    }
-    Ok(Vector::new(
-        x,
-        lowest_height(&ground.profile, x, &discs, &segments),
-    ))
-}
-
-/// The sides of a polygon.
-fn closed(corners: &[Vector]) -> impl Iterator<Item = [Vector; 2]> {
-    let n = corners.len();
-    (0..n).map(move |i| [corners[i], corners[(i + 1) % n]])
-}
-
-/// [m] Height of the chassis frame at which the shapes, placed at `x`, only touch the ground.
-fn lowest_height(profile: &Profile, x: f64, discs: &[Disc], segments: &[[Vector; 2]]) -> f64 {
-    let shift = Vector::new(x, 0.0);
-    let of_discs = discs
-        .iter()
-        .map(|d| profile.height_under_disc(x + d.center.x, d.radius) - d.center.y);
-    let of_segments = segments.iter().map(|[a, b]| {
-        let (a, b) = if a.x <= b.x { (*a, *b) } else { (*b, *a) };
-        profile.rise_over_segment(a + shift, b + shift)
-    });
-    of_discs
-        .chain(of_segments)
-        .fold(f64::NEG_INFINITY, f64::max)
 }

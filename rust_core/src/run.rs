@@ -252,7 +252,7 @@ fn advance(
         metrics,
         trace,
         contacts,
-        edges: simulation.ground().profile.edges.clone(),
+        edges: simulation.ground().edges(),
         events,
         drives: simulation.drives(),
         wall_time: begin.elapsed().as_secs_f64(),

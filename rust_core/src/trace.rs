@@ -103,7 +103,7 @@ impl ContactTable {
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
         for r in readings.drain() {
             self.time.push(simulation.time());
-            self.lane.push(0);
+            self.lane.push(simulation.side(r.contact.part) as i64);
             self.body.push(r.contact.part as i64);
             self.body_kind
                 .push(simulation.part_kind(r.contact.part) as i64);

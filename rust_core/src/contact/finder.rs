@@ -16,11 +16,11 @@ pub(crate) enum ContactFinder {
 }
 
 impl ContactFinder {
-    pub(crate) fn new(method: ContactMethod, parts: &[Part], profile: &Profile) -> Self {
+    pub(crate) fn new(method: ContactMethod, parts: &[Part], lanes: &[Profile]) -> Self {
         match method {
-            ContactMethod::Own => Self::Own(OwnContact::new(parts, profile)),
+            ContactMethod::Own => Self::Own(OwnContact::new(parts, lanes)),
             ContactMethod::Reference => {
-                Self::Reference(Box::new(ReferenceContact::new(parts, profile)))
+                Self::Reference(Box::new(ReferenceContact::new(parts, lanes)))
             }
         }
     }

@@ -6,12 +6,12 @@ mod tests;
 
 use rapier2d_f64::math::{Pose, Vector};
 
-use super::{Contact, LoadedContact};
+use super::Contact;
 use crate::outline::cut::{self, Piece};
 use crate::outline::search::maximise;
 use crate::outline::{Disc, Envelope};
 use crate::robot::Part;
-use crate::terrain::Profile;
+use crate::terrain::{Profile, Side};
 
 /// [m] A contact this close to a piece of the ground bears on it.
 const BEARS: f64 = 5e-4;
@@ -22,6 +22,8 @@ const SAME_DEPTH: f64 = 1e-6;
 /// The taut belts round a track's bodies, in the chassis frame.
 #[derive(Clone, Debug)]
 pub(crate) struct TrackEnvelope {
+    /// Lane that the track meets.
+    lane: usize,
     /// Circumscribed circles.
     discs: Vec<Disc>,
     /// Part that each disc belongs to.
@@ -52,6 +54,10 @@ impl Belt {
 /// A connected piece of the ground inside the envelope of the track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intrusion {
+    /// Lane that it is a piece of.
+    pub side: Side,
+    /// Index of that lane.
+    pub(crate) lane: usize,
     /// Edges inside the envelope, from the left.
     pub edges: Vec<i32>,
     /// Of those that stand out, the one that reaches deepest, or -1.
@@ -75,14 +81,15 @@ pub struct Intrusion {
 }
 
 impl TrackEnvelope {
-    /// The envelope of the parts that belong to the track.
+    /// The envelope of the parts that belong to the track on a lane.
     ///
     /// Wheels sink into the ground by micrometres, and a belt that ran along their lowest points would
     /// join all the ground under the robot to one piece: `margin` [m] keeps it inside of that.
-    pub(crate) fn new(parts: &[Part], margin: f64) -> Self {
+    pub(crate) fn new(parts: &[Part], lane: usize, margin: f64) -> Self {
         let of_track: Vec<(usize, Disc, Disc)> = parts
             .iter()
             .enumerate()
+            .filter(|(_, part)| part.lane == lane)
             .flat_map(|(i, part)| part.discs().map(move |(tip, root)| (i, tip, root)))
             .collect();
         let within = |disc: &Disc| Disc {
@@ -92,6 +99,7 @@ impl TrackEnvelope {
         let discs: Vec<Disc> = of_track.iter().map(|(_, tip, _)| within(tip)).collect();
         let roots: Vec<Disc> = of_track.iter().map(|(_, _, root)| within(root)).collect();
         Self {
+            lane,
             parts: of_track.iter().map(|(part, ..)| *part).collect(),
             tips: Belt::new(&discs),
             roots: Belt::new(&roots),
@@ -125,7 +133,8 @@ impl TrackEnvelope {
         let chords = cut::chords(&self.tips.hull, &polyline, under.start);
         if chords.is_empty() {
             let buried = below_ground(profile, pose, self.tips.middle);
-            return buried.then(|| self.buried(pose)).into_iter().collect();
+            let buried = buried.then(|| self.buried(profile.side, pose));
+            return buried.into_iter().collect();
         }
         cut::pieces(&self.tips.hull, &chords)
             .iter()
@@ -194,7 +203,7 @@ impl TrackEnvelope {
             area: piece.area(&self.tips.hull).max(0.0),
             rim: piece.rim().collect(),
             stretches: piece.chords().map(|c| c.span).collect(),
-            ..self.at(pose, deepest, root)
+            ..self.at(profile.side, pose, [deepest, root])
         }
     }
 
@@ -217,27 +226,29 @@ impl TrackEnvelope {
     }
 
     /// The whole envelope inside the ground.
-    fn buried(&self, pose: Pose) -> Intrusion {
+    fn buried(&self, side: Side, pose: Pose) -> Intrusion {
         let hull = &self.tips.hull;
         Intrusion {
             area: -0.5 * hull.swept(0.0, hull.length()),
-            ..self.at(pose, self.tips.middle, self.roots.middle)
+            ..self.at(side, pose, [self.tips.middle, self.roots.middle])
         }
     }
 
     /// What the deepest points below both belts say.
-    fn at(&self, pose: Pose, deepest: Vector, deepest_below_roots: Vector) -> Intrusion {
+    fn at(&self, side: Side, pose: Pose, [deepest, below_roots]: [Vector; 2]) -> Intrusion {
         let hull = &self.tips.hull;
         let nearest = hull.nearest(deepest);
         let place = pose.transform_point(deepest);
         Intrusion {
+            side,
+            lane: self.lane,
             edges: Vec::new(),
             edge: -1,
             bodies: hull
                 .neighbours(deepest, nearest, &self.discs)
                 .map(|disc| self.parts[disc]),
             depth: nearest.depth + self.margin,
-            root_depth: (self.roots.hull.depth(deepest_below_roots) + self.margin).max(0.0),
+            root_depth: (self.roots.hull.depth(below_roots) + self.margin).max(0.0),
             x: place.x,
             y: place.y,
             area: 0.0,
@@ -254,17 +265,14 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 }
 
 impl Intrusion {
-    /// Whether a contact lies on it.
-    pub(crate) fn bears(&self, profile: &Profile, contact: &Contact) -> bool {
-        let (place, length) = profile.place_on(contact.facet, contact.point);
+    /// Whether a contact of a robot of these parts lies on it.
+    pub(crate) fn bears(&self, lanes: &[Profile], parts: &[Part], contact: &Contact) -> bool {
+        if parts[contact.part].lane != self.lane {
+            return false;
+        }
+        let (place, length) = lanes[self.lane].place_on(contact.facet, contact.point);
         let margin = BEARS / length;
         let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
         self.stretches.iter().any(near)
-    }
-
-    /// [N] Normal force that the robot puts on it.
-    pub(crate) fn force(&self, profile: &Profile, loaded: &[LoadedContact]) -> f64 {
-        let bearing = loaded.iter().filter(|l| self.bears(profile, &l.contact));
-        bearing.map(|l| l.normal_force).sum()
     }
 }

@@ -16,8 +16,9 @@ use crate::terrain::Profile;
 
 /// Outlines of one robot and one ground.
 pub(crate) struct OwnContact {
-    lane: Lane,
-    outlines: Vec<Outline>,
+    lanes: Vec<Lane>,
+    /// Each with the index of its lane.
+    outlines: Vec<(usize, Outline)>,
 }
 
 /// A part as it meets the ground.
@@ -35,9 +36,9 @@ enum Outline {
 }
 
 impl OwnContact {
-    /// The outlines of a robot's parts and of a profile.
-    pub(crate) fn new(parts: &[Part], profile: &Profile) -> Self {
-        let outline = |(i, part): (usize, &Part)| match (&part.shape, part.turning()) {
+    /// The outlines of a robot's parts and of the lanes that they meet.
+    pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
+        let outline = |i: usize, part: &Part| match (&part.shape, part.turning()) {
             (Shape::Gear { gear, .. }, Some(wheel)) => Outline::Gear {
                 drive: wheel.drive,
                 gear: GearContact::new(i, wheel, *gear),
@@ -50,8 +51,12 @@ impl OwnContact {
             _ => Outline::Hull(HullContact::new(i, part)),
         };
         Self {
-            lane: Lane::new(profile),
-            outlines: parts.iter().enumerate().map(outline).collect(),
+            lanes: lanes.iter().map(Lane::new).collect(),
+            outlines: parts
+                .iter()
+                .enumerate()
+                .map(|(i, part)| (part.lane, outline(i, part)))
+                .collect(),
         }
     }
 
@@ -66,7 +71,8 @@ impl OwnContact {
         contacts: &mut Vec<Contact>,
     ) {
         contacts.clear();
-        for outline in &self.outlines {
+        for (lane, outline) in &self.outlines {
+            let lane = &self.lanes[*lane];
             match outline {
                 Outline::Disc {
                     part,
@@ -75,14 +81,14 @@ impl OwnContact {
                 } => {
                     let center = pose.transform_point(*center);
                     let reach = (prediction, SHALLOW);
-                    self.lane.touches_of_disc(center, *radius, reach, |touch| {
+                    lane.touches_of_disc(center, *radius, reach, |touch| {
                         contacts.push(touch.contact(*part));
                     });
                 }
                 Outline::Gear { drive, gear } => {
-                    gear.find(&self.lane, pose, drives[*drive], prediction, contacts);
+                    gear.find(lane, pose, drives[*drive], prediction, contacts);
                 }
-                Outline::Hull(hull) => hull.find(&self.lane, pose, prediction, contacts),
+                Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),
             }
         }
         without_redundant(contacts);

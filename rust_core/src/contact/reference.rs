@@ -19,16 +19,22 @@ use crate::terrain::Profile;
 /// Shapes of one robot and one ground.
 pub(crate) struct ReferenceContact {
     bodies: Vec<Body>,
-    ground: Polyline,
+    lanes: Vec<Ground>,
+    manifolds: Vec<ContactManifold<(), ()>>,
+}
+
+/// A lane.
+struct Ground {
+    line: Polyline,
     profile: Profile,
     /// For the hulls.
     lane: Lane,
-    manifolds: Vec<ContactManifold<(), ()>>,
 }
 
 /// A part as convex pieces.
 struct Body {
     part: usize,
+    lane: usize,
     /// [m] A disc round it, in the chassis frame.
     bound: (Vector, f64),
     /// Round parts that are more than a disc.
@@ -54,26 +60,35 @@ impl Solid {
     }
 }
 
-impl ReferenceContact {
-    /// The shapes of a robot's parts and of a profile.
-    pub(crate) fn new(parts: &[Part], profile: &Profile) -> Self {
+impl Ground {
+    fn new(profile: &Profile) -> Self {
         // Outside lies on the right of each segment, so the ground runs from +x to -x.
         let vertices: Vec<Vector> = profile.points.iter().rev().copied().collect();
+        Self {
+            line: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
+            profile: profile.clone(),
+            lane: Lane::new(profile),
+        }
+    }
+}
+
+impl ReferenceContact {
+    /// The shapes of a robot's parts and of the lanes that they meet.
+    pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
         Self {
             bodies: parts
                 .iter()
                 .enumerate()
                 .map(|(i, part)| Body {
                     part: i,
+                    lane: part.lane,
                     bound: part.bound(),
                     hull: matches!(part.shape, Shape::Hull { .. } | Shape::Polygon { .. })
                         .then(|| HullContact::new(i, part)),
                     solids: solids_of(part),
                 })
                 .collect(),
-            ground: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
-            profile: profile.clone(),
-            lane: Lane::new(profile),
+            lanes: lanes.iter().map(Ground::new).collect(),
             manifolds: Vec::new(),
         }
     }
@@ -92,11 +107,12 @@ impl ReferenceContact {
         for i in 0..self.bodies.len() {
             let (center, radius) = self.bodies[i].bound;
             let center = pose.transform_point(center);
-            if self.profile.is_clear_of(center, radius + prediction) {
+            let ground = &self.lanes[self.bodies[i].lane];
+            if ground.profile.is_clear_of(center, radius + prediction) {
                 continue;
             }
             if let Some(hull) = &self.bodies[i].hull {
-                hull.find(&self.lane, pose, prediction, contacts);
+                hull.find(&ground.lane, pose, prediction, contacts);
             }
             for k in 0..self.bodies[i].solids.len() {
                 let place = pose * self.bodies[i].solids[k].at(drives);
@@ -113,14 +129,15 @@ impl ReferenceContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let part = self.bodies[body].part;
+        let Body { part, lane, .. } = self.bodies[body];
+        let Ground { line, profile, .. } = &self.lanes[lane];
         let solid = &self.bodies[body].solids[solid];
         // A manifold that was kept would be reused until the pose changes by a degree.
         self.manifolds.clear();
         DefaultQueryDispatcher
             .contact_manifolds(
                 &pose,
-                &self.ground,
+                line,
                 &*solid.shape,
                 prediction,
                 &mut self.manifolds,
@@ -128,13 +145,13 @@ impl ReferenceContact {
             )
             .unwrap_or_else(|e| unreachable!("polylines meet every convex shape: {e}"));
         for manifold in &self.manifolds {
-            let facet = self.profile.points.len() - 2 - manifold.subshape1 as usize;
+            let facet = profile.points.len() - 2 - manifold.subshape1 as usize;
             for point in manifold.points.iter().filter(|p| p.dist < prediction) {
                 let on_solid = pose.transform_point(point.local_p2);
                 contacts.push(Contact {
                     part,
                     facet,
-                    edge: self.profile.edge_at(facet, point.local_p1),
+                    edge: profile.edge_at(facet, point.local_p1),
                     point: 0.5 * (point.local_p1 + on_solid),
                     normal: manifold.local_n1,
                     distance: point.dist,

@@ -38,7 +38,7 @@ pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f
         parts
     };
     let bearing = parts(&first, &|i| stance.bearings[i].contact.part);
-    let mut finder = ContactFinder::new(scene.contact, &scene.model.parts, scene.profile);
+    let mut finder = ContactFinder::new(scene.contact, &scene.model.parts, scene.lanes);
     let mut pose = Pose::new(stance.position, stance.angle);
     for way in WAY {
         if largest.is_infinite() {

@@ -21,6 +21,7 @@ use crate::contact::Intrusion;
 use crate::outcome::Outcome;
 use crate::robot::BodyKind;
 use crate::simulation::Counterfactual;
+use crate::terrain::Side;
 pub(crate) use scene::Scene;
 use statics::Statics;
 
@@ -84,6 +85,8 @@ pub struct LoadedIntrusion {
 /// A contact of a stop, in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopContact {
+    /// Lane that it is with.
+    pub side: Side,
     /// Index of the part.
     pub body: usize,
     /// What the part is.

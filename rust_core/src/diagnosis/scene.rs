@@ -16,8 +16,9 @@ use crate::terrain::Profile;
 /// What a diagnosis looks at besides the stop.
 pub(crate) struct Scene<'a> {
     pub model: &'a Model,
-    pub profile: &'a Profile,
-    pub envelope: &'a TrackEnvelope,
+    pub lanes: &'a [Profile],
+    /// Of each track, with its lane.
+    pub envelopes: &'a [TrackEnvelope],
     /// Who finds contacts.
     pub contact: ContactMethod,
     pub criteria: &'a SeizureCriteria,
@@ -41,12 +42,13 @@ impl Scene<'_> {
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
         let pose = Pose::new(stance.position, stance.angle);
         let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
-        let found = self.envelope.intrusions(self.profile, pose);
-        let with_force = found.into_iter().filter(|i| i.edge >= 0).map(|place| {
+        let tracks = self.envelopes.iter().zip(self.lanes);
+        let found = tracks.flat_map(|(envelope, lane)| envelope.intrusions(lane, pose));
+        let with_force = found.filter(|i| i.edge >= 0).map(|place| {
             let on_it = stance
                 .bearings
                 .iter()
-                .filter(|b| place.bears(self.profile, &b.contact));
+                .filter(|b| self.bears_on(&place, &b.contact));
             let force = on_it.map(|b| b.normal_force).sum();
             LoadedIntrusion { place, force }
         });
@@ -60,10 +62,14 @@ impl Scene<'_> {
         before != after && intrusion.place.root_depth > self.criteria.intrusion_depth
     }
 
+    fn bears_on(&self, place: &Intrusion, contact: &Contact) -> bool {
+        place.bears(self.lanes, &self.model.parts, contact)
+    }
+
     /// The coefficient of friction of a part on the ground.
-    fn friction(&self, contact: &Contact) -> f64 {
-        let limit = self.model.parts[contact.part].friction_limit;
-        limit.min(self.profile.friction)
+    fn friction(&self, part: usize) -> f64 {
+        let part = &self.model.parts[part];
+        part.friction_limit.min(self.lanes[part.lane].friction)
     }
 
     /// Whether a surface speed [m/s] is more than the creep of a contact that sticks.
@@ -75,7 +81,7 @@ impl Scene<'_> {
         /// Share of the friction cone that a contact in rattle must have used, in the mean.
         const AT_LIMIT: f64 = 0.95;
 
-        let limit = self.friction(&bearing.contact) * bearing.normal_force;
+        let limit = self.friction(bearing.contact.part) * bearing.normal_force;
         self.is_moving(bearing.slip) && bearing.friction_force.abs() >= AT_LIMIT * limit
     }
 
@@ -96,7 +102,8 @@ impl Scene<'_> {
                 friction_force: b.friction_force,
                 surface_speed: b.slip,
                 slides: self.slides(b),
-                in_pocket: pocket.is_some_and(|p| p.place.bears(self.profile, &b.contact)),
+                in_pocket: pocket.is_some_and(|p| self.bears_on(&p.place, &b.contact)),
+                side: self.lanes[self.model.parts[b.contact.part].lane].side,
             })
             .collect();
         let sum = |of: &dyn Fn(&StopContact) -> f64| contacts.iter().map(of).sum::<f64>();
@@ -228,7 +235,7 @@ impl Scene<'_> {
         let center = pose.transform_point(self.model.center_of_mass);
         let levers = Levers::new(contact, (center, pose.rotation.angle()), self.model);
         let drive = self.model.parts[contact.part].drive;
-        Support::new(&levers, drive, (self.friction(contact), slides), role)
+        Support::new(&levers, drive, (self.friction(contact.part), slides), role)
     }
 
     /// Whether a motor is at its torque limit, in the mean.
@@ -237,7 +244,7 @@ impl Scene<'_> {
     }
 
     fn role(&self, contact: &Contact, pockets: &[&LoadedIntrusion]) -> Role {
-        let bears = |p: &&LoadedIntrusion| p.place.bears(self.profile, contact);
+        let bears = |p: &&LoadedIntrusion| self.bears_on(&p.place, contact);
         if pockets.iter().any(bears) {
             Role::Pocket
         } else if self.model.parts[contact.part].kind == BodyKind::Belly {
@@ -250,10 +257,10 @@ impl Scene<'_> {
     /// What would bear on an intrusion if a belt closed the pocket, at its edge. The belt runs as the
     /// faster of the bodies on either side.
     fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
-        let edge = &self.profile.edges[place.edge as usize];
+        let edge = &self.lanes[place.lane].edges[place.edge as usize];
         let point = Vector::new(edge.x, edge.y);
         let within = pose.inverse_transform_point(point);
-        let normal = -(pose.rotation * self.envelope.outward_at(place, within));
+        let normal = -(pose.rotation * self.envelopes[place.lane].outward_at(place, within));
         let arm = point - pose.transform_point(self.model.center_of_mass);
         let speed = |k: usize| stance.drives[k].speed;
         let drives = place.bodies.map(|body| self.model.parts[body].drive);
@@ -267,12 +274,11 @@ impl Scene<'_> {
         let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
         // A free surface rolls with the ground under it.
         let slides = drive.filter(|k| *k < self.model.motors).map_or(0.0, speed);
-        let friction = self.model.parts[place.bodies[0]].friction_limit;
         Support {
             normal: Direction::new(normal, arm, motion, self.model),
             tangent: Direction::new(right_of(normal), arm, motion, self.model),
             drive,
-            friction: friction.min(self.profile.friction),
+            friction: self.friction(place.bodies[0]),
             slides: if self.is_moving(slides) {
                 right_of(normal).dot(motion) * slides
             } else {

@@ -210,9 +210,9 @@ impl Dynamics {
         let moment = self.inertia * (state.angular_velocity + change.turn * share);
         let mut slope = m.mass * velocity.dot(change.velocity)
             + (moment - self.free_moment(phase)) * change.turn;
-        let inertia = m.drive_inertia();
         for (k, spin) in self.system.spins.iter().enumerate() {
             if let Some(of_motor) = self.motors[k].share() {
+                let inertia = m.drive_inertia(k);
                 let free = inertia * phase.spins[k] - phase.motor_turn(of_motor, m);
                 let moment = inertia * (state.drives[k].spin + spin.change * share);
                 slope += (moment - free) * spin.change;

@@ -235,7 +235,7 @@ impl Dynamics {
     /// The system without constraints.
     pub(super) fn assemble_bodies(&mut self, phase: &Phase) {
         let m = &self.model;
-        let (moment, drive_inertia) = (self.free_moment(phase), self.model.drive_inertia());
+        let moment = self.free_moment(phase);
         let system = &mut self.system;
         system.rows = [
             [m.mass, 0.0, 0.0, m.mass * phase.velocity.x],
@@ -245,6 +245,7 @@ impl Dynamics {
         for (k, motor) in self.motors.iter().enumerate() {
             let share = motor.share().unwrap_or_default();
             let of_motor = phase.motor_turn(share, m);
+            let drive_inertia = m.drive_inertia(k);
             system.spins[k] = Spin {
                 inertia: drive_inertia,
                 moment: drive_inertia * phase.spins[k] - of_motor,

@@ -49,7 +49,8 @@ const CARRIED_OVER: f64 = 5e-3;
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
     model: Model,
-    friction: f64,
+    /// Of each lane.
+    frictions: Vec<f64>,
     gravity: f64,
     solver: Solver,
     rows: Vec<Row>,
@@ -78,7 +79,7 @@ pub(crate) struct Impulses {
 }
 
 impl Dynamics {
-    pub(crate) fn new(model: Model, friction: f64, gravity: f64, solver: Solver) -> Self {
+    pub(crate) fn new(model: Model, frictions: Vec<f64>, gravity: f64, solver: Solver) -> Self {
         let has_motor = |k| k < model.motors && model.drive_force > 0.0;
         let motor = |k| {
             if has_motor(k) {
@@ -96,7 +97,7 @@ impl Dynamics {
             phase: Phase::default(),
             push: model.pushes_chassis.then(Push::default),
             model,
-            friction,
+            frictions,
             gravity,
             solver,
             rows: Vec::new(),
@@ -252,7 +253,8 @@ impl Dynamics {
         for contact in contacts {
             let last = last.take_nearest(contact);
             let mut row = Row::new(contact, last, state, &self.model, (middle, half));
-            row.friction = row.friction.min(self.friction);
+            let lane = self.model.parts[contact.part].lane;
+            row.friction = row.friction.min(self.frictions[lane]);
             row.friction_guess *= fading;
             self.rows.push(row);
         }

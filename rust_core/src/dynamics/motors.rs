@@ -95,7 +95,7 @@ impl Dynamics {
             return phase.motor_impulse(share, &self.model);
         }
         // What the contacts have not, the motor has changed of the spin.
-        let change = self.model.drive_inertia() * (state.drives[k].spin - phase.spins[k]);
+        let change = self.model.drive_inertia(k) * (state.drives[k].spin - phase.spins[k]);
         (self.torques[k] - change) / self.model.drive_radius
     }
 }

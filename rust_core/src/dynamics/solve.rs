@@ -156,9 +156,9 @@ impl Dynamics {
     /// How constraints act while the motors do what they do.
     pub(super) fn set_actions(&mut self, state: &State, phase: &Phase) {
         let motors = &self.motors;
-        let held = motors.iter().filter(|motor| motor.share().is_none());
-        self.inertia =
-            self.model.moment_of_inertia + held.count() as f64 * self.model.drive_inertia();
+        let held = (0..motors.len()).filter(|k| motors[*k].share().is_none());
+        let of_held: f64 = held.map(|k| self.model.drive_inertia(k)).sum();
+        self.inertia = self.model.moment_of_inertia + of_held;
         let spin_of_set_point = phase.set_point / self.model.drive_radius;
         for i in 0..self.rows.len() {
             let row = &self.rows[i];
@@ -166,8 +166,8 @@ impl Dynamics {
             let n = Action::new(&row.normal, held, spin_of_set_point);
             let t = Action::new(&row.tangent, held, spin_of_set_point);
             let admittance = Admittance {
-                normal: self.admittance(&n),
-                tangent: self.admittance(&t),
+                normal: self.admittance(&n, row.drive),
+                tangent: self.admittance(&t, row.drive),
             };
             let row = &mut self.rows[i];
             (row.actions, row.admittance) = ([n, t], admittance);
@@ -176,7 +176,7 @@ impl Dynamics {
             let held = motors[0].share().is_none();
             let axis = push_axis(&self.model, state.angle);
             let action = Action::new(&axis, held, spin_of_set_point);
-            let admittance = self.admittance(&action);
+            let admittance = self.admittance(&action, Some(0));
             if let Some(push) = &mut self.push {
                 (push.action, push.admittance) = (action, admittance);
             }
@@ -188,11 +188,11 @@ impl Dynamics {
     pub(super) fn free_moment(&self, phase: &Phase) -> f64 {
         let m = &self.model;
         let spin_of_set_point = phase.set_point / m.drive_radius;
-        let of_drive = |(motor, spin): (&Motor, &f64)| match motor.share() {
+        let of_drive = |(k, motor): (usize, &Motor)| match motor.share() {
             Some(share) => phase.motor_turn(share, m),
-            None => self.model.drive_inertia() * (spin + spin_of_set_point),
+            None => m.drive_inertia(k) * (phase.spins[k] + spin_of_set_point),
         };
-        let of_drives: f64 = self.motors.iter().zip(&phase.spins).map(of_drive).sum();
+        let of_drives: f64 = self.motors.iter().enumerate().map(of_drive).sum();
         m.moment_of_inertia * phase.angular_velocity + of_drives
     }
 
@@ -217,7 +217,7 @@ impl Dynamics {
             if let Some(share) = motor.share() {
                 let of_motor = phase.motor_turn(share, m);
                 state.drives[k].spin =
-                    phase.spins[k] + (self.torques[k] - of_motor) / self.model.drive_inertia();
+                    phase.spins[k] + (self.torques[k] - of_motor) / self.model.drive_inertia(k);
             }
         }
     }
@@ -239,10 +239,9 @@ impl Dynamics {
             impulse += push.action.unit * push.impulse;
             moment += push.action.lever * push.impulse;
         }
-        let own = self.motors.iter().zip(&self.torques);
+        let own = (0..self.motors.len()).filter(|k| self.motors[*k].share().is_some());
         let of_spins: f64 = own
-            .filter(|(motor, _)| motor.share().is_some())
-            .map(|(_, torque)| torque * torque / m.drive_inertia())
+            .map(|k| self.torques[k] * self.torques[k] / m.drive_inertia(k))
             .sum();
         // An impulse works at the mean of the speeds before and after.
         let change = impulse.length_squared() / m.mass + moment * moment / self.inertia + of_spins;
@@ -250,10 +249,13 @@ impl Dynamics {
     }
 
     /// [1/kg] Velocity along an action for a unit impulse along it.
-    fn admittance(&self, action: &Action) -> f64 {
+    fn admittance(&self, action: &Action, drive: Option<usize>) -> f64 {
+        let of_spin = drive.map_or(0.0, |k| {
+            action.spin_lever * action.spin_lever / self.model.drive_inertia(k)
+        });
         action.unit.length_squared() / self.model.mass
             + action.lever * action.lever / self.inertia
-            + action.spin_lever * action.spin_lever / self.model.drive_inertia()
+            + of_spin
     }
 
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.

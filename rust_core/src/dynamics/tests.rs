@@ -19,7 +19,7 @@ fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     let model = Model::new(&scenario.robot).expect("the robot can be built");
     let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
     (
-        Dynamics::new(model, 0.5, scenario.gravity, scenario.solver),
+        Dynamics::new(model, vec![0.5], scenario.gravity, scenario.solver),
         state,
     )
 }
@@ -54,11 +54,11 @@ fn drive_in_the_air_spins_up_by_its_force_and_turns_the_chassis_back() {
     advance(&mut dynamics, &mut state, 10, 100.0, &[]);
     let m = dynamics.model();
     let (force, radius) = (2.0 * 6.0 / 0.052, m.drive_radius);
-    let expected = force * 0.01 * (1.0 / m.drive_mass + radius * radius / m.moment_of_inertia);
+    let expected = force * 0.01 * (1.0 / m.drive_masses[0] + radius * radius / m.moment_of_inertia);
     assert_relative_eq!(state.track_speed(m, 0), expected, max_relative = 1e-4);
     assert_relative_eq!(state.drives[0].force, force, max_relative = 1e-9);
     // No outer moment: what the chassis turns one way, the drive turns the other.
-    let of_drive = m.drive_mass * radius * radius * state.drives[0].spin;
+    let of_drive = m.drive_masses[0] * radius * radius * state.drives[0].spin;
     assert_relative_eq!(
         m.moment_of_inertia * state.angular_velocity,
         -of_drive,
@@ -121,10 +121,11 @@ fn force_limit_acts_on_the_signed_sum_of_the_tractions() {
 
 /// Kinetic energy [J] of the chassis and the drives.
 fn energy(m: &Model, state: &State) -> f64 {
-    let spins = state.drives.iter().map(|d| d.spin * d.spin).sum::<f64>();
+    let spins = state.drives.iter().enumerate();
+    let of_drives = spins.map(|(k, d)| m.drive_inertia(k) * d.spin * d.spin);
     0.5 * (m.mass * state.velocity.length_squared()
         + m.moment_of_inertia * state.angular_velocity * state.angular_velocity
-        + m.drive_inertia() * spins)
+        + of_drives.sum::<f64>())
 }
 
 /// Contacts from all sides, at will: they hold, slide, part or jam.
@@ -184,7 +185,7 @@ fn force_alone_drives_the_chassis_in_the_air() {
     });
     advance(&mut dynamics, &mut state, 10, 100.0, &[]);
     let m = dynamics.model();
-    let expected = 0.01 * m.drive_force / (m.mass + m.drive_mass);
+    let expected = 0.01 * m.drive_force / (m.mass + m.drive_masses[0]);
     // The motor's reaction turns the chassis back a little, which adds a quarter of a per cent.
     assert_relative_eq!(state.velocity.x, expected, max_relative = 5e-3);
     assert_relative_eq!(

@@ -11,7 +11,7 @@ use crate::dynamics::DriveState;
 use crate::events::{Event, IntrusionWatch};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
-use crate::robot::{Model, Shape};
+use crate::robot::{Model, Part, Shape};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::shaking::Shaking;
 use crate::terrain::{Ground, Profile};
@@ -23,14 +23,17 @@ const LOOK: f64 = 0.01;
 /// Watches one run.
 pub(crate) struct Monitor {
     criteria: SeizureCriteria,
-    profile: Profile,
+    ground: Ground,
     goal: f64,
     /// [m] A metre below the whole ground.
     floor: f64,
     half_length: f64,
     rear_radius: f64,
     grouser_pitch: f64,
-    envelope: TrackEnvelope,
+    /// What the robot is made of.
+    parts: Vec<Part>,
+    /// Of each track, with its lane.
+    envelopes: Vec<TrackEnvelope>,
     /// A turning grouser changes what is there although the pose does not.
     has_grousers: bool,
     /// What it has seen.
@@ -104,13 +107,18 @@ impl Monitor {
         let outline = &scenario.robot.outline;
         Self {
             criteria: scenario.criteria.clone(),
-            profile: ground.profile.clone(),
+            ground: ground.clone(),
             goal: ground.goal_of(scenario),
-            floor: ground.profile.lowest() - 1.0,
+            floor: ground.lowest() - 1.0,
             half_length: 0.5 * outline.axle_distance,
             rear_radius: outline.rear_radius,
             grouser_pitch: outline.grouser_pitch,
-            envelope: TrackEnvelope::new(&model.parts, scenario.criteria.intrusion_depth),
+            envelopes: (0..ground.tracks)
+                .map(|lane| {
+                    TrackEnvelope::new(&model.parts, lane, scenario.criteria.intrusion_depth)
+                })
+                .collect(),
+            parts: model.parts.clone(),
             has_grousers: model
                 .parts
                 .iter()
@@ -170,11 +178,11 @@ impl Monitor {
         let rear = now.position.x - cosine * self.half_length;
         let front = now.position.x + cosine * self.half_length;
         let lower_axle = now.position.y - (sine * self.half_length).abs();
-        let (low, high) = self.profile.extent();
+        let (low, high) = self.ground.extent();
         if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
             return Some(Outcome::LeftTerrain);
         }
-        let level = (now.chassis_angle - self.profile.angle_at(now.position.x)).abs()
+        let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
             < self.criteria.clear_angle;
         if rear > self.goal + self.rear_radius && level {
             let since = *self.seen.goal_since.get_or_insert(now.time);
@@ -191,14 +199,18 @@ impl Monitor {
     /// Follows what is inside the track.
     fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact]) {
         let pose = Pose::new(now.position, now.chassis_angle);
-        let profile = &self.profile;
-        let inside = if self.envelope.holds_edge(profile, pose) {
-            self.envelope.intrusions(profile, pose)
-        } else {
-            Vec::new()
-        };
-        let with_force = inside.into_iter().filter(|i| i.edge >= 0).map(|i| {
-            let force = i.force(profile, loaded);
+        let lanes = &self.ground.lanes;
+        let holds_edge =
+            |(envelope, profile): &(&TrackEnvelope, &Profile)| envelope.holds_edge(profile, pose);
+        let inside = self
+            .envelopes
+            .iter()
+            .zip(lanes)
+            .filter(holds_edge)
+            .flat_map(|(envelope, profile)| envelope.intrusions(profile, pose));
+        let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
+            let bears = |l: &&LoadedContact| i.bears(lanes, &self.parts, &l.contact);
+            let force = loaded.iter().filter(bears).map(|l| l.normal_force).sum();
             (i, force)
         });
         self.seen.intrusions.look(now.time, with_force);
@@ -321,7 +333,7 @@ impl Monitor {
         self.seen.intrusions.most_loaded()
     }
 
-    pub(crate) fn envelope(&self) -> &TrackEnvelope {
-        &self.envelope
+    pub(crate) fn envelopes(&self) -> &[TrackEnvelope] {
+        &self.envelopes
     }
 }

@@ -35,7 +35,7 @@ impl Simulation {
     pub fn branch(&self, variant: &Scenario) -> Result<Self, Error> {
         variant.validate()?;
         let ground = Ground::new(&variant.terrain)?;
-        let model = Model::new(&variant.robot)?;
+        let model = Model::on(&variant.robot, &ground)?;
         let mut branch = self.with(variant, ground, model);
         branch.command = variant.drive.speed;
         if variant.robot == self.scenario.robot {

@@ -16,9 +16,10 @@ use crate::events::Event;
 use crate::monitor::Monitor;
 use crate::outcome::Outcome;
 use crate::reading::Reading;
-use crate::robot::{self, BodyKind, Model};
+use crate::robot::{BodyKind, Model};
 use crate::scenario::Scenario;
-use crate::terrain::Ground;
+use crate::start::start_position;
+use crate::terrain::{Ground, Side};
 
 /// A simulation under way: what was built from the scenario, and the state.
 pub struct Simulation {
@@ -54,8 +55,8 @@ impl Simulation {
     /// # Errors
     /// [`Error::Scenario`] if the robot does not fit on it.
     pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
-        let model = Model::new(&scenario.robot)?;
-        let position = robot::start_pose(scenario, &model, &ground)?;
+        let model = Model::on(&scenario.robot, &ground)?;
+        let position = start_position(scenario, &model, &ground)?;
         let state = State::at_rest(
             &model,
             position,
@@ -68,12 +69,12 @@ impl Simulation {
     /// A robot in a state on a ground.
     pub(crate) fn of(scenario: &Scenario, ground: Ground, model: Model, state: State) -> Self {
         let method = scenario.solver.contact;
-        let contact = ContactFinder::new(method, &model.parts, &ground.profile);
+        let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
         let reach = model.reach();
         let monitor = Monitor::new(scenario, &ground, &model);
         let dynamics = Dynamics::new(
             model,
-            ground.profile.friction,
+            ground.lanes.iter().map(|lane| lane.friction).collect(),
             scenario.gravity,
             scenario.solver.clone(),
         );
@@ -261,8 +262,8 @@ impl Simulation {
         };
         let scene = Scene {
             model: self.dynamics.model(),
-            profile: &self.ground.profile,
-            envelope: self.monitor.envelope(),
+            lanes: &self.ground.lanes,
+            envelopes: self.monitor.envelopes(),
             contact: self.scenario.solver.contact,
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
@@ -274,11 +275,13 @@ impl Simulation {
         Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
     }
 
-    /// What of the ground is inside the envelope of the track now, from the left.
+    /// What of the ground is inside the envelope of each track now, from the left.
     pub fn intrusions(&self) -> Vec<Intrusion> {
         let pose = self.state.pose(self.dynamics.model());
-        let envelope = self.monitor.envelope();
-        envelope.intrusions(&self.ground.profile, pose)
+        let tracks = self.monitor.envelopes().iter().zip(&self.ground.lanes);
+        tracks
+            .flat_map(|(envelope, lane)| envelope.intrusions(lane, pose))
+            .collect()
     }
 
     /// Stops and intrusions so far.
@@ -302,6 +305,12 @@ impl Simulation {
 
     pub(crate) fn loaded(&self) -> &[LoadedContact] {
         self.dynamics.loaded()
+    }
+
+    /// Lane that a part meets.
+    pub(crate) fn side(&self, part: usize) -> Side {
+        let part = &self.dynamics.model().parts[part];
+        self.ground.lanes[part.lane].side
     }
 
     pub(crate) fn part_kind(&self, part: usize) -> BodyKind {

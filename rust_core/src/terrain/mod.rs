@@ -1,47 +1,153 @@
-//! From the described terrain to the profile that contacts are computed on.
+//! From the described terrain to the profiles that contacts are computed on.
 
 mod obstacle;
 mod profile;
+mod upper;
 
 use crate::error::ScenarioError;
 use crate::scenario::{Scenario, Terrain};
 use profile::COLLINEAR;
-pub use profile::{Edge, Profile};
+pub use profile::{Edge, Profile, Side};
 
 /// The ground of a scenario.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// One profile under both tracks and the belly (equal lanes are simulated as one).
-    pub profile: Profile,
+    /// Profiles under the tracks, from the left, or one under both; then that of the belly, if it has one
+    /// of its own.
+    pub lanes: Vec<Profile>,
+    /// Number of profiles under tracks: 1 if both meet the same, else 2.
+    pub tracks: usize,
     /// [m] The x that must be left behind.
     pub goal: f64,
     /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
     pub first_edge: f64,
 }
 
+/// What is described of one lane.
+struct Described {
+    profile: Profile,
+    goal: f64,
+}
+
 impl Ground {
     /// Builds the ground of a terrain.
     ///
     /// # Errors
-    /// A profile that cannot be: overhang, too few points, an edge radius that does not fit.
+    /// A profile that cannot be: overhang, too few points, an edge radius that does not fit; lanes that
+    /// have no x in common.
     pub fn new(terrain: &Terrain) -> Result<Self, ScenarioError> {
-        Self::at("terrain", terrain)
+        let Terrain::Lanes {
+            left,
+            right,
+            middle,
+        } = terrain
+        else {
+            let lane = Described::new("terrain", terrain)?;
+            return Ok(Self::of(vec![lane.profile], 1, lane.goal));
+        };
+        let middle = middle.as_deref();
+        let first = Described::new("terrain.left", left)?;
+        let second = Described::new("terrain.right", right)?;
+        let third = middle
+            .map(|lane| Described::new("terrain.middle", lane))
+            .transpose()?
+            .map(|lane| lane.profile);
+        let goal = first.goal.max(second.goal);
+        let ground = if left == right {
+            // What both tracks share is simulated as one.
+            let own = third.filter(|_| middle != Some(left));
+            let own = own.map(|profile| profile.under(Side::Middle));
+            let lanes = std::iter::once(first.profile).chain(own).collect();
+            Self::of(lanes, 1, goal)
+        } else {
+            Self::apart([first.profile, second.profile], third, goal)?
+        };
+        let (low, high) = ground.extent();
+        if !(low..=high).contains(&goal) {
+            let rule = format!("must have all lanes reach under its goal at {goal} m");
+            let value = format!("x from {low} to {high} m");
+            return Err(ScenarioError::new("terrain", value, rule));
+        }
+        Ok(ground)
+    }
+
+    /// A profile under each track; without one of its own the belly meets the higher of the two.
+    ///
+    /// # Errors
+    /// No x that both have.
+    pub fn apart(
+        [left, right]: [Profile; 2],
+        middle: Option<Profile>,
+        goal: f64,
+    ) -> Result<Self, ScenarioError> {
+        let middle = match middle {
+            Some(middle) => middle,
+            None => upper::envelope("terrain", &left, &right)?,
+        };
+        let lanes = vec![
+            left.under(Side::Left),
+            right.under(Side::Right),
+            middle.under(Side::Middle),
+        ];
+        Ok(Self::of(lanes, 2, goal))
+    }
+
+    fn of(lanes: Vec<Profile>, tracks: usize, goal: f64) -> Self {
+        let first = |profile: &Profile| {
+            let edges = &profile.edges;
+            let ahead = edges.iter().find(|edge| edge.x >= -COLLINEAR);
+            ahead.or(edges.first()).map(|edge| edge.x)
+        };
+        let first_edge = lanes.iter().filter_map(first).reduce(f64::min);
+        Self {
+            lanes,
+            tracks,
+            goal,
+            first_edge: first_edge.unwrap_or(0.0),
+        }
+    }
+
+    /// The corners of all lanes.
+    pub fn edges(&self) -> Vec<Edge> {
+        let edges = self.lanes.iter().flat_map(|lane| &lane.edges);
+        edges.copied().collect()
+    }
+
+    /// Lane under the belly.
+    pub fn middle(&self) -> usize {
+        self.lanes.len() - 1
+    }
+
+    /// [m] Smallest and largest x that all lanes have.
+    pub fn extent(&self) -> (f64, f64) {
+        let extents = self.lanes.iter().map(Profile::extent);
+        extents.fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), (a, b)| {
+            (low.max(a), high.min(b))
+        })
+    }
+
+    /// [rad] Angle of the ground at x, the mean under both tracks.
+    pub(crate) fn angle_at(&self, x: f64) -> f64 {
+        let angles = self.lanes[..self.tracks]
+            .iter()
+            .map(|lane| lane.angle_at(x));
+        angles.sum::<f64>() / self.tracks as f64
+    }
+
+    /// [m] Height of the lowest point of all.
+    pub(crate) fn lowest(&self) -> f64 {
+        let heights = self.lanes.iter().map(Profile::lowest);
+        heights.fold(f64::INFINITY, f64::min)
     }
 
     /// [m] The x that the rear axle must leave behind, unless the scenario has its own.
     pub fn goal_of(&self, scenario: &Scenario) -> f64 {
         scenario.goal.unwrap_or(self.goal)
     }
+}
 
-    fn at(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
-        if let Terrain::Lanes {
-            left,
-            right,
-            middle,
-        } = terrain
-        {
-            return Self::lanes(path, left, right, middle.as_deref());
-        }
+impl Described {
+    fn new(path: &str, terrain: &Terrain) -> Result<Self, ScenarioError> {
         let obstacle = obstacle::of(terrain);
         let goal = obstacle.goal;
         let profile = Profile::new(
@@ -51,46 +157,11 @@ impl Ground {
             obstacle.friction,
             true,
         )?;
-        let edges = &profile.edges;
-        let first_edge = edges
-            .iter()
-            .find(|edge| edge.x >= -COLLINEAR)
-            .or(edges.first());
-        let first_edge = first_edge.map_or(0.0, |edge| edge.x);
-        let ground = Self {
-            profile,
-            goal,
-            first_edge,
-        };
-        let (low, high) = ground.profile.extent();
-        if !(low..=high).contains(&ground.goal) {
+        let (low, high) = profile.extent();
+        if !(low..=high).contains(&goal) {
             let rule = format!("must lie on the terrain, from {low} to {high} m");
             return Err(ScenarioError::new(format!("{path}.goal"), goal, rule));
         }
-        Ok(ground)
-    }
-
-    /// Equal lanes are one ground under lumped tracks.
-    fn lanes(
-        path: &str,
-        left: &Terrain,
-        right: &Terrain,
-        middle: Option<&Terrain>,
-    ) -> Result<Self, ScenarioError> {
-        let ground = Self::at(&format!("{path}.left"), left)?;
-        for (name, lane) in [("right", Some(right)), ("middle", middle)] {
-            let Some(lane) = lane else { continue };
-            let path = format!("{path}.{name}");
-            Self::at(&path, lane)?;
-            if lane != left {
-                let value = serde_json::to_string(lane).unwrap_or_default();
-                return Err(ScenarioError::new(
-                    path,
-                    value,
-                    "must equal the left lane: both tracks are simulated as one",
-                ));
-            }
-        }
-        Ok(ground)
+        Ok(Self { profile, goal })
     }
 }

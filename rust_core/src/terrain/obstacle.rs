@@ -82,7 +82,7 @@ pub(super) fn of(terrain: &Terrain) -> Obstacle {
             edge_radius: *edge_radius,
             friction: *friction,
         },
-        Terrain::Lanes { left, .. } => of(left),
+        Terrain::Lanes { .. } => unreachable!("a lane is one terrain"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! One lane of the ground as a polyline with edges.
 
 use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use crate::error::ScenarioError;
 use crate::plane::left_of;
@@ -13,9 +14,24 @@ pub(super) const COLLINEAR: f64 = 1e-9;
 /// [m] A contact this close to a vertex touches the edge, not the face beside it.
 const AT_VERTEX: f64 = 1e-7;
 
+/// Which part of the robot a profile lies under; the code is the `lane` of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Side {
+    /// Under both tracks, and the belly unless that has its own.
+    Both = 0,
+    /// Under the left track.
+    Left = 1,
+    /// Under the right track.
+    Right = 2,
+    /// Under the belly.
+    Middle = 3,
+}
+
 /// One lane: a polyline from left to right with the rounded edges cut into facets.
 #[derive(Clone, Debug)]
 pub struct Profile {
+    /// What it lies under.
+    pub side: Side,
     /// [m] Points from left to right; x never decreases.
     pub points: Vec<Vector>,
     /// Edge that each point belongs to, or -1.
@@ -31,6 +47,10 @@ pub struct Profile {
 /// A corner of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
+    /// Lane that it is on.
+    pub side: Side,
+    /// Number on its lane, from the left.
+    pub id: i32,
     /// [m] Position of the corner (of its sharp form, if rounded).
     pub x: f64,
     /// [m] Position of the corner.
@@ -83,6 +103,7 @@ impl Profile {
         }
         let merged = given.len() - points.len();
         let mut profile = Self {
+            side: Side::Both,
             points: Vec::new(),
             edge_of_point: Vec::new(),
             edges: Vec::new(),
@@ -132,6 +153,8 @@ impl Profile {
             let radius = if rounded { radius } else { 0.0 };
             let center = start - outward * radius;
             self.edges.push(Edge {
+                side: self.side,
+                id,
                 x: corner.x,
                 y: corner.y,
                 angle,
@@ -165,6 +188,15 @@ impl Profile {
         }
         self.points.push(point);
         self.edge_of_point.push(edge);
+    }
+
+    /// The same under another part of the robot.
+    pub(super) fn under(mut self, side: Side) -> Self {
+        self.side = side;
+        for edge in &mut self.edges {
+            edge.side = side;
+        }
+        self
     }
 
     /// [m] Smallest and largest x.

@@ -31,5 +31,6 @@ pub(super) fn hull(
         shape,
         drive,
         friction_limit,
+        lane: 0,
     }
 }

@@ -54,5 +54,6 @@ fn part(shape: Shape, drive: usize) -> Part {
         shape,
         drive: Some(drive),
         friction_limit: f64::INFINITY,
+        lane: 0,
     }
 }

@@ -86,7 +86,7 @@ fn resting_penetration_is_below_a_fifth_of_a_millimetre() {
 #[test]
 fn every_model_is_the_same_robot() {
     let reference = Model::new(&engineer().robot).expect("it can be built");
-    let turning = |m: &Model| m.drives as f64 * m.drive_mass * m.drive_radius * m.drive_radius;
+    let turning = |m: &Model| m.drive_masses.iter().sum::<f64>() * m.drive_radius * m.drive_radius;
     for (name, track) in models() {
         for sharing in [TorqueSharing::Track, TorqueSharing::Wheel] {
             let mut robot = engineer().robot;
@@ -106,7 +106,7 @@ fn every_model_is_the_same_robot() {
             assert_relative_eq!(total, robot.moment_of_inertia, max_relative = 1e-9);
             assert_relative_eq!(turning(&model), turning(&reference), max_relative = 1e-9);
             assert_relative_eq!(
-                model.drives as f64 * model.drive_mass,
+                model.drive_masses.iter().sum::<f64>(),
                 robot.track_mass,
                 max_relative = 1e-9
             );
@@ -222,7 +222,7 @@ fn unpowered_robot_never_gains_energy() {
             let spins: f64 = (0..s.drives())
                 .map(|k| {
                     let spin = r.angular_velocity - s.drive_speed(k) / model.drive_radius;
-                    0.5 * model.drive_mass * (model.drive_radius * spin).powi(2)
+                    0.5 * model.drive_masses[k] * (model.drive_radius * spin).powi(2)
                 })
                 .sum();
             0.5 * robot.mass * (v[0] * v[0] + v[1] * v[1])

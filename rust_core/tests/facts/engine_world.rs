@@ -51,13 +51,13 @@ impl EngineWorld {
         p.static_contact_softness = p.contact_softness;
 
         let friction = |c: ColliderBuilder| {
-            c.friction(ground.profile.friction)
+            c.friction(ground.lanes[0].friction)
                 .friction_combine_rule(CoefficientCombineRule::Min)
         };
         let groups =
             |own: Group, other: Group| InteractionGroups::new(own, other, InteractionTestMode::And);
         let (of_ground, of_robot) = (Group::GROUP_1, Group::GROUP_2);
-        let points: Vec<Vector> = ground.profile.points.iter().rev().copied().collect();
+        let points: Vec<Vector> = ground.lanes[0].points.iter().rev().copied().collect();
         let profile = friction(ColliderBuilder::oriented_polyline(points, None));
         world.insert_collider(profile.collision_groups(groups(of_ground, of_robot)), None);
         let on_robot = |c: ColliderBuilder| {

@@ -121,7 +121,8 @@ fn pieces_of_flat_ground_leave_no_trace_under_grousers() {
             .map(|i| [-5.0 + 10.0 * i as f64 / pieces as f64, 0.0])
             .collect();
         Ground {
-            profile: Profile::new("ground", &points, 0.0, 0.9, false).expect("level"),
+            lanes: vec![Profile::new("ground", &points, 0.0, 0.9, false).expect("level")],
+            tracks: 1,
             goal: 4.0,
             first_edge: 0.0,
         }

@@ -23,7 +23,8 @@ fn cut(pieces: usize, jitter: f64, draw: &mut Draw) -> Ground {
     let profile = Profile::new("ground", &points, 0.0, 0.9, false).expect("a level profile");
     assert_eq!(profile.points.len(), pieces + 1, "nothing is merged");
     Ground {
-        profile,
+        lanes: vec![profile],
+        tracks: 1,
         goal: 4.0,
         first_edge: 0.0,
     }

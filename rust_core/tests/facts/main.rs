@@ -20,6 +20,7 @@ mod drive;
 mod gears;
 mod ghosts;
 mod judged;
+mod lanes;
 mod repeat;
 mod robustness;
 mod seizure;

@@ -41,7 +41,7 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
         }
         // Coulomb's law in every sample, and nothing pulls.
         let ground = Ground::new(&scenario.terrain).expect("it was built before");
-        let friction = ground.profile.friction;
+        let friction = ground.lanes[0].friction;
         for i in 0..run.contacts.time.len() {
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);
             assert!(
@@ -202,7 +202,7 @@ fn order_duplicates_and_collinear_points_do_not_matter() {
     ];
     messy.reverse();
     let profile =
-        |s: Result<Simulation, Error>| s.map(|s| s.ground().profile.clone()).expect("accepted");
+        |s: Result<Simulation, Error>| s.map(|s| s.ground().lanes[0].clone()).expect("accepted");
     let (a, b) = (profile(with_points(clean)), profile(with_points(messy)));
     assert_eq!(a.points, b.points);
     assert_eq!((a.merged, b.merged), (0, 4));

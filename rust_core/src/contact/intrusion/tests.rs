@@ -141,14 +141,14 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
     let placements = vec![[-0.186, 0.0, 0.08], [0.0, 0.0, 0.08], [0.186, 0.0, 0.08]];
     let wheel = Wheel::Round;
     let model = model(Track::Hybrid(HybridWheels { placements, wheel }));
-    let envelope = TrackEnvelope::new(&model.parts, 0.0);
+    let envelope = TrackEnvelope::new(&model.parts, 0, 0.0);
     let terrain = Terrain::Barrier {
         height: 0.03,
         thickness: 0.02,
         edge_radius: 0.0,
         friction: 0.9,
     };
-    let profile = Ground::new(&terrain).expect("a ground").profile;
+    let profile = Ground::new(&terrain).expect("a ground").lanes.remove(0);
     // The post stands in the middle between the rear and the middle wheel.
     let pose = Pose::from_translation(Vector::new(0.103, 0.081));
     let found = envelope.intrusions(&profile, pose);
@@ -280,21 +280,21 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
         let ground = Ground::new(&terrain(number % 6, &mut draw)).expect("a ground");
         let x = draw.between(-0.3, 0.5);
         // From buried to clear, most of them astride what stands below.
-        let y = ground.profile.height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);
+        let y = ground.lanes[0].height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);
         let angle = Rotation::new(draw.between(-0.7, 0.7));
         let pose = Pose::from_parts(Vector::new(x, y), angle);
         let [tips, roots] = [false, true].map(|roots| judge(model, pose, roots));
         let case = Case {
             name: format!("seed {SEED}, pose {number}"),
-            profile: &ground.profile,
+            profile: &ground.lanes[0],
             narrow: 4.0 * (tips.support(Vector::X) + tips.support(-Vector::X)) / SLICES as f64,
             tips,
             roots,
             middles: middles[number % models.len()]
                 .map(|(depth, place)| (depth, pose.transform_point(place))),
         };
-        let found = TrackEnvelope::new(&model.parts, 0.0).intrusions(&ground.profile, pose);
-        let expected = ranges(&case.tips, &ground.profile);
+        let found = TrackEnvelope::new(&model.parts, 0, 0.0).intrusions(&ground.lanes[0], pose);
+        let expected = ranges(&case.tips, &ground.lanes[0]);
         if case.is_unclear(&found, &expected) {
             continue;
         }

@@ -26,7 +26,7 @@ pub(super) struct Lane {
 
 impl Lane {
     pub(super) fn new(ground: &Ground) -> Self {
-        let points = &ground.profile.points;
+        let points = &ground.lanes[0].points;
         let faces: Vec<Face> = points
             .windows(2)
             .map(|ends| {
@@ -46,7 +46,7 @@ impl Lane {
         Self {
             faces,
             convex,
-            friction: ground.profile.friction,
+            friction: ground.lanes[0].friction,
         }
     }
 

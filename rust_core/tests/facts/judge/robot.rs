@@ -72,7 +72,7 @@ impl Robot {
             inertia: model.moment_of_inertia,
             parts: parts.collect(),
             drives: model.drives,
-            drive_mass: model.drive_mass,
+            drive_mass: model.drive_masses[0],
             drive_radius: model.drive_radius,
             drive_force: model.drive_force,
         }

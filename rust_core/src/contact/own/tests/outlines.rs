@@ -63,6 +63,7 @@ impl Outline {
             shape,
             drive: Some(0),
             friction_limit: f64::INFINITY,
+            lane: 0,
         };
         Self {
             part,

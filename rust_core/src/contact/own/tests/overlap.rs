@@ -256,8 +256,9 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
         },
         drive: None,
         friction_limit: f64::INFINITY,
+        lane: 0,
     };
-    let contact = OwnContact::new(&[part], &ground.profile);
+    let contact = OwnContact::new(&[part], &[ground.profile]);
     let mut contacts = Vec::new();
     for (behind, below) in [(1e-9, 1e-9), (1e-6, 1e-4), (1e-4, 1e-6), (5e-4, 5e-4)] {
         let pose = Pose::from_translation(Vector::new(behind, -below));

@@ -36,7 +36,7 @@ impl Scene {
         let name = format!("scene {number} of {:#x}", draw.0);
         let ground = Ground::random(draw.below(grounds::KINDS), draw);
         let outline = Outline::random(draw.below(outlines::KINDS), draw);
-        let contact = OwnContact::new(std::slice::from_ref(&outline.part), &ground.profile);
+        let contact = OwnContact::new(&[outline.part.clone()], &[ground.profile.clone()]);
         // On a random feature but for the ends, or on the flat beside it.
         let feature = ground.curves[draw.below(ground.curves.len())];
         let [a, b] = feature.ends();

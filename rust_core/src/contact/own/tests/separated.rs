@@ -103,8 +103,9 @@ fn a_rounded_edge_is_a_true_arc() {
             },
             drive: Some(0),
             friction_limit: f64::INFINITY,
+            lane: 0,
         };
-        let contact = OwnContact::new(&[part], &profile);
+        let contact = OwnContact::new(&[part], &[profile]);
         let angle = draw.between(0.25, 0.5) * TAU;
         let outward = Vector::new(angle.cos(), angle.sin());
         let middle = Vector::new(edge_radius, 0.1 - edge_radius);

@@ -1,0 +1,71 @@
+//! A robot on lanes: what lies under the left track, the right one, and the belly between them.
+
+use crate::error::ScenarioError;
+use crate::robot::{BodyKind, Model, Part};
+use crate::scenario::Robot;
+use crate::terrain::Ground;
+
+impl Model {
+    /// The model of a robot on a ground: both tracks lumped where they meet the same, else side by side,
+    /// each with half of mass and force.
+    ///
+    /// # Errors
+    /// Wheels that do not fit the robot.
+    pub fn on(robot: &Robot, ground: &Ground) -> Result<Self, ScenarioError> {
+        let lumped = Self::new(robot)?;
+        let mut model = if ground.tracks > 1 {
+            lumped.side_by_side()
+        } else {
+            lumped
+        };
+        for part in &mut model.parts {
+            if part.kind == BodyKind::Belly {
+                part.lane = ground.middle();
+            }
+        }
+        Ok(model)
+    }
+
+    /// The parts of the left track, those of the right, the belly; so their drives, those with a motor
+    /// first. A force along the chassis has no side and stays one.
+    fn side_by_side(self) -> Self {
+        let shared = usize::from(self.pushes_chassis);
+        let (motors, free) = (self.motors - shared, self.drives - self.motors);
+        let of_side = |drive: usize, side: usize| {
+            if drive < shared {
+                drive
+            } else if drive < self.motors {
+                drive + side * motors
+            } else {
+                drive + motors + side * free
+            }
+        };
+        let is_belly = |part: &&Part| part.kind == BodyKind::Belly;
+        let mut parts = Vec::new();
+        for lane in 0..2 {
+            let of_track = self.parts.iter().filter(|part| !is_belly(part));
+            parts.extend(of_track.map(|part| Part {
+                drive: part.drive.map(|k| of_side(k, lane)),
+                lane,
+                ..part.clone()
+            }));
+        }
+        parts.extend(self.parts.iter().filter(is_belly).cloned());
+        let drives = shared + 2 * (motors + free);
+        let mut drive_masses = self.drive_masses.clone();
+        drive_masses.resize(drives, 0.0);
+        for (k, mass) in self.drive_masses.iter().enumerate().skip(shared) {
+            drive_masses[of_side(k, 0)] = 0.5 * mass;
+            drive_masses[of_side(k, 1)] = 0.5 * mass;
+        }
+        let motors = shared + 2 * motors;
+        Self {
+            parts,
+            drives,
+            drive_masses,
+            drive_force: self.drive_force * self.motors as f64 / motors as f64,
+            motors,
+            ..self
+        }
+    }
+}

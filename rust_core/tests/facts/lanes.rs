@@ -1,0 +1,169 @@
+//! Two lanes under one chassis: each track meets its own ground, the belly the one between.
+
+use crawler2d_core::{BodyKind, Ground, Model, Profile, Simulation, Terrain, Track, Wheel};
+
+use crate::common::*;
+
+fn models() -> Vec<(&'static str, Track)> {
+    vec![
+        ("belt", belt()),
+        ("line of 3", line(3)),
+        ("16 all round", circumferential(16, Wheel::Round)),
+        ("hybrid", hybrid(Wheel::Round)),
+        ("force on skids", force()),
+        ("force on wheels", force_on_wheels()),
+        ("line of 3 gear wheels", line_of(3, paper_gear())),
+    ]
+}
+
+fn profile(terrain: &Terrain) -> (Profile, f64) {
+    let mut ground = Ground::new(terrain).expect("a ground");
+    (ground.lanes.remove(0), ground.goal)
+}
+
+/// The same profile thrice.
+fn equal_lanes(terrain: &Terrain) -> Ground {
+    let (lane, goal) = profile(terrain);
+    let tracks = [lane.clone(), lane.clone()];
+    Ground::apart(tracks, Some(lane), goal).expect("they overlap")
+}
+
+fn lanes(left: Terrain, right: Terrain) -> Terrain {
+    Terrain::Lanes {
+        left: Box::new(left),
+        right: Box::new(right),
+        middle: None,
+    }
+}
+
+/// Level ground at a height.
+fn level(height: f64, friction: f64) -> Terrain {
+    Terrain::Points {
+        points: vec![[-5.0, height], [5.0, height]],
+        goal: 4.0,
+        edge_radius: 0.0,
+        friction,
+    }
+}
+
+/// Normal forces [N] on the left, the right and the belly, and friction on them along x.
+fn shares(simulation: &Simulation) -> [[f64; 2]; 3] {
+    let table = simulation.contact_table();
+    let mut sums = [[0.0; 2]; 3];
+    for (i, lane) in table.lane.iter().enumerate() {
+        let sum = &mut sums[*lane as usize - 1];
+        sum[0] += table.normal_force[i];
+        sum[1] += table.friction_force[i] * table.normal_y[i];
+    }
+    sums
+}
+
+#[test]
+fn equal_lanes_are_both_tracks_as_one() {
+    for (name, track) in models() {
+        let mut scenario = engineer();
+        scenario.robot.track = track;
+        let ground = equal_lanes(&scenario.terrain);
+        let mut apart = Simulation::on_ground(&scenario, ground).expect("it fits");
+        let mut lumped = Simulation::new(&scenario).expect("it fits");
+        let mut off: f64 = 0.0;
+        // At 0.2 m/s^2 half a second ends 0.02 m before the step is reached.
+        for _ in 0..500 {
+            apart.step().expect("finite");
+            lumped.step().expect("finite");
+            let (a, b) = (apart.reading(), lumped.reading());
+            off = off.max((a.position - b.position).length());
+            off = off.max((a.chassis_angle - b.chassis_angle).abs());
+            off = off.max((a.track_speed - b.track_speed).abs());
+        }
+        println!("{name}: off {off:.1e}");
+        // Coulomb friction leaves open who bears what; where grousers strike, that shows a little.
+        assert!(off < if name.contains("gear") { 1e-4 } else { 1e-6 });
+    }
+}
+
+#[test]
+fn two_tracks_have_the_mass_and_the_force_of_both() {
+    for (name, track) in models() {
+        let mut scenario = engineer();
+        scenario.robot.track = track;
+        let lumped = Model::new(&scenario.robot).expect("it can be built");
+        let ground = equal_lanes(&scenario.terrain);
+        let apart = Model::on(&scenario.robot, &ground).expect("it can be built");
+        let force = |m: &Model| m.motors as f64 * m.drive_force;
+        let mass = |m: &Model| m.drive_masses.iter().sum::<f64>();
+        assert!((force(&apart) - force(&lumped)).abs() < 1e-9, "{name}");
+        assert!((mass(&apart) - mass(&lumped)).abs() < 1e-9, "{name}");
+        let belly = |m: &Model| m.parts.iter().filter(|p| p.kind == BodyKind::Belly).count();
+        assert_eq!(apart.parts.len() - 1, 2 * (lumped.parts.len() - 1));
+        assert_eq!(belly(&apart), 1);
+    }
+}
+
+#[test]
+fn the_higher_lane_bears_all_of_the_weight() {
+    let mut scenario = engineer();
+    scenario.terrain = lanes(level(0.0, 0.9), level(0.02, 0.9));
+    scenario.drive.speed = 0.0;
+    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    for _ in 0..1000 {
+        simulation.step().expect("finite");
+    }
+    let [[left, _], [right, _], [belly, _]] = shares(&simulation);
+    let weight = scenario.robot.mass * G;
+    assert!(left == 0.0 && belly == 0.0);
+    assert!(
+        (right - weight).abs() < 1e-3 * weight,
+        "{right} of {weight} N"
+    );
+}
+
+/// On one slope, a lane of ice leaves the other what holds the robot.
+#[test]
+fn each_lane_has_its_own_friction() {
+    let mut scenario = engineer();
+    scenario.robot.track = line(3);
+    let angle = 0.3_f64;
+    scenario.terrain = lanes(slope(angle, 0.0), slope(angle, 0.9));
+    scenario.drive.speed = 0.0;
+    scenario.start.approach = 0.0;
+    scenario.start.angle = angle;
+    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    for _ in 0..1000 {
+        simulation.step().expect("finite");
+    }
+    let table = simulation.contact_table();
+    let weight = scenario.robot.mass * G;
+    let sum = |lane: i64, column: &[f64]| -> f64 {
+        let on_lane = table.lane.iter().zip(column).filter(|(l, _)| **l == lane);
+        on_lane.map(|(_, force)| force).sum()
+    };
+    assert!(sum(1, &table.friction_force).abs() < 1e-9);
+    let normal = sum(1, &table.normal_force) + sum(2, &table.normal_force);
+    assert!((normal - weight * angle.cos()).abs() < 1e-3 * weight);
+    assert!((sum(2, &table.friction_force) - weight * angle.sin()).abs() < 1e-3 * weight);
+}
+
+/// With one track on ice the other holds against a push with what its own motor has.
+#[test]
+fn each_track_has_half_of_the_force() {
+    let mut scenario = engineer();
+    scenario.robot.drivetrain.max_torque = 1.0;
+    scenario.robot.drivetrain.max_acceleration = 1.0;
+    let outline = &scenario.robot.outline;
+    let force = 1.0 / (outline.rear_radius - outline.grouser_height);
+    for (friction, motors) in [(0.9, 2.0), (0.0, 1.0)] {
+        scenario.terrain = lanes(level(0.0, 0.9), level(0.0, friction));
+        for (share, forwards) in [(0.95, true), (1.05, false)] {
+            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            simulation
+                .set_push(-share * motors * force)
+                .expect("a push");
+            for _ in 0..1000 {
+                simulation.step().expect("finite");
+            }
+            let speed = simulation.reading().velocity.x;
+            assert_eq!(speed > 0.0, forwards, "{speed} m/s at {share} of the force");
+        }
+    }
+}
