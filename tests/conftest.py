@@ -41,6 +41,16 @@ VARIANTS = {
             c2d.terrains.step(0.05), c2d.terrains.step(0.05), middle=c2d.terrains.step(0.05)
         ),
     ),
+    "gears-diagonal-barrier": Scenario(
+        ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
+        c2d.terrains.diagonal_barrier(0.4, height=0.04, thickness=0.05, edge_radius=0.004),
+    ),
+    "line-stepfield": Scenario(
+        ROBOT.with_track(c2d.LineOfWheels(5)),
+        c2d.terrains.stepfield_with_barrier(
+            3, height=0.05, thickness=0.05, yaw=0.3, rise=0.01, edge_radius=0.002
+        ),
+    ),
     "line-barrier": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
         c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),

@@ -122,7 +122,7 @@ class Judge:
         self.share = steps[self.at] / steps[late].sum()
 
     def _pieces(self) -> None:
-        self.ground = Ground(np.asarray(self.geometry["profile"]))
+        self.ground = Ground(np.asarray(self.geometry["lanes"][0][1]))
         edges = np.column_stack([self.run.edges["x"], self.run.edges["y"]])
         self.pieces: list[Piece] = pieces(
             self.ground,

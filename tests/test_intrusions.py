@@ -54,7 +54,17 @@ FRONT, REAR = MIDDLE + 0.5 * SPACING, MIDDLE - 0.5 * SPACING
 def test_level_ground_is_outside_the_track() -> None:
     inside = c2d.Simulation(standing()).intrusions()
     assert len(inside) == 0
-    assert list(inside) == ["edge", "edges", "bodies", "depth", "root_depth", "area", "x", "y"]
+    assert list(inside) == [
+        "lane",
+        "edge",
+        "edges",
+        "bodies",
+        "depth",
+        "root_depth",
+        "area",
+        "x",
+        "y",
+    ]
 
 
 def test_without_a_least_depth_the_ground_joins_what_is_under_the_wheels() -> None:

@@ -22,7 +22,7 @@ JITTER = 1e-7  # [m] points on a line would be merged
 def as_points(scenario: Scenario, change: Callable[[Any], Any] = lambda points: points) -> Scenario:
     """The same ground as a polyline, changed; it ends 3 m beyond the obstacle."""
     geometry = _core.geometry(scenario.to_json())
-    points = np.array(geometry["profile"])
+    points = np.array(geometry["lanes"][0][1])
     points[0, 0], points[-1, 0] = points[1, 0] - 3.0, points[-2, 0] + 3.0
     terrain = c2d.terrains.from_points(
         change(points),

@@ -16,6 +16,8 @@ SIGNED = (
     "robot.center_of_mass",
     "robot.belly",
     "terrain.angle",
+    "terrain.yaw",
+    "terrain.barrier_yaw",
     "terrain.points",
     "drive.speed",
     "start.track_phase",

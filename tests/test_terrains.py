@@ -69,7 +69,7 @@ def test_a_terrain_has_its_corners_and_its_goal(name: str) -> None:
     made = ground(terrain)
     assert made["goal"] == pytest.approx(goal)
     expected = np.array(corners).reshape(-1, 2)
-    assert made["profile"][1:-1] == pytest.approx(expected, abs=1e-12)
+    assert made["lanes"][0][1][1:-1] == pytest.approx(expected, abs=1e-12)
     edges = np.column_stack([made["edges"]["x"], made["edges"]["y"]])
     assert edges == pytest.approx(expected, abs=1e-12)
     assert ground(terrain, goal=0.5)["goal"] == 0.5
@@ -78,7 +78,7 @@ def test_a_terrain_has_its_corners_and_its_goal(name: str) -> None:
 @pytest.mark.parametrize("radius", [0.001, 0.05, 0.3])
 def test_a_half_round_is_half_a_circle(radius: float) -> None:
     made = ground(c2d.terrains.half_round(radius))
-    x, y = made["profile"][1:-1].T
+    x, y = made["lanes"][0][1][1:-1].T
     assert made["goal"] == pytest.approx(2.0 * radius)
     assert np.hypot(x - radius, y) == pytest.approx(radius)
     assert (y.min(), y.max()) == pytest.approx((0.0, radius), abs=1e-12)
@@ -99,7 +99,7 @@ def test_a_rounded_terrain_keeps_its_height() -> None:
         c2d.terrains.stairs(count=1, rise=0.05, edge_radius=0.01),
     ):
         made = ground(terrain)
-        assert made["profile"][:, 1].max() == pytest.approx(0.05)
+        assert made["lanes"][0][1][:, 1].max() == pytest.approx(0.05)
         convex = made["edges"]["angle"] > 0.0
         assert set(made["edges"]["radius"][convex]) == {0.01}
         assert set(made["edges"]["radius"][~convex]) == {0.0}

@@ -11,22 +11,31 @@ if TYPE_CHECKING:
 
     from crawler2d.run import Run
 
-__all__ = ["SLIVER", "circle", "closed", "extent", "inset", "placed", "turned"]
+__all__ = ["SLIVER", "circle", "closed", "extent", "inset", "placed", "seen_lanes", "turned"]
 
 SLIVER = 2e-5
 """[m] Lines that coincide enclose slivers of rounding; an intrusion is deeper."""
 
 
-def extent(
-    run: Run, profile: NDArray[np.float64], geometry: dict[str, Any]
-) -> tuple[float, float, float, float]:
+_MIDDLE = 3  # under the belly
+
+
+def seen_lanes(geometry: dict[str, Any]) -> list[tuple[int, NDArray[np.float64]]]:
+    """Lanes under tracks with their profiles [m], from the farthest from the viewer: the left."""
+    return [lane for lane in geometry["lanes"] if lane[0] != _MIDDLE]
+
+
+def extent(run: Run, geometry: dict[str, Any]) -> tuple[float, float, float, float]:
     """[m] Left, right, bottom and top of what the run visits, with the obstacle's beginning."""
     circles = geometry["circles"]
     reach = float((np.hypot(circles[:, 0], circles[:, 1]) + circles[:, 2]).max()) + 0.05
     x, y = run.position.T
     left, right = float(x.min()) - reach, float(x.max()) + reach
-    visited = profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1]
-    ground = np.concatenate([visited, np.interp([left, right], profile[:, 0], profile[:, 1])])
+    visited = []
+    for _, profile in seen_lanes(geometry):
+        visited.append(profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1])
+        visited.append(np.interp([left, right], profile[:, 0], profile[:, 1]))
+    ground = np.concatenate(visited)
     bottom = min(float(ground.min()), float(y.min()) - float(circles[:, 2].max()))
     return left, right, bottom - 0.05, max(float(ground.max()), float(y.max()) + reach)
 

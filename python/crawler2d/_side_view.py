@@ -8,7 +8,7 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d._extras import extra
-from crawler2d._shapes import SLIVER, circle, closed, extent, inset, placed, turned
+from crawler2d._shapes import SLIVER, circle, closed, extent, inset, placed, seen_lanes, turned
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,13 +50,10 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
         Where to draw.
     """
     geometry = _core.geometry(run.scenario.to_json())
-    profile = geometry["profile"]
+    lanes = seen_lanes(geometry)
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
-    left, right, bottom, top = extent(run, profile, geometry)
-    ax.fill_between(
-        profile[:, 0], profile[:, 1], bottom - 1.0, color=_GROUND, linewidth=0.0, zorder=0
-    )
-    ax.plot(profile[:, 0], profile[:, 1], color=_BLACK, linewidth=1.2, zorder=1)
+    left, right, bottom, top = extent(run, geometry)
+    _draw_ground(lanes, bottom, ax)
     for sample in samples:
         last = sample == samples[-1]
         _draw_robot(run, geometry, int(sample), ax, alpha=1.0 if last else 0.3)
@@ -77,6 +74,23 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
     ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
+
+
+def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax: Axes) -> None:
+    """Draw the lanes; of two, the left one shows through behind the right one."""
+    for lane, (x, y) in ((lane, profile.T) for lane, profile in lanes):
+        far = lane == lanes[0][0] and len(lanes) > 1
+        alpha = 1.0 if len(lanes) == 1 else 0.6
+        ax.fill_between(x, y, bottom - 1.0, color=_GROUND, alpha=alpha, linewidth=0.0, zorder=0)
+        ax.plot(
+            x,
+            y,
+            color=_BLACK,
+            linestyle="--" if far else "-",
+            linewidth=0.8 if far else 1.2,
+            label="left lane" if far else None,
+            zorder=1,
+        )
 
 
 def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
@@ -168,12 +182,12 @@ def _draw_envelope(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) ->
     )
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     inner = placed(run, sample, inset(belt, depth))
-    x, y = geometry["profile"].T
-    soil = ax.fill_between(
-        x, y, float(inner[:, 1].min()) - 1.0, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6
-    )
     patches = extra("matplotlib.patches", "plot")
-    soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
+    for _, profile in seen_lanes(geometry):
+        x, y = profile.T
+        below = float(inner[:, 1].min()) - 1.0
+        soil = ax.fill_between(x, y, below, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6)
+        soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
 
 
 def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
@@ -184,7 +198,11 @@ def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
     rows = np.flatnonzero(inside)
     if not rows.size:
         return
-    edges = events["edge"][rows]
+    ids, lanes = run.edges["id"], run.edges["lane"]
+    edges = [
+        np.flatnonzero((ids == events["edge"][row]) & (lanes == events["lane"][row]))[0]
+        for row in rows
+    ]
     most_loaded = rows[events["force"][rows].argmax()]
     depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
     label = f"edge inside the track: {1e3 * depth:.1f} mm"

@@ -6,14 +6,15 @@ __all__ = ["FIELDS", "METRICS"]
 
 _FIELDS_BY_UNIT = {
     "m": (
-        "approach axle_distance base_thickness belly center_of_mass cycling_distance depth"
-        " edge_radius escape_distance front_radius gauge goal grouser_height grouser_pitch"
-        " grouser_thickness height intrusion_depth length placements points prediction_distance"
+        "approach axle_distance barrier_height barrier_thickness base_thickness belly"
+        " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
+        " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
+        " points post prediction_distance"
         " radius rear_radius rise run stationary_distance thickness tip_thickness track_phase"
         " wheel_radius width"
     ),
     "s": "clear_time duration escape_time stop_window time_step",
-    "rad": "angle clear_angle edge_angle tip_over_angle",
+    "rad": "angle barrier_yaw clear_angle edge_angle tip_over_angle yaw",
     "kg": "mass track_mass",
     "kg m^2": "moment_of_inertia",
     "m/s": "max_push_speed max_speed speed",
@@ -22,7 +23,8 @@ _FIELDS_BY_UNIT = {
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
-        " imbalance intrusion_load iterations mean_imbalance phase_fraction skid_friction"
+        " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
+        " skid_friction"
         " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
         " wheel_count"
     ),

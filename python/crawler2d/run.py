@@ -97,7 +97,7 @@ class Run:
     ================  ====  =======================================================================
     `kind`                  "stop" or "intrusion"
     `start`, `end`    s     when
-    `lane`                  0: both tracks as one
+    `lane`                  0 under both tracks, 1 the left one, 2 the right one, 3 the belly
     `edge`                  id of the edge, -1 if none
     `bodies`                bodies on either side of it, in order of belt travel; () if none
     `depth`           m     deepest reach below the belt round the circumscribed circles

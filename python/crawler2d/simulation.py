@@ -213,12 +213,13 @@ class Simulation:
         Table
             One row a connected piece of ground that lies deeper than `criteria.intrusion_depth`
             within the taut belt round the track's own bodies, from the left. Shallower ground, such
-            as what a resting robot sinks into, neither counts nor joins two pieces. Columns: `edge`
-            (the edge that stands out and reaches deepest, the left of equally deep ones, -1 if none
-            stands out), `edges` (all in the piece), `bodies` (on either side of the deepest point,
-            in order of belt travel), `depth` and `root_depth` [m] (deepest reach below the belt
-            round the circumscribed and the root circles), `area` [m^2] (of what lies deeper than
-            the criterion), `x` and `y` [m] (the deepest point).
+            as what a resting robot sinks into, neither counts nor joins two pieces. Columns: `lane`
+            (0 under both tracks, 1 the left one, 2 the right one), `edge` (the edge that stands out
+            and reaches deepest, the left of equally deep ones, -1 if none stands out), `edges` (all
+            in the piece), `bodies` (on either side of the deepest point, in order of belt travel),
+            `depth` and `root_depth` [m] (deepest reach below the belt round the circumscribed and
+            the root circles), `area` [m^2] (of what lies deeper than the criterion), `x` and `y`
+            [m] (the deepest point).
 
         Examples
         --------

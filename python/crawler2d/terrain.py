@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from crawler2d._json import Parameters
 
 __all__ = [
     "Barrier",
+    "DiagonalBarrier",
     "Flat",
     "Gap",
     "HalfRound",
@@ -16,6 +17,7 @@ __all__ = [
     "Lanes",
     "Points",
     "Ramp",
+    "RandomStepfield",
     "Ridge",
     "Stairs",
     "Step",
@@ -218,6 +220,89 @@ class HalfRound(Parameters):
 
 
 @dataclass(frozen=True, slots=True)
+class DiagonalBarrier(Parameters):
+    """A parallelepiped on level ground whose front face is turned about the vertical.
+
+    The tracks meet it `gauge` tan(`yaw`) apart, and `thickness` / cos(`yaw`) long; the gauge is the
+    robot's. Roll and yaw of the robot are held: what a side view can say of such a barrier. The
+    belly is taken to be as wide as the gauge.
+
+    Parameters
+    ----------
+    yaw : float
+        [rad] Turn of the barrier, counter-clockwise seen from above: above 0 the left track meets
+        it first, at x = 0. At most 80 degrees either way.
+    height : float
+        [m] Height, above 0.
+    thickness : float
+        [m] Extent across its front face.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "diagonal_barrier"
+    place: ClassVar[str] = "terrain"
+
+    yaw: float
+    _: KW_ONLY
+    height: float = 0.05
+    thickness: float = 0.1
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class RandomStepfield(Parameters):
+    """Square posts of random heights from x = 0, a row under each track (Jacoff et al., 2008).
+
+    Parameters
+    ----------
+    seed : int
+        Of the heights, 0 to 2^32 - 1. Nothing else of the field changes them.
+    pattern : {"flat", "hill", "diagonal"}
+        Posts of all levels alike; or up to a ridge and down again, one level more or less at
+        random, the ridge across the field or, sooner on the left, askew.
+    posts : int
+        Posts in a row.
+    post : float
+        [m] Side of a post.
+    rise : float
+        [m] Height of a level. The default is a quarter of a public arena's 0.10 m, for robots as
+        small as the Engineer.
+    levels : int
+        Levels above the ground.
+    barrier_height : float
+        [m] Height of a barrier across the middle of the field; 0 is none.
+    barrier_thickness : float
+        [m] Its extent across its front face.
+    barrier_yaw : float
+        [rad] Its turn, as that of a `DiagonalBarrier`.
+    edge_radius : float
+        [m] Radius of the convex edges; 0 is sharp.
+    friction : float
+        [-] Coulomb friction between robot and ground.
+    """
+
+    kind: ClassVar[str] = "random_stepfield"
+    place: ClassVar[str] = "terrain"
+
+    seed: int = 0
+    _: KW_ONLY
+    pattern: Literal["flat", "hill", "diagonal"] = "flat"
+    posts: int = 10
+    post: float = 0.1
+    rise: float = 0.025
+    levels: int = 4
+    barrier_height: float = 0.0
+    barrier_thickness: float = 0.1
+    barrier_yaw: float = 0.0
+    edge_radius: float = 0.0
+    friction: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
 class Points(Parameters):
     """A profile of the user's own.
 
@@ -257,12 +342,15 @@ Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
 class Lanes(Parameters):
     """A profile under each track and one under the belly.
 
+    Each track has half of the mass that moves with the surfaces and half of the motors' force;
+    roll and yaw are held. Equal profiles are simulated as one with both tracks lumped.
+
     Parameters
     ----------
     left, right : Lane
         What each track meets.
     middle : Lane, optional
-        What the belly meets; None is the upper envelope of the two.
+        What the belly meets; None is the upper envelope of the two, with the larger friction.
     """
 
     kind: ClassVar[str] = "lanes"
@@ -274,5 +362,5 @@ class Lanes(Parameters):
     middle: Lane | None = None
 
 
-Terrain = Lane | Lanes
+Terrain = Lane | Lanes | DiagonalBarrier | RandomStepfield
 """Every terrain."""

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 from crawler2d.terrain import (
     Barrier,
+    DiagonalBarrier,
     Flat,
     Gap,
     HalfRound,
     Lanes,
     Points,
     Ramp,
+    RandomStepfield,
     Ridge,
     Stairs,
     Step,
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "barrier",
+    "diagonal_barrier",
     "flat",
     "from_points",
     "gap",
@@ -29,9 +32,11 @@ __all__ = [
     "knife_edge",
     "lanes",
     "ramp",
+    "random_stepfield",
     "ridge",
     "stairs",
     "step",
+    "stepfield_with_barrier",
 ]
 
 flat = Flat
@@ -43,6 +48,8 @@ gap = Gap
 stairs = Stairs
 half_round = HalfRound
 lanes = Lanes
+diagonal_barrier = DiagonalBarrier
+random_stepfield = RandomStepfield
 
 
 def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Barrier:
@@ -68,6 +75,37 @@ def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Ba
     0.01
     """
     return Barrier(height, thickness, **fields)
+
+
+def stepfield_with_barrier(
+    seed: int = 0, *, height: float = 0.1, thickness: float = 0.1, yaw: float = 0.0, **fields: Any
+) -> RandomStepfield:
+    """Make a random step field with a barrier across its middle.
+
+    Parameters
+    ----------
+    seed : int
+        Of the heights of the posts.
+    height, thickness : float
+        [m] Of the barrier.
+    yaw : float
+        [rad] Turn of the barrier about the vertical, as that of a `DiagonalBarrier`.
+    **fields
+        Further fields of `RandomStepfield`.
+
+    Returns
+    -------
+    RandomStepfield
+        The terrain.
+
+    Examples
+    --------
+    >>> stepfield_with_barrier(7, yaw=0.5).barrier_height
+    0.1
+    """
+    return RandomStepfield(
+        seed, barrier_height=height, barrier_thickness=thickness, barrier_yaw=yaw, **fields
+    )
 
 
 def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:

@@ -1,8 +1,8 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    ContactTable, Edge, Event, Ground, Intrusion, Model, Record, Run, Scenario, Shape,
-    SimulationError, Trace, WheelBody,
+    BodyKind, ContactTable, Edge, Event, Ground, Intrusion, Model, Part, Record, Run, Scenario,
+    Shape, SimulationError, Trace, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -236,7 +236,7 @@ fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py, PyDict>> {
     Ok(columns)
 }
 
-/// Everything a picture needs.
+/// Everything a picture needs; of two tracks the right one, which is in front in a side view.
 pub(crate) fn geometry<'py>(
     py: Python<'py>,
     scenario: &Scenario,
@@ -248,11 +248,16 @@ pub(crate) fn geometry<'py>(
     /// [rad] Turn between two points of a belt.
     const BELT_TURN: f64 = 0.05;
 
+    let near = ground.tracks - 1;
     let mut circles: Vec<[f64; 3]> = Vec::new();
+    let mut drives: Vec<i64> = Vec::new();
+    let mut bodies: Vec<usize> = Vec::new();
     let mut belly: Vec<[f64; 2]> = Vec::new();
     let mut hull = false;
     let gears = PyList::empty(py);
-    for part in &model.parts {
+    let shown = |part: &&Part| part.lane == near || part.kind == BodyKind::Belly;
+    for (body, part) in model.parts.iter().enumerate().filter(|(_, p)| shown(p)) {
+        let before = circles.len();
         match &part.shape {
             Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
             Shape::Hull { discs } => {
@@ -275,12 +280,21 @@ pub(crate) fn geometry<'py>(
             }
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }
+        // What no drive moves follows the first.
+        drives.resize(circles.len(), part.drive.unwrap_or(0) as i64);
+        bodies.resize(bodies.len() + circles.len() - before, body);
     }
-    let profile: Vec<[f64; 2]> = ground.profile.points.iter().map(|p| [p.x, p.y]).collect();
+    let lanes = PyList::empty(py);
+    for lane in &ground.lanes {
+        let points: Vec<[f64; 2]> = lane.points.iter().map(|p| [p.x, p.y]).collect();
+        lanes.append((lane.side as i64, rows(py, &points)))?;
+    }
     let result = PyDict::new(py);
-    result.set_item("profile", rows(py, &profile))?;
-    result.set_item("edges", edges(py, &ground.profile.edges)?)?;
+    result.set_item("lanes", lanes)?;
+    result.set_item("edges", edges(py, &ground.edges())?)?;
     result.set_item("circles", rows(py, &circles))?;
+    result.set_item("drives", drives.into_pyarray(py))?;
+    result.set_item("bodies", bodies.into_pyarray(py))?;
     result.set_item("hull", hull)?;
     result.set_item("gears", gears)?;
     result.set_item("wheels", wheels(py, model)?)?;

@@ -42,8 +42,8 @@ mod _core {
     fn geometry<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
         let (scenario, model, ground) = errors::guarded(|| {
             let scenario = Scenario::from_json(text)?;
-            let model = Model::new(&scenario.robot)?;
-            let ground = crawler2d_core::Ground::new(&scenario.terrain)?;
+            let ground = crawler2d_core::Ground::new(&scenario.terrain, scenario.robot.gauge)?;
+            let model = Model::on(&scenario.robot, &ground)?;
             Ok((scenario, model, ground))
         })?;
         convert::geometry(py, &scenario, &model, &ground)

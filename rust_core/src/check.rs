@@ -69,7 +69,7 @@ impl Scenario {
                 rule,
             ));
         }
-        let ground = Ground::new(&self.terrain)?;
+        let ground = Ground::new(&self.terrain, self.robot.gauge)?;
         let model = Model::on(&self.robot, &ground)?;
         start_position(self, &model, &ground)?;
         Ok(())

@@ -53,9 +53,9 @@ pub use reading::Reading;
 pub use robot::{BodyKind, Model, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
-    BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, ForceSupport, ForceTrack,
-    GearWheel, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SeizureCriteria,
-    Solver, Start, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,
+    ForceTrack, GearWheel, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario,
+    SeizureCriteria, Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

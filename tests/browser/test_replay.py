@@ -23,6 +23,7 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "gear wheels": (ROBOT.with_track(GEARED), STEP),
     "belt": (ROBOT, STEP),
     "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
+    "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
     "circumferential": (
         ROBOT.with_track(c2d.CircumferentialWheels(24, wheel_radius=0.015)),
         c2d.terrains.barrier(0.1, 0.02),

@@ -25,6 +25,7 @@ _SCRIPTS = (
     "camera.js",
     "marks.js",
     "robot.js",
+    "lane.js",
     "scene.js",
     "strip.js",
     "pointer.js",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d._shapes import SLIVER, extent, inset
+from crawler2d._shapes import SLIVER, extent, inset, seen_lanes
 from crawler2d.viewer.packed import packed
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def recording(run: Run, time: float | None = None) -> dict[str, Any]:
         stops = run.events["end"][run.events["kind"] == "stop"]
         time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
     geometry = _core.geometry(run.scenario.to_json())
-    bounds = extent(run, geometry["profile"], geometry)
+    bounds = extent(run, geometry)
     return {
         "samples": count,
         "every": every,
@@ -123,17 +123,24 @@ def _events(run: Run) -> list[dict[str, Any]]:
 
 
 def _ground(geometry: dict[str, Any]) -> dict[str, Any]:
-    profile, edges = geometry["profile"], geometry["edges"]
+    """Lanes from the farthest from the viewer, with their edges."""
+    return {
+        "lanes": [_lane(*lane, geometry["edges"]) for lane in seen_lanes(geometry)],
+        "goal": _number(geometry["goal"]),
+    }
+
+
+def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dict[str, Any]:
+    on_lane = edges["lane"] == lane
     # Rounded edges are marked where they are on the ground, not where they would be sharp.
     corners = [
         int(np.hypot(profile[:, 0] - x, profile[:, 1] - y).argmin())
-        for x, y in zip(edges["x"], edges["y"], strict=True)
+        for x, y in zip(edges["x"][on_lane], edges["y"][on_lane], strict=True)
     ]
     return {
         "profile": packed(profile, _LENGTH / 100.0),
         "corners": corners,
-        "convex": [bool(angle > 0.0) for angle in edges["angle"]],
-        "goal": _number(geometry["goal"]),
+        "convex": [bool(angle > 0.0) for angle in edges["angle"][on_lane]],
     }
 
 
@@ -141,17 +148,17 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     """Shapes in the chassis frame, and which drive moves each."""
     robot = run.scenario.robot
     circles, gears = geometry["circles"], geometry["gears"]
-    drives = run.drive_positions.shape[1]
-    # One motor turns all wheels, or each has its own; those of free wheels follow the motor's.
-    own = drives - len(circles) if drives >= len(circles) else None
-    wheels = [
+    wheels: list[dict[str, Any]] = [
         {
             "x": _number(x),
             "y": _number(y),
             "radius": _number(radius),
-            "drive": 0 if own is None else body + own,
+            "drive": int(drive),
+            "body": int(body),
         }
-        for body, (x, y, radius) in enumerate(circles)
+        for (x, y, radius), drive, body in zip(
+            circles, geometry["drives"], geometry["bodies"], strict=True
+        )
     ]
     for wheel, gear in zip(wheels, gears, strict=False):
         wheel["outline"] = packed(gear["outline"], _SHAPE)

@@ -18,14 +18,14 @@ class Robot {
   draw(ctx, colors, pixel, moment, jammed) {
     this.drawChassis(ctx, colors, pixel);
     if (this.hull) this.drawHull(ctx, colors, pixel, moment);
-    this.wheels.forEach((wheel, body) => {
-      const color = jammed.includes(body) ? colors.intrusion : colors.track;
+    for (const wheel of this.wheels) {
+      const color = jammed.includes(wheel.body) ? colors.intrusion : colors.track;
       ctx.save();
       ctx.translate(wheel.x, wheel.y);
       ctx.rotate(-moment.way(wheel.drive) / wheel.radius);
       drawWheel(ctx, wheel, color, colors.trackFill, pixel);
       ctx.restore();
-    });
+    }
     this.drawMassCenter(ctx, colors, pixel);
   }
 
@@ -57,7 +57,7 @@ class Robot {
     const { length, at, spacing, count } = this.marks;
     // Skids do not move, and so bear no marks.
     for (let i = 0; this.moving && i < count; i++) {
-      const [x, y, nx, ny] = at(i * spacing - moment.way(0), length);
+      const [x, y, nx, ny] = at(i * spacing - moment.way(this.ends[0].drive), length);
       const long = i % 6 === 0;
       const depth = (long ? 0.2 : 0.11) * this.ends[0].radius;
       ctx.strokeStyle = long ? colors.speed : colors.track;

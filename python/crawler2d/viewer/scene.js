@@ -6,16 +6,11 @@ class Scene {
     this.recording = recording;
     this.robot = new Robot(data.robot);
     this.camera = new Camera(data.extent, data.robot.length);
-    this.profile = unpacked(data.ground.profile);
-    this.edges = data.ground.corners.map((corner, i) => ({
-      corner, convex: data.ground.convex[i],
-      x: this.profile[2 * corner], y: this.profile[2 * corner + 1],
-    }));
+    this.lanes = data.ground.lanes.map((lane) => new Lane(lane)); // the farthest first
     this.goal = data.ground.goal;
     this.layers = { forces: true, speeds: true, envelope: true };
     this.forceScale = FORCE_LENGTH / (data.contacts.usual_force || 1);
     this.speedScale = SPEED_LENGTH / (data.contacts.usual_speed || 1);
-    this.surface = outlineOf(this.profile, false);
     this.route = outlineOf(Float64Array.from({ length: 2 * recording.count }, (_, i) =>
       (i % 2 ? recording.y : recording.x)[i >> 1]), false);
   }
@@ -48,9 +43,8 @@ class Scene {
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawGrid(ctx, colors);
     camera.apply(ctx, ratio);
-    const soil = this.soil();
-    ctx.fillStyle = colors.ground;
-    ctx.fill(soil);
+    const floor = camera.middleY - camera.height / camera.scale;
+    this.drawGround(ctx, colors, pixel, floor);
     ctx.strokeStyle = colors.goal;
     ctx.globalAlpha = 0.45;
     ctx.lineWidth = 1.4 * pixel;
@@ -65,8 +59,8 @@ class Scene {
     ctx.restore();
     ctx.strokeStyle = colors.groundLine;
     ctx.lineWidth = 1.8 * pixel;
-    ctx.stroke(this.surface);
-    if (this.layers.envelope) this.drawEnvelope(ctx, colors, pixel, moment, soil);
+    ctx.stroke(this.lanes.at(-1).surface);
+    if (this.layers.envelope) this.drawEnvelope(ctx, colors, pixel, moment, floor);
 
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawGoal(ctx, colors);
@@ -76,19 +70,24 @@ class Scene {
     ctx.restore();
   }
 
-  // The ground down to below what is seen.
-  soil() {
-    const { profile, camera } = this;
-    const path = new Path2D(this.surface);
-    let deepest = camera.middleY - camera.height / camera.scale;
-    for (let i = 1; i < profile.length; i += 2) deepest = Math.min(deepest, profile[i] - 1);
-    path.lineTo(profile[profile.length - 2], deepest);
-    path.lineTo(profile[0], deepest);
-    path.closePath();
-    return path;
+  // The far lane, if there are two, shows through behind the near one.
+  drawGround(ctx, colors, pixel, floor) {
+    for (const lane of this.lanes) {
+      const near = lane === this.lanes.at(-1);
+      ctx.globalAlpha = near ? (this.lanes.length > 1 ? 0.75 : 1) : 0.55;
+      ctx.fillStyle = colors.ground;
+      ctx.fill(lane.soil(floor));
+      ctx.globalAlpha = 1;
+      if (near) continue;
+      ctx.strokeStyle = colors.groundLine;
+      ctx.lineWidth = 1.2 * pixel;
+      ctx.setLineDash([8 * pixel, 4 * pixel]);
+      ctx.stroke(lane.surface);
+      ctx.setLineDash([]);
+    }
   }
 
-  drawEnvelope(ctx, colors, pixel, moment, soil) {
+  drawEnvelope(ctx, colors, pixel, moment, floor) {
     const { envelope, inner, root } = this.robot;
     if (!envelope) return;
     ctx.save();
@@ -106,25 +105,29 @@ class Scene {
     // Clips are kept from one transform to the next: the soil is cut by the belt.
     ctx.clip(inner.path);
     unplace(ctx, moment);
-    const pieces = new Path2D();
-    for (const edge of this.edges) {
-      if (!edge.convex || !(this.depth(edge, moment) > 0)) continue;
-      const [left, right] = this.piece(edge.corner, moment);
-      const middle = moment.y - 2 * this.robot.length;
-      pieces.rect(left - pixel, middle, right - left + 2 * pixel, 4 * this.robot.length);
+    for (const lane of this.lanes) {
+      const pieces = new Path2D();
+      for (const edge of lane.edges) {
+        if (!edge.convex || !(this.depth(edge, moment) > 0)) continue;
+        const [left, right] = lane.piece(edge.corner, (point) => this.depth(point, moment));
+        const middle = moment.y - 2 * this.robot.length;
+        pieces.rect(left - pixel, middle, right - left + 2 * pixel, 4 * this.robot.length);
+      }
+      ctx.save();
+      ctx.clip(pieces);
+      ctx.fillStyle = colors.intrusionFill;
+      ctx.fill(lane.soil(floor));
+      ctx.strokeStyle = colors.intrusion;
+      ctx.lineWidth = 3 * pixel;
+      ctx.stroke(lane.surface);
+      ctx.restore();
     }
-    ctx.clip(pieces);
-    ctx.fillStyle = colors.intrusionFill;
-    ctx.fill(soil);
-    ctx.strokeStyle = colors.intrusion;
-    ctx.lineWidth = 3 * pixel;
-    ctx.stroke(this.surface);
     ctx.restore();
   }
 
   drawEdges(ctx, colors, moment) {
     let deepest = null;
-    for (const edge of this.edges) {
+    for (const edge of this.lanes.flatMap((lane) => lane.edges)) {
       const [x, y] = this.camera.screen(edge.x, edge.y);
       const depth = this.layers.envelope ? this.depth(edge, moment) : 0;
       if (edge.convex && depth > 0 && !(deepest && deepest.depth >= depth)) {
@@ -157,24 +160,6 @@ class Scene {
     const x = cosine * dx + sine * dy;
     const y = cosine * dy - sine * dx;
     return clearance(inner.points, x, y) > 0 ? clearance(envelope.points, x, y) : 0;
-  }
-
-  // [m] From where to where the surface is inside the envelope, along x, about a corner that is.
-  piece(corner, moment) {
-    const at = (i) => ({ x: this.profile[2 * i], y: this.profile[2 * i + 1] });
-    const last = this.profile.length / 2 - 1;
-    return [-1, 1].map((step) => {
-      let i = corner;
-      while (i + step >= 0 && i + step <= last && this.depth(at(i + step), moment) > 0) i += step;
-      let inside = at(i);
-      let outside = at(Math.min(last, Math.max(0, i + step)));
-      for (let k = 0; k < 30; k++) {
-        const middle = { x: (inside.x + outside.x) / 2, y: (inside.y + outside.y) / 2 };
-        if (this.depth(middle, moment) > 0) inside = middle;
-        else outside = middle;
-      }
-      return inside.x;
-    });
   }
 
   drawContacts(ctx, colors, moment) {

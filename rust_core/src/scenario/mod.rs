@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, Drive, SeizureCriteria, Solver, Start};
-pub use terrain::{MAX_POINTS, Terrain};
+pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub use track::{
     BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, HybridWheels, LineOfWheels, Track,
 };

@@ -11,6 +11,8 @@ pub const MAX_POINTS: usize = 200_000;
 const FRICTION: Range = Range::between(0.0, 100.0, "");
 const EDGE_RADIUS: Range = Range::between(0.0, 10.0, "m");
 const HEIGHT: Range = Range::above(0.0, 100.0, "m");
+/// 80 degrees: beyond, a barrier lies along the track.
+const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
 const LENGTH: Range = Range::between(1e-3, 1e4, "m");
 
 /// One terrain.
@@ -97,6 +99,21 @@ pub enum Terrain {
         /// Coulomb friction with the robot.
         friction: f64,
     },
+    /// A barrier whose front face is turned about the vertical: the tracks meet it one after the other.
+    DiagonalBarrier {
+        /// [rad] Turn, counter-clockwise seen from above: the left track meets it first if above 0.
+        yaw: f64,
+        /// [m] Height.
+        height: f64,
+        /// [m] Extent across its front face.
+        thickness: f64,
+        /// [m] Radius of the convex edges; 0 is sharp.
+        edge_radius: f64,
+        /// Coulomb friction with the robot.
+        friction: f64,
+    },
+    /// Square posts of random heights from x = 0, a row under each track.
+    RandomStepfield(Stepfield),
     /// A profile of the user's own.
     Points {
         /// [m] Points (x, y) from left to right or right to left; vertical faces are allowed.
@@ -119,9 +136,48 @@ pub enum Terrain {
     },
 }
 
+/// Where the high posts of a field stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldPattern {
+    /// Anywhere.
+    Flat,
+    /// On a ridge across the field.
+    Hill,
+    /// On a ridge that lies askew: sooner under the left track.
+    Diagonal,
+}
+
+/// A random step field (Jacoff et al. 2008).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stepfield {
+    /// Of the heights.
+    pub seed: u32,
+    /// Where the high posts stand.
+    pub pattern: FieldPattern,
+    /// Posts in a row.
+    pub posts: u32,
+    /// [m] Side of a post.
+    pub post: f64,
+    /// [m] Height of a level.
+    pub rise: f64,
+    /// Levels above the ground.
+    pub levels: u32,
+    /// [m] Height of a barrier across its middle; 0 is none.
+    pub barrier_height: f64,
+    /// [m] Extent of that barrier across its front face.
+    pub barrier_thickness: f64,
+    /// [rad] Its turn, as that of a diagonal barrier.
+    pub barrier_yaw: f64,
+    /// [m] Radius of the convex edges; 0 is sharp.
+    pub edge_radius: f64,
+    /// Coulomb friction with the robot.
+    pub friction: f64,
+}
+
 impl Terrain {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        const KINDS: [&str; 10] = [
+        const KINDS: [&str; 12] = [
             "flat",
             "step",
             "ramp",
@@ -130,6 +186,8 @@ impl Terrain {
             "gap",
             "stairs",
             "half_round",
+            "diagonal_barrier",
+            "random_stepfield",
             "points",
             "lanes",
         ];
@@ -178,6 +236,14 @@ impl Terrain {
                 radius: f.number("radius", Range::between(1e-3, 100.0, "m"))?,
                 friction: f.number("friction", FRICTION)?,
             },
+            "diagonal_barrier" => Self::DiagonalBarrier {
+                yaw: f.number("yaw", YAW)?,
+                height: f.number("height", HEIGHT)?,
+                thickness: f.number("thickness", LENGTH)?,
+                edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+                friction: f.number("friction", FRICTION)?,
+            },
+            "random_stepfield" => Self::RandomStepfield(Stepfield::read(&mut f)?),
             "points" => Self::Points {
                 points: f.points("points", Range::between(-1e7, 1e7, "m"), MAX_POINTS)?,
                 goal: f.number("goal", Range::between(-1e7, 1e7, "m"))?,
@@ -208,9 +274,39 @@ impl Terrain {
 
     fn read_lane(f: &mut Fields, name: &'static str) -> Result<Box<Self>, ScenarioError> {
         let lane = Self::read(f.child(name)?)?;
-        if matches!(lane, Self::Lanes { .. }) {
-            return Err(f.error(name, "lanes", "must be a terrain of one lane"));
-        }
-        Ok(Box::new(lane))
+        let lanes = match lane {
+            Self::Lanes { .. } => "lanes",
+            Self::DiagonalBarrier { .. } => "diagonal_barrier",
+            Self::RandomStepfield(_) => "random_stepfield",
+            _ => return Ok(Box::new(lane)),
+        };
+        Err(f.error(name, lanes, "must be a terrain of one lane"))
+    }
+}
+
+impl Stepfield {
+    fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
+        let pattern = match f.text("pattern")? {
+            "flat" => FieldPattern::Flat,
+            "hill" => FieldPattern::Hill,
+            "diagonal" => FieldPattern::Diagonal,
+            other => {
+                let rule = one_of(Some(other), &["flat", "hill", "diagonal"]);
+                return Err(f.error("pattern", other, rule));
+            }
+        };
+        Ok(Self {
+            seed: f.integer("seed", 0, u32::MAX)?,
+            pattern,
+            posts: f.integer("posts", 1, 1000)?,
+            post: f.number("post", LENGTH)?,
+            rise: f.number("rise", HEIGHT)?,
+            levels: f.integer("levels", 1, 1000)?,
+            barrier_height: f.number("barrier_height", Range::between(0.0, 100.0, "m"))?,
+            barrier_thickness: f.number("barrier_thickness", LENGTH)?,
+            barrier_yaw: f.number("barrier_yaw", YAW)?,
+            edge_radius: f.number("edge_radius", EDGE_RADIUS)?,
+            friction: f.number("friction", FRICTION)?,
+        })
     }
 }

@@ -34,7 +34,7 @@ impl Simulation {
     /// [`Error::Scenario`] with the first broken rule of the variant.
     pub fn branch(&self, variant: &Scenario) -> Result<Self, Error> {
         variant.validate()?;
-        let ground = Ground::new(&variant.terrain)?;
+        let ground = Ground::new(&variant.terrain, variant.robot.gauge)?;
         let model = Model::on(&variant.robot, &ground)?;
         let mut branch = self.with(variant, ground, model);
         branch.command = variant.drive.speed;

@@ -47,7 +47,10 @@ impl Simulation {
     /// [`Error::Scenario`] with the first broken rule.
     pub fn new(scenario: &Scenario) -> Result<Self, Error> {
         scenario.validate()?;
-        Self::on_ground(scenario, Ground::new(&scenario.terrain)?)
+        Self::on_ground(
+            scenario,
+            Ground::new(&scenario.terrain, scenario.robot.gauge)?,
+        )
     }
 
     /// The same on a ground of the caller's own in place of the scenario's.

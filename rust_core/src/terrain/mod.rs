@@ -1,13 +1,17 @@
 //! From the described terrain to the profiles that contacts are computed on.
 
+mod field;
 mod obstacle;
 mod profile;
+mod skyline;
 mod upper;
 
 use crate::error::ScenarioError;
 use crate::scenario::{Scenario, Terrain};
+use obstacle::RUN_OUT;
 use profile::COLLINEAR;
 pub use profile::{Edge, Profile, Side};
+use skyline::Skyline;
 
 /// The ground of a scenario.
 #[derive(Clone, Debug)]
@@ -30,22 +34,45 @@ struct Described {
 }
 
 impl Ground {
-    /// Builds the ground of a terrain.
+    /// Builds the ground of a terrain for a robot whose tracks are `gauge` [m] apart.
     ///
     /// # Errors
     /// A profile that cannot be: overhang, too few points, an edge radius that does not fit; lanes that
     /// have no x in common.
-    pub fn new(terrain: &Terrain) -> Result<Self, ScenarioError> {
-        let Terrain::Lanes {
-            left,
-            right,
-            middle,
-        } = terrain
-        else {
-            let lane = Described::new("terrain", terrain)?;
-            return Ok(Self::of(vec![lane.profile], 1, lane.goal));
-        };
-        let middle = middle.as_deref();
+    pub fn new(terrain: &Terrain, gauge: f64) -> Result<Self, ScenarioError> {
+        match terrain {
+            Terrain::Lanes {
+                left,
+                right,
+                middle,
+            } => Self::lanes(left, right, middle.as_deref()),
+            Terrain::DiagonalBarrier {
+                yaw,
+                height,
+                thickness,
+                edge_radius,
+                friction,
+            } => {
+                let lanes = field::barrier((*height, *thickness), *yaw, 0.0, gauge);
+                Self::skylines(lanes, *edge_radius, *friction)
+            }
+            Terrain::RandomStepfield(field) => {
+                let lanes = field::stepfield(field, gauge);
+                Self::skylines(lanes, field.edge_radius, field.friction)
+            }
+            _ => {
+                let lane = Described::new("terrain", terrain)?;
+                Ok(Self::of(vec![lane.profile], 1, lane.goal))
+            }
+        }
+    }
+
+    /// The described ground of each track, and of the belly if it has its own.
+    fn lanes(
+        left: &Terrain,
+        right: &Terrain,
+        middle: Option<&Terrain>,
+    ) -> Result<Self, ScenarioError> {
         let first = Described::new("terrain.left", left)?;
         let second = Described::new("terrain.right", right)?;
         let third = middle
@@ -69,6 +96,21 @@ impl Ground {
             return Err(ScenarioError::new("terrain", value, rule));
         }
         Ok(ground)
+    }
+
+    /// Level tops and vertical faces under the left track, the right one and the belly.
+    fn skylines(lanes: [Skyline; 3], radius: f64, friction: f64) -> Result<Self, ScenarioError> {
+        let end = lanes[2].end();
+        let profile = |skyline: &Skyline| {
+            let points = skyline.points(-RUN_OUT, end + RUN_OUT);
+            Profile::new("terrain", &points, radius, friction, true)
+        };
+        if lanes[0] == lanes[1] {
+            return Ok(Self::of(vec![profile(&lanes[0])?], 1, end));
+        }
+        let [left, right, middle] = &lanes;
+        let tracks = [profile(left)?, profile(right)?];
+        Self::apart(tracks, Some(profile(middle)?), end)
     }
 
     /// A profile under each track; without one of its own the belly meets the higher of the two.

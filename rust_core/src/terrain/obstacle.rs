@@ -3,7 +3,7 @@
 use crate::scenario::Terrain;
 
 /// [m] Level ground before and behind a parametric obstacle.
-const RUN_OUT: f64 = 100.0;
+pub(super) const RUN_OUT: f64 = 100.0;
 
 /// What a terrain describes, as corners.
 pub(super) struct Obstacle {
@@ -82,7 +82,9 @@ pub(super) fn of(terrain: &Terrain) -> Obstacle {
             edge_radius: *edge_radius,
             friction: *friction,
         },
-        Terrain::Lanes { .. } => unreachable!("a lane is one terrain"),
+        Terrain::DiagonalBarrier { .. } | Terrain::RandomStepfield(_) | Terrain::Lanes { .. } => {
+            unreachable!("a lane is a terrain of one profile")
+        }
     }
 }
 

@@ -33,7 +33,8 @@ impl EngineWorld {
     pub fn new(scenario: &Scenario, settings: EngineSettings) -> Self {
         let robot = &scenario.robot;
         let model = Model::new(robot).expect("the scenario is valid");
-        let ground = Ground::new(&scenario.terrain).expect("the scenario is valid");
+        let ground =
+            Ground::new(&scenario.terrain, scenario.robot.gauge).expect("the scenario is valid");
         let start = Simulation::new(scenario).expect("the scenario is valid");
         let start = start.reading().position;
         let mut world = PhysicsWorld::new();

@@ -17,7 +17,7 @@ fn models() -> Vec<(&'static str, Track)> {
 }
 
 fn profile(terrain: &Terrain) -> (Profile, f64) {
-    let mut ground = Ground::new(terrain).expect("a ground");
+    let mut ground = Ground::new(terrain, 0.2).expect("a ground");
     (ground.lanes.remove(0), ground.goal)
 }
 

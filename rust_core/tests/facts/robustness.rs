@@ -40,7 +40,8 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
             assert!(column.iter().all(|x| x.is_finite()), "case {case}");
         }
         // Coulomb's law in every sample, and nothing pulls.
-        let ground = Ground::new(&scenario.terrain).expect("it was built before");
+        let ground =
+            Ground::new(&scenario.terrain, scenario.robot.gauge).expect("it was built before");
         let friction = ground.lanes[0].friction;
         for i in 0..run.contacts.time.len() {
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);

@@ -148,7 +148,10 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
         edge_radius: 0.0,
         friction: 0.9,
     };
-    let profile = Ground::new(&terrain).expect("a ground").lanes.remove(0);
+    let profile = Ground::new(&terrain, 0.2)
+        .expect("a ground")
+        .lanes
+        .remove(0);
     // The post stands in the middle between the rear and the middle wheel.
     let pose = Pose::from_translation(Vector::new(0.103, 0.081));
     let found = envelope.intrusions(&profile, pose);
@@ -277,7 +280,7 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
     let (mut judged, mut pieces, mut pairs) = (0, 0, 0);
     for number in 0..POSES {
         let model = &models[number % models.len()];
-        let ground = Ground::new(&terrain(number % 6, &mut draw)).expect("a ground");
+        let ground = Ground::new(&terrain(number % 6, &mut draw), 0.2).expect("a ground");
         let x = draw.between(-0.3, 0.5);
         // From buried to clear, most of them astride what stands below.
         let y = ground.lanes[0].height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);

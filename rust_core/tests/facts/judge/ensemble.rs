@@ -18,7 +18,8 @@ struct Verdict {
 
 /// [m] What the chassis frame must pass.
 fn goal(scenario: &Scenario) -> f64 {
-    let ground = Ground::new(&scenario.terrain).expect("the ground can be built");
+    let ground =
+        Ground::new(&scenario.terrain, scenario.robot.gauge).expect("the ground can be built");
     ground.goal_of(scenario)
 }
 

@@ -65,7 +65,8 @@ pub(crate) struct Judge {
 impl Judge {
     /// At rest where the scenario starts, which is part of the description.
     pub(crate) fn new(scenario: &Scenario, settings: Settings) -> Self {
-        let ground = Ground::new(&scenario.terrain).expect("the ground can be built");
+        let ground =
+            Ground::new(&scenario.terrain, scenario.robot.gauge).expect("the ground can be built");
         let ground = Lane::new(&ground);
         let robot = Robot::new(scenario, ground.friction);
         let start = Simulation::new(scenario).expect("the scenario is valid");
