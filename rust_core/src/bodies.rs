@@ -50,7 +50,7 @@ impl Model {
                 Shape::Gear { center, gear } => {
                     Some((i, *center, gear.radius, gear.area(), gear.polar_moment()))
                 }
-                Shape::Hull { .. } | Shape::Polygon { .. } => None,
+                Shape::Hull { .. } | Shape::Grouser(_) | Shape::Polygon { .. } => None,
             })
             .collect();
         let share = self.drive_masses.iter().sum::<f64>() / round.len().max(1) as f64;

@@ -48,14 +48,15 @@ pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContac
 pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use outcome::Outcome;
-pub use outline::{Disc, Gear};
+pub use outline::{Disc, Gear, Grouser};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,
-    ForceTrack, GearWheel, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario,
-    SeizureCriteria, Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA,
+    Scenario, SeizureCriteria, Solver, Start, Stepfield, Terrain, TorqueSharing, Track,
+    TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

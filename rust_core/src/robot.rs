@@ -1,10 +1,9 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, the drives.
 
-use rapier2d_f64::math::Vector;
+use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use crate::error::ScenarioError;
-use crate::outline::{Disc, Envelope, Gear};
-use crate::plane::{left_of, right_of};
+use crate::outline::{Disc, Envelope, Gear, Grouser, Motion};
 use crate::scenario::Robot;
 use crate::track;
 
@@ -44,6 +43,8 @@ pub enum BodyKind {
     Skid = 2,
     /// The underside of the chassis.
     Belly = 3,
+    /// A grouser of a moving belt.
+    Grouser = 4,
 }
 
 /// A shape fixed to the chassis that meets the ground.
@@ -75,7 +76,11 @@ pub enum Shape {
     Hull {
         /// The discs.
         discs: Vec<Disc>,
+        /// [m] Height of the grousers that travel along it.
+        grouser_height: f64,
     },
+    /// A grouser that a belt carries along.
+    Grouser(Grouser),
     /// A wheel with grousers that turns with its drive.
     Gear {
         /// [m] Centre.
@@ -88,17 +93,6 @@ pub enum Shape {
         /// [m] Corners.
         corners: Vec<Vector>,
     },
-}
-
-/// A wheel whose shape turns with its drive.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TurningWheel {
-    /// [m] Axle in the chassis frame.
-    pub center: Vector,
-    /// [m] Radius at which its surface runs with the drive.
-    pub radius: f64,
-    /// Index of the drive.
-    pub drive: usize,
 }
 
 impl Model {
@@ -163,6 +157,7 @@ impl Model {
             kind: BodyKind::Belt,
             shape: Shape::Hull {
                 discs: discs.clone(),
+                grouser_height: 0.0,
             },
             drive: Some(lane),
             friction_limit: f64::INFINITY,
@@ -212,6 +207,8 @@ impl Model {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
+            // Never beyond the tips of the belt's hull.
+            Shape::Grouser(_) => 0.0,
             _ => part
                 .discs()
                 .map(|(tip, _)| from_center(&tip.center) + tip.radius)
@@ -230,28 +227,34 @@ impl Part {
         };
         let discs = match &self.shape {
             Shape::Disc { center, radius } => vec![round(*center, *radius)],
-            Shape::Hull { discs } => discs.iter().map(|d| (*d, *d)).collect(),
+            Shape::Hull {
+                discs,
+                grouser_height,
+            } => {
+                let tip = |d: &Disc| Disc {
+                    radius: d.radius + grouser_height,
+                    ..*d
+                };
+                discs.iter().map(|d| (tip(d), *d)).collect()
+            }
             Shape::Gear { center, gear } => {
                 let (tip, _) = round(*center, gear.radius);
                 let (root, _) = round(*center, gear.root_radius);
                 vec![(tip, root)]
             }
-            Shape::Polygon { .. } => Vec::new(),
+            Shape::Polygon { .. } | Shape::Grouser(_) => Vec::new(),
         };
         discs.into_iter()
     }
 
-    /// A disc round it: centre and radius [m].
+    /// A disc round it in its own frame: centre and radius [m].
     pub(crate) fn bound(&self) -> (Vector, f64) {
         let corners: Vec<Disc> = match &self.shape {
-            Shape::Polygon { corners } => corners
-                .iter()
-                .map(|c| Disc {
-                    center: *c,
-                    radius: 0.0,
-                })
-                .collect(),
-            _ => self.discs().map(|(tip, _)| tip).collect(),
+            Shape::Disc { radius, .. } => return (Vector::ZERO, *radius),
+            Shape::Gear { gear, .. } => return (Vector::ZERO, gear.radius),
+            Shape::Polygon { corners } => corners.iter().map(|c| Disc::point(*c)).collect(),
+            Shape::Grouser(grouser) => grouser.corners().map(Disc::point).to_vec(),
+            Shape::Hull { .. } => self.discs().map(|(tip, _)| tip).collect(),
         };
         let sum: Vector = corners.iter().map(|d| d.center).sum();
         let middle = sum / corners.len() as f64;
@@ -259,26 +262,34 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
-    /// The wheel that it is, if turning changes what it touches.
-    pub(crate) fn turning(&self) -> Option<TurningWheel> {
-        match (&self.shape, self.drive) {
-            (Shape::Gear { center, gear }, Some(drive)) => Some(TurningWheel {
-                center: *center,
-                radius: gear.radius,
-                drive,
-            }),
-            _ => None,
+    /// Its own frame in that of the chassis when its surface has run so far [m].
+    pub(crate) fn place(&self, run: f64) -> Pose {
+        match &self.shape {
+            Shape::Disc { center, .. } => Pose::from_translation(*center),
+            Shape::Gear { center, gear } => {
+                Pose::from_parts(*center, Rotation::new(-run / gear.radius))
+            }
+            Shape::Grouser(grouser) => grouser.place(run),
+            Shape::Hull { .. } | Shape::Polygon { .. } => Pose::IDENTITY,
         }
     }
 
-    /// Velocity of the surface over the chassis where the outward normal of the ground is `normal`,
-    /// for a surface speed of 1; `spoke` leads from the centre of a turning wheel to that place.
-    pub(crate) fn surface_motion(&self, normal: Vector, spoke: Vector) -> Vector {
+    /// How its drive moves its shape over the chassis when the surface has run so far [m], the mean over as
+    /// much as `reach` [m] before and behind. A surface that only runs along itself moves no shape.
+    pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         match &self.shape {
-            _ if self.drive.is_none() => Vector::ZERO,
-            // Turning does not change the shape: the surface moves along itself.
-            Shape::Disc { .. } | Shape::Hull { .. } | Shape::Polygon { .. } => left_of(normal),
-            Shape::Gear { gear, .. } => right_of(spoke) / gear.radius,
+            Shape::Gear { center, gear } if self.drive.is_some() => Motion {
+                center: *center,
+                turn: 1.0 / gear.radius,
+                along: Vector::ZERO,
+            },
+            Shape::Grouser(grouser) => grouser.motion(run, reach),
+            _ => Motion::default(),
         }
+    }
+
+    /// Whether its shape moves over the chassis at all.
+    pub(crate) fn is_carried(&self) -> bool {
+        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_))
     }
 }

@@ -27,7 +27,7 @@ pub(crate) fn start_position(
         discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
         match &part.shape {
             Shape::Disc { .. } => {}
-            Shape::Hull { discs: round } => {
+            Shape::Hull { discs: round, .. } => {
                 let placed = &discs[discs.len() - round.len()..];
                 segments.extend(
                     placed
@@ -41,6 +41,11 @@ pub(crate) fn start_position(
                     let corners = gear.corners(direction + start);
                     segments.extend(closed(&corners.map(|c| turned(*center + c))));
                 }
+            }
+            Shape::Grouser(grouser) => {
+                let place = grouser.place(scenario.start.track_phase);
+                let corners = grouser.corners().map(|c| turned(place.transform_point(c)));
+                segments.extend(closed(&corners));
             }
             Shape::Polygon { corners } => {
                 let corners: Vec<Vector> = corners.iter().map(|c| turned(*c)).collect();

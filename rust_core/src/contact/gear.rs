@@ -11,7 +11,6 @@ use super::lane::{Lane, On, Touch};
 use super::overlap::{self, Tip};
 use crate::outline::Gear;
 use crate::plane::{direction, right_of};
-use crate::robot::TurningWheel;
 
 /// [m] Ground does not sink into a flank by more than this.
 const SUNK: f64 = 1e-3;
@@ -19,7 +18,8 @@ const SUNK: f64 = 1e-3;
 /// A gear wheel of a robot.
 pub(super) struct GearContact {
     part: usize,
-    wheel: TurningWheel,
+    /// [m] Axle in the chassis frame.
+    center: Vector,
     gear: Gear,
     /// Unit vectors to the middles of the grousers at the start.
     directions: Vec<Vector>,
@@ -63,12 +63,12 @@ impl Grouser {
 }
 
 impl GearContact {
-    pub(super) fn new(part: usize, wheel: TurningWheel, gear: Gear) -> Self {
+    pub(super) fn new(part: usize, center: Vector, gear: Gear) -> Self {
         let corners = gear.corners(0.0);
         let side = |i: usize| right_of((corners[i + 1] - corners[i]).normalize());
         Self {
             part,
-            wheel,
+            center,
             gear,
             directions: gear.directions().map(direction).collect(),
             grouser: Grouser {
@@ -89,14 +89,14 @@ impl GearContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let center = pose.transform_point(self.wheel.center);
+        let center = pose.transform_point(self.center);
         let reach = self.gear.radius + prediction;
         let region = lane.region(center.x - reach, center.x + reach);
         let room = center.y - lane.top(&region) - prediction;
         if room > self.gear.radius {
             return;
         }
-        let turned = pose.rotation * Rotation::new(-drive / self.wheel.radius);
+        let turned = pose.rotation * Rotation::new(-drive / self.gear.radius);
         if room <= self.gear.root_radius {
             // A face that the centre has passed is the far side of something thin.
             let reach = (prediction, 0.0);

@@ -11,6 +11,7 @@ use super::gear::GearContact;
 use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
 use super::{Contact, without_redundant};
+use crate::outline::Grouser;
 use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
 
@@ -32,16 +33,27 @@ enum Outline {
         drive: usize,
         gear: GearContact,
     },
+    Grouser {
+        drive: usize,
+        grouser: Grouser,
+        /// In its own frame.
+        hull: HullContact,
+    },
     Hull(HullContact),
 }
 
 impl OwnContact {
     /// The outlines of a robot's parts and of the lanes that they meet.
     pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
-        let outline = |i: usize, part: &Part| match (&part.shape, part.turning()) {
-            (Shape::Gear { gear, .. }, Some(wheel)) => Outline::Gear {
-                drive: wheel.drive,
-                gear: GearContact::new(i, wheel, *gear),
+        let outline = |i: usize, part: &Part| match (&part.shape, part.drive) {
+            (Shape::Gear { center, gear }, Some(drive)) => Outline::Gear {
+                drive,
+                gear: GearContact::new(i, *center, *gear),
+            },
+            (Shape::Grouser(grouser), Some(drive)) => Outline::Grouser {
+                drive,
+                grouser: grouser.clone(),
+                hull: HullContact::new(i, part),
             },
             (Shape::Disc { center, radius }, _) => Outline::Disc {
                 part: i,
@@ -87,6 +99,14 @@ impl OwnContact {
                 }
                 Outline::Gear { drive, gear } => {
                     gear.find(lane, pose, drives[*drive], prediction, contacts);
+                }
+                Outline::Grouser {
+                    drive,
+                    grouser,
+                    hull,
+                } => {
+                    let place = pose * grouser.place(drives[*drive]);
+                    hull.find(lane, place, prediction, contacts);
                 }
                 Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),
             }

@@ -3,7 +3,7 @@
 //! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
 //! kept from step to step, so a contact is always of this pose.
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
+use rapier2d_f64::math::{Pose, Vector};
 use rapier2d_f64::parry::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher,
 };
@@ -13,7 +13,7 @@ use rapier2d_f64::prelude::SharedShape;
 use super::hull::HullContact;
 use super::lane::Lane;
 use super::{Contact, without_redundant};
-use crate::robot::{Part, Shape, TurningWheel};
+use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
 
 /// Shapes of one robot and one ground.
@@ -33,31 +33,13 @@ struct Ground {
 
 /// A part as convex pieces.
 struct Body {
-    part: usize,
-    lane: usize,
-    /// [m] A disc round it, in the chassis frame.
+    part: Part,
+    /// [m] A disc round it, in its own frame.
     bound: (Vector, f64),
-    /// Round parts that are more than a disc.
+    /// Our own contact of what is neither a disc nor a gear.
     hull: Option<HullContact>,
-    solids: Vec<Solid>,
-}
-
-/// One convex piece.
-struct Solid {
-    shape: SharedShape,
-    /// Place in the frame of the wheel that it turns with, or of the chassis.
-    place: Pose,
-    wheel: Option<TurningWheel>,
-}
-
-impl Solid {
-    /// Place in the chassis frame when the drives have run so far [m].
-    fn at(&self, drives: &[f64]) -> Pose {
-        self.wheel.map_or(self.place, |wheel| {
-            let turned = Rotation::new(-drives[wheel.drive] / wheel.radius);
-            Pose::from_parts(wheel.center, turned) * self.place
-        })
-    }
+    /// In its own frame.
+    solids: Vec<SharedShape>,
 }
 
 impl Ground {
@@ -80,11 +62,12 @@ impl ReferenceContact {
                 .iter()
                 .enumerate()
                 .map(|(i, part)| Body {
-                    part: i,
-                    lane: part.lane,
+                    part: part.clone(),
                     bound: part.bound(),
-                    hull: matches!(part.shape, Shape::Hull { .. } | Shape::Polygon { .. })
-                        .then(|| HullContact::new(i, part)),
+                    hull: match part.shape {
+                        Shape::Disc { .. } | Shape::Gear { .. } => None,
+                        _ => Some(HullContact::new(i, part)),
+                    },
                     solids: solids_of(part),
                 })
                 .collect(),
@@ -105,17 +88,17 @@ impl ReferenceContact {
     ) {
         contacts.clear();
         for i in 0..self.bodies.len() {
-            let (center, radius) = self.bodies[i].bound;
-            let center = pose.transform_point(center);
-            let ground = &self.lanes[self.bodies[i].lane];
+            let Body { part, bound, .. } = &self.bodies[i];
+            let place = pose * part.place(part.drive.map_or(0.0, |k| drives[k]));
+            let (center, radius) = (place.transform_point(bound.0), bound.1);
+            let ground = &self.lanes[part.lane];
             if ground.profile.is_clear_of(center, radius + prediction) {
                 continue;
             }
             if let Some(hull) = &self.bodies[i].hull {
-                hull.find(&ground.lane, pose, prediction, contacts);
+                hull.find(&ground.lane, place, prediction, contacts);
             }
             for k in 0..self.bodies[i].solids.len() {
-                let place = pose * self.bodies[i].solids[k].at(drives);
                 self.find_solid((i, k), place, prediction, contacts);
             }
         }
@@ -129,16 +112,15 @@ impl ReferenceContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let Body { part, lane, .. } = self.bodies[body];
-        let Ground { line, profile, .. } = &self.lanes[lane];
-        let solid = &self.bodies[body].solids[solid];
+        let (part, shape) = (&self.bodies[body].part, &self.bodies[body].solids[solid]);
+        let Ground { line, profile, .. } = &self.lanes[part.lane];
         // A manifold that was kept would be reused until the pose changes by a degree.
         self.manifolds.clear();
         DefaultQueryDispatcher
             .contact_manifolds(
                 &pose,
                 line,
-                &*solid.shape,
+                &**shape,
                 prediction,
                 &mut self.manifolds,
                 &mut None,
@@ -149,7 +131,7 @@ impl ReferenceContact {
             for point in manifold.points.iter().filter(|p| p.dist < prediction) {
                 let on_solid = pose.transform_point(point.local_p2);
                 contacts.push(Contact {
-                    part,
+                    part: body,
                     facet,
                     edge: profile.edge_at(facet, point.local_p1),
                     point: 0.5 * (point.local_p1 + on_solid),
@@ -161,30 +143,16 @@ impl ReferenceContact {
     }
 }
 
-/// The convex pieces of a part.
-fn solids_of(part: &Part) -> Vec<Solid> {
-    let solid = |shape, place, wheel| Solid {
-        shape,
-        place,
-        wheel,
-    };
-    let on_chassis = |shape, place| vec![solid(shape, place, None)];
+/// The convex pieces of a part in its own frame; the contacts of hulls are our own.
+fn solids_of(part: &Part) -> Vec<SharedShape> {
     match &part.shape {
-        Shape::Disc { center, radius } => {
-            on_chassis(SharedShape::ball(*radius), Pose::from_translation(*center))
-        }
-        Shape::Gear { center, gear } => {
-            let place = Pose::from_translation(*center);
-            let root = solid(SharedShape::ball(gear.root_radius), place, None);
-            let wheel = part.turning();
-            let grousers = gear.directions().map(|direction| {
-                let corners = gear.corners(direction).to_vec();
-                solid(polygon(corners), Pose::identity(), wheel)
-            });
+        Shape::Disc { radius, .. } => vec![SharedShape::ball(*radius)],
+        Shape::Gear { gear, .. } => {
+            let root = SharedShape::ball(gear.root_radius);
+            let grousers = gear.directions().map(|d| polygon(gear.corners(d).to_vec()));
             std::iter::once(root).chain(grousers).collect()
         }
-        // Their contacts are our own: see `HullContact`.
-        Shape::Hull { .. } | Shape::Polygon { .. } => Vec::new(),
+        Shape::Hull { .. } | Shape::Grouser(_) | Shape::Polygon { .. } => Vec::new(),
     }
 }
 

@@ -151,10 +151,21 @@ impl Scene<'_> {
         })
     }
 
+    /// [m] How far the surface under a contact has run.
+    fn run(&self, contact: &Contact) -> f64 {
+        let drive = self.model.parts[contact.part].drive;
+        drive.map_or(0.0, |k| self.drive_positions[k])
+    }
+
     fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
         let pose = Pose::new(stance.position, stance.angle);
         let center = pose.transform_point(self.model.center_of_mass);
-        Levers::new(contact, (center, stance.angle), self.model)
+        Levers::new(
+            contact,
+            (center, stance.angle),
+            (self.run(contact), 0.0),
+            self.model,
+        )
     }
 
     /// The conditions that this stop has at all.
@@ -233,7 +244,8 @@ impl Scene<'_> {
         role: Role,
     ) -> Support {
         let center = pose.transform_point(self.model.center_of_mass);
-        let levers = Levers::new(contact, (center, pose.rotation.angle()), self.model);
+        let at = (center, pose.rotation.angle());
+        let levers = Levers::new(contact, at, (self.run(contact), 0.0), self.model);
         let drive = self.model.parts[contact.part].drive;
         Support::new(&levers, drive, (self.friction(contact.part), slides), role)
     }

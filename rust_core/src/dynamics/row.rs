@@ -6,7 +6,7 @@ use super::direct::{Damper, Grip};
 use super::solve::{Action, Admittance};
 use super::state::State;
 use crate::contact::{Contact, LoadedContact};
-use crate::plane::{cross, right_of};
+use crate::plane::{cross, left_of, right_of};
 use crate::robot::Model;
 
 /// One contact's constraint in one step.
@@ -62,14 +62,35 @@ pub(crate) struct Direction {
 struct Place {
     /// [m] Gap.
     gap: f64,
-    /// [m] From the centre of mass to the contact, or to the axle of a wheel that turns under it.
+    /// [m] From the centre of mass to the contact, or to the axle that it turns about.
     arm: Vector,
-    /// [m] From that axle to the contact.
-    spoke: Vector,
-    /// [1/m] Turn of that wheel for each metre of its drive.
-    turn: f64,
+    /// From there on.
+    carried: Carried,
     /// [m] Position of the drive.
     drive_position: f64,
+}
+
+impl Carried {
+    /// [m] From the end of the arm to the contact when the chassis has turned and the drive has run so
+    /// far since.
+    fn offset(&self, turned: Rotation, run: f64) -> Vector {
+        let spoke = turned * self.spoke;
+        if self.turn == 0.0 {
+            spoke + turned * self.along * run
+        } else {
+            Rotation::new(-self.turn * run) * spoke + turned * self.along * run
+        }
+    }
+
+    /// As it was before that.
+    fn before(&self, turned: Rotation, run: f64) -> Self {
+        let back = turned.inverse();
+        Self {
+            spoke: self.offset(back, -run),
+            along: back * self.along,
+            ..*self
+        }
+    }
 }
 
 impl Direction {
@@ -98,24 +119,50 @@ pub(crate) struct Levers {
     pub tangent: Direction,
     /// [m] From the centre of mass to the contact.
     arm: Vector,
-    /// [m] From the axle of a wheel that turns under the contact; zero for other parts.
+    carried: Carried,
+}
+
+/// How the touching point moves over the chassis for each metre of its drive.
+#[derive(Clone, Copy, Debug, Default)]
+struct Carried {
+    /// [m] To it from the axle that it turns about, or from where it began.
     spoke: Vector,
+    /// [1/m] Turn about that axle.
+    turn: f64,
+    /// Motion along a line, besides.
+    along: Vector,
 }
 
 impl Levers {
-    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`.
-    pub(crate) fn new(contact: &Contact, (center, angle): (Vector, f64), model: &Model) -> Self {
+    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`, and the
+    /// surface of the part's drive has run so far [m], and runs as far as `reach` in half a step.
+    pub(crate) fn new(
+        contact: &Contact,
+        (center, angle): (Vector, f64),
+        (run, reach): (f64, f64),
+        model: &Model,
+    ) -> Self {
         let part = &model.parts[contact.part];
         let arm = contact.point - center;
-        let spoke = part.turning().map_or(Vector::ZERO, |wheel| {
-            arm - Rotation::new(angle) * (wheel.center - model.center_of_mass)
-        });
-        let motion = part.surface_motion(contact.normal, spoke);
+        let rotation = Rotation::new(angle);
+        let mut carried = Carried::default();
+        let motion = if part.is_carried() {
+            let motion = part.motion(run, reach);
+            (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
+            if motion.turn != 0.0 {
+                carried.spoke = arm - rotation * (motion.center - model.center_of_mass);
+            }
+            right_of(carried.spoke) * motion.turn + carried.along
+        } else if part.drive.is_some() {
+            left_of(contact.normal) // the surface moves along itself
+        } else {
+            Vector::ZERO
+        };
         Self {
             normal: Direction::new(contact.normal, arm, motion, model),
             tangent: Direction::new(right_of(contact.normal), arm, motion, model),
             arm,
-            spoke,
+            carried,
         }
     }
 }
@@ -131,25 +178,28 @@ impl Row {
         (middle, time): ((Vector, f64), f64),
     ) -> Self {
         let part = &model.parts[contact.part];
+        let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
+        let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
         let Levers {
             normal,
             tangent,
             arm,
-            spoke,
-        } = Levers::new(contact, middle, model);
-        let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
-        let turn = part.turning().map_or(0.0, |wheel| 1.0 / wheel.radius);
-        let back = Rotation::new(state.angle - middle.1);
-        let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
+            carried,
+        } = Levers::new(
+            contact,
+            middle,
+            (drive_position + advance, advance.abs()),
+            model,
+        );
+        let turned = Rotation::new(middle.1 - state.angle);
         let mut start = Place {
             gap: contact.distance,
-            arm: back * (arm - spoke),
-            spoke: Rotation::new(turn * advance) * (back * spoke),
-            turn,
+            arm: turned.inverse() * (arm - carried.spoke),
+            carried: carried.before(turned, advance),
             drive_position,
         };
         // The gap was found in the middle of the step; the touching point was here at its start.
-        let then = state.center + start.arm + start.spoke;
+        let then = state.center + start.arm + start.carried.spoke;
         start.gap -= contact.normal.dot(contact.point - then);
         Self {
             normal,
@@ -189,13 +239,10 @@ impl Row {
     /// Updates the gap for the motion since the start of the step, at `center` and `angle`.
     pub(super) fn follow(&mut self, state: &State, (center, angle): (Vector, f64)) {
         let s = &self.start;
+        let run = self.drive.map_or(0.0, |k| state.drives[k].position) - s.drive_position;
         let turned = Rotation::new(state.angle - angle);
-        let mut spoke = turned * s.spoke;
-        if let Some(k) = self.drive.filter(|_| s.turn != 0.0) {
-            let advance = state.drives[k].position - s.drive_position;
-            spoke = Rotation::new(-s.turn * advance) * spoke;
-        }
-        let moved = state.center - center + turned * s.arm + spoke - s.arm - s.spoke;
+        let offset = s.carried.offset(turned, run);
+        let moved = state.center - center + turned * s.arm + offset - s.arm - s.carried.spoke;
         self.gap = s.gap + self.normal.unit.dot(moved);
     }
 }

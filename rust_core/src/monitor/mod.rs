@@ -11,7 +11,7 @@ use crate::dynamics::DriveState;
 use crate::events::{Event, IntrusionWatch};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
-use crate::robot::{Model, Part, Shape};
+use crate::robot::{Model, Part};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::shaking::Shaking;
 use crate::terrain::{Ground, Profile};
@@ -119,10 +119,7 @@ impl Monitor {
                 })
                 .collect(),
             parts: model.parts.clone(),
-            has_grousers: model
-                .parts
-                .iter()
-                .any(|part| matches!(part.shape, Shape::Gear { .. })),
+            has_grousers: model.parts.iter().any(Part::is_carried),
             seen: Seen::from(0.0),
         }
     }

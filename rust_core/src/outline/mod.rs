@@ -3,6 +3,7 @@
 pub(crate) mod cut;
 mod envelope;
 mod gear;
+mod grouser;
 mod hull;
 mod layout;
 pub(crate) mod search;
@@ -10,8 +11,9 @@ mod stretch;
 
 use rapier2d_f64::math::Vector;
 
-pub(crate) use envelope::Envelope;
+pub(crate) use envelope::{Envelope, Motion};
 pub use gear::Gear;
+pub use grouser::Grouser;
 pub(crate) use layout::wheels;
 
 use crate::scenario::TrackOutline;

@@ -286,18 +286,14 @@ impl Terrain {
 
 impl Stepfield {
     fn read(f: &mut Fields) -> Result<Self, ScenarioError> {
-        let pattern = match f.text("pattern")? {
-            "flat" => FieldPattern::Flat,
-            "hill" => FieldPattern::Hill,
-            "diagonal" => FieldPattern::Diagonal,
-            other => {
-                let rule = one_of(Some(other), &["flat", "hill", "diagonal"]);
-                return Err(f.error("pattern", other, rule));
-            }
-        };
+        let patterns = [
+            ("flat", FieldPattern::Flat),
+            ("hill", FieldPattern::Hill),
+            ("diagonal", FieldPattern::Diagonal),
+        ];
         Ok(Self {
             seed: f.integer("seed", 0, u32::MAX)?,
-            pattern,
+            pattern: f.choice("pattern", &patterns)?,
             posts: f.integer("posts", 1, 1000)?,
             post: f.number("post", LENGTH)?,
             rise: f.number("rise", HEIGHT)?,

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::fields::{Fields, Range, one_of};
 use super::robot::{Robot, TorqueSharing};
-use super::wheel::Wheel;
+use super::wheel::{MAX_GROUSERS, Wheel};
 use crate::error::ScenarioError;
 
 /// Most wheels of one side.
@@ -24,6 +24,8 @@ pub enum Track {
     Hybrid(HybridWheels),
     /// A smooth closed belt whose surface moves along the outline.
     Belt(BeltTrack),
+    /// The belt with grousers that travel along it.
+    GrouserBelt(GrouserBeltTrack),
     /// No track at all: the drive pushes the chassis.
     Force(ForceTrack),
 }
@@ -63,6 +65,13 @@ pub struct HybridWheels {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeltTrack {}
 
+/// A belt whose grousers travel with it (Okada et al. 2020).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GrouserBeltTrack {
+    /// Grousers of a belt; none takes the whole number that comes nearest to the outline's pitch.
+    pub grouser_count: Option<u32>,
+}
+
 /// The drive acts on the chassis as a force along it at axle height, in the air too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceTrack {
@@ -86,7 +95,14 @@ pub enum ForceSupport {
 
 impl Track {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        const KINDS: [&str; 5] = ["line", "circumferential", "hybrid", "belt", "force"];
+        const KINDS: [&str; 6] = [
+            "line",
+            "circumferential",
+            "hybrid",
+            "belt",
+            "grouser_belt",
+            "force",
+        ];
         let track = match f.text("kind")? {
             "line" => Self::Line(LineOfWheels {
                 count: f.integer("count", 2, MAX_WHEELS)?,
@@ -103,6 +119,9 @@ impl Track {
                 wheel: Wheel::read(f.child("wheel")?)?,
             }),
             "belt" => Self::Belt(BeltTrack {}),
+            "grouser_belt" => Self::GrouserBelt(GrouserBeltTrack {
+                grouser_count: f.optional_integer("grouser_count", 1, MAX_GROUSERS)?,
+            }),
             "force" => Self::Force(ForceTrack {
                 support: f.choice(
                     "support",
@@ -126,7 +145,7 @@ impl Track {
             Self::Line(LineOfWheels { wheel, .. })
             | Self::Circumferential(CircumferentialWheels { wheel, .. })
             | Self::Hybrid(HybridWheels { wheel, .. }) => Some(wheel),
-            Self::Belt(_) | Self::Force(_) => None,
+            Self::Belt(_) | Self::GrouserBelt(_) | Self::Force(_) => None,
         }
     }
 

@@ -25,6 +25,7 @@ pub(super) fn hull(
 ) -> Part {
     let shape = Shape::Hull {
         discs: outline::end_discs(&robot.outline).to_vec(),
+        grouser_height: 0.0,
     };
     Part {
         kind,

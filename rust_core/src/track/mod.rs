@@ -2,6 +2,7 @@
 
 mod belt;
 mod force;
+mod grouser_belt;
 mod wheels;
 
 use crate::error::ScenarioError;
@@ -30,6 +31,7 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
         | Track::Circumferential(CircumferentialWheels { wheel, .. })
         | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
         Track::Belt(_) => Ok(belt::build(robot)),
+        Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
         Track::Force(force) => force::build(robot, force),
     }
 }

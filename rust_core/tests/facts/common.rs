@@ -1,8 +1,8 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, HybridWheels,
-    LineOfWheels, Record, Run, Scenario, Simulation, Terrain, Track, Wheel, simulate,
+    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, GrouserBeltTrack,
+    HybridWheels, LineOfWheels, Record, Run, Scenario, Simulation, Terrain, Track, Wheel, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -78,6 +78,12 @@ pub(crate) fn hybrid(wheel: Wheel) -> Track {
 
 pub(crate) fn belt() -> Track {
     Track::Belt(BeltTrack {})
+}
+
+pub(crate) fn grouser_belt() -> Track {
+    Track::GrouserBelt(GrouserBeltTrack {
+        grouser_count: None,
+    })
 }
 
 pub(crate) fn force() -> Track {

@@ -134,6 +134,7 @@ fn pieces_of_flat_ground_leave_no_trace_under_grousers() {
             circumferential(24, paper_gear()),
             1e-3,
         ),
+        ("belt with grousers", grouser_belt(), 1e-4),
     ] {
         let mut scenario = engineer();
         scenario.robot.track = track;

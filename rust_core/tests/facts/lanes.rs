@@ -13,6 +13,7 @@ fn models() -> Vec<(&'static str, Track)> {
         ("force on skids", force()),
         ("force on wheels", force_on_wheels()),
         ("line of 3 gear wheels", line_of(3, paper_gear())),
+        ("belt with grousers", grouser_belt()),
     ]
 }
 

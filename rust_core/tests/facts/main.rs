@@ -19,6 +19,7 @@ mod drawn;
 mod drive;
 mod gears;
 mod ghosts;
+mod grouser_belt;
 mod judged;
 mod lanes;
 mod repeat;

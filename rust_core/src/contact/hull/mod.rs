@@ -56,7 +56,8 @@ impl HullContact {
     pub(super) fn new(index: usize, part: &Part) -> Self {
         let discs: Vec<Disc> = match &part.shape {
             Shape::Polygon { corners } => corners.iter().map(|c| Disc::point(*c)).collect(),
-            _ => part.discs().map(|(tip, _)| tip).collect(),
+            Shape::Grouser(grouser) => grouser.corners().map(Disc::point).to_vec(),
+            _ => part.discs().map(|(_, root)| root).collect(),
         };
         let hull = Envelope::new(&discs);
         let arc = |(disc, from, sweep)| Arc {

@@ -57,7 +57,7 @@ impl Robot {
                     let reach = corners.iter().map(|p| p.length()).fold(0.0, f64::max);
                     (Form::Belly { corners }, reach)
                 }
-                Shape::Hull { .. } => panic!("the judge knows no belts"),
+                Shape::Hull { .. } | Shape::Grouser(_) => panic!("the judge knows no belts"),
             };
             Part {
                 form,

@@ -143,6 +143,7 @@ fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f
     (
         Shape::Hull {
             discs: discs.to_vec(),
+            grouser_height: 0.0,
         },
         curves,
         reach,

@@ -1,0 +1,55 @@
+//! A grouser that travels with a belt.
+
+use std::sync::Arc;
+
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+
+use super::{Envelope, Motion};
+
+/// A grouser fixed to a belt, which carries it along its line.
+#[derive(Clone, Debug)]
+pub struct Grouser {
+    /// The line of the belt.
+    belt: Arc<Envelope>,
+    /// [m] Way along it at the start.
+    way: f64,
+    /// [m] Corners, counter-clockwise, x along the belt's travel and y outwards from its line.
+    corners: [Vector; 4],
+}
+
+impl Grouser {
+    /// One of a height and thickness [m] that starts a way [m] along the belt's line.
+    pub(crate) fn new(belt: &Arc<Envelope>, way: f64, height: f64, thickness: f64) -> Self {
+        let half = 0.5 * thickness;
+        // It reaches into the belt, so that no corner of the ground slips in where the belt is bent.
+        let corner = |x: f64, y: f64| Vector::new(x, y);
+        Self {
+            belt: Arc::clone(belt),
+            way,
+            corners: [
+                corner(-half, -half),
+                corner(half, -half),
+                corner(half, height),
+                corner(-half, height),
+            ],
+        }
+    }
+
+    /// [m] Its corners in its own frame, counter-clockwise.
+    pub fn corners(&self) -> &[Vector; 4] {
+        &self.corners
+    }
+
+    /// Its frame in that of the chassis when the belt has run so far [m].
+    pub fn place(&self, run: f64) -> Pose {
+        let (point, outward) = self.belt.place_at(self.way + run);
+        // Turns +y outwards.
+        let rotation = Rotation::from_cos_sin_unchecked(outward.y, -outward.x);
+        Pose::from_parts(point, rotation)
+    }
+
+    /// How the belt moves it there, the mean while it runs from `reach` [m] before to as far behind.
+    pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
+        self.belt.motion_at(self.way + run, reach)
+    }
+}
