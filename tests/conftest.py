@@ -51,6 +51,10 @@ VARIANTS = {
             3, height=0.05, thickness=0.05, yaw=0.3, rise=0.01, edge_radius=0.002
         ),
     ),
+    "grousers-gap": Scenario(
+        ROBOT.with_track(c2d.GrouserBeltTrack(grouser_count=20)),
+        c2d.terrains.gap(0.08, edge_radius=0.003),
+    ),
     "line-barrier": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
         c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),

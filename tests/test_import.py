@@ -61,6 +61,6 @@ def test_a_function_wins_over_the_module_of_its_name() -> None:
 
 
 def test_every_public_name_exists_and_is_documented() -> None:
-    assert len(c2d.__all__) < 40
+    assert len(c2d.__all__) < 50  # a screen
     for name in c2d.__all__:
         assert getattr(c2d, name).__doc__, name

@@ -128,7 +128,7 @@ def nearly(terrain: Any) -> c2d.terrains.lanes:
 def test_lanes_that_are_alike_give_the_rates_of_one(
     track: Any, height: float, friction: float
 ) -> None:
-    """At a height where some of 60 robots get over, and some do not; approach and height are drawn."""
+    """At a height where some of 60 robots get over and some do not; approach and height drawn."""
     rng = np.random.default_rng(5)
     draws = list(zip(rng.uniform(0.05, 0.15, 60), rng.uniform(0.95, 1.05, 60), strict=True))
 

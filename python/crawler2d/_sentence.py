@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["sentence"]
 
-_BELT, _BELLY = 1, 3
-_NAMES = {_BELT: "the belt", 2: "the skid", _BELLY: "the belly"}
+_BELT, _BELLY, _GROUSER = 1, 3, 4
+_NAMES = {_BELT: "the belt", 2: "the skid", _BELLY: "the belly", _GROUSER: "a grouser"}
 """What a reader calls the bodies that are no wheels, by their code in `body_kind`."""
 _LEAST_SHARE = 0.02
 """Smaller shares are noise to a reader."""
@@ -153,7 +153,7 @@ def _moved_by(d: Diagnosis) -> str:
 
 
 def _belt(d: Diagnosis) -> str:
-    if d.counterfactual is None or (d.contacts["body_kind"] == _BELT).any():
+    if d.counterfactual is None or np.isin(d.contacts["body_kind"], (_BELT, _GROUSER)).any():
         return ""
     if d.counterfactual.freed:
         return "a closed belt gets away"

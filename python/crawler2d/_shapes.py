@@ -11,7 +11,17 @@ if TYPE_CHECKING:
 
     from crawler2d.run import Run
 
-__all__ = ["SLIVER", "circle", "closed", "extent", "inset", "placed", "seen_lanes", "turned"]
+__all__ = [
+    "SLIVER",
+    "circle",
+    "closed",
+    "extent",
+    "grousers",
+    "inset",
+    "placed",
+    "seen_lanes",
+    "turned",
+]
 
 SLIVER = 2e-5
 """[m] Lines that coincide enclose slivers of rounding; an intrusion is deeper."""
@@ -65,6 +75,25 @@ def turned(gear: dict[str, Any], positions: NDArray[np.float64]) -> NDArray[np.f
     angle = 0.0 if gear["drive"] is None else -positions[gear["drive"]] / gear["radius"]
     outline: NDArray[np.float64] = gear["outline"] @ _rotation(angle).T + gear["center"]
     return closed(outline)
+
+
+def grousers(geometry: dict[str, Any], run: float) -> list[NDArray[np.float64]]:
+    """[m] Outlines of the grousers of a belt that has run so far, in the chassis frame."""
+    belt, shapes = geometry["root_envelope"], geometry["grousers"]
+    line = closed(belt)  # counter-clockwise; its last side is the lower run
+    sides = np.diff(line, axis=0)
+    lengths = np.hypot(*sides.T)
+    ways = np.concatenate([[0.0], np.cumsum(lengths)])
+    outlines = []
+    for index, corners in enumerate(shapes):
+        # They start at the rear end of the lower run, and the belt runs clockwise.
+        way = (ways[-2] - index / len(shapes) * ways[-1] - run) % ways[-1]
+        side = min(int(np.searchsorted(ways, way, side="right")) - 1, len(sides) - 1)
+        along = sides[side] / lengths[side]
+        outward = np.array([along[1], -along[0]])
+        place = line[side] + (way - ways[side]) * along
+        outlines.append(closed(place - corners[:, :1] * along + corners[:, 1:] * outward))
+    return outlines
 
 
 def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:

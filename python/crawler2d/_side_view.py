@@ -8,7 +8,17 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d._extras import extra
-from crawler2d._shapes import SLIVER, circle, closed, extent, inset, placed, seen_lanes, turned
+from crawler2d._shapes import (
+    SLIVER,
+    circle,
+    closed,
+    extent,
+    grousers,
+    inset,
+    placed,
+    seen_lanes,
+    turned,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -106,7 +116,10 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
         for gear in geometry["gears"]:
             draw(turned(gear, run.drive_positions[sample]), _BLACK)
     elif geometry["hull"]:
-        draw(closed(geometry["envelope"]), _BLACK)
+        draw(closed(geometry["root_envelope"]), _BLACK)
+        run_so_far = run.drive_positions[sample, int(geometry["drives"][0])]
+        for outline in grousers(geometry, float(run_so_far)):
+            draw(outline, _BLACK)
     else:
         for x, y, radius in geometry["circles"]:
             draw(circle(x, y, radius), _BLACK)

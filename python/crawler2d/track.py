@@ -12,6 +12,7 @@ __all__ = [
     "CircumferentialWheels",
     "ForceTrack",
     "GearWheel",
+    "GrouserBeltTrack",
     "HybridWheels",
     "LineOfWheels",
     "RoundWheel",
@@ -179,6 +180,29 @@ class BeltTrack(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class GrouserBeltTrack(Parameters):
+    """A taut belt with grousers that travel along it, after Okada et al. (2020).
+
+    On the ground the grousers run rearwards with the belt, round the sprockets they turn with it,
+    on top they come back. Belt and grousers have no bodies of their own: they are where the drive
+    has run to, so that every contact pulls on the drive by its lever. The tips round the sprockets
+    are faster than the belt; a corner that comes down there lifts the robot by some hundredths of a
+    millimetre. Height and thickness are those of `robot.outline`, and both must be above 0.
+
+    Parameters
+    ----------
+    grouser_count : int, optional
+        Grousers of one belt, evenly spaced; None takes the whole number that comes nearest to the
+        outline's `grouser_pitch`: 22 for the Engineer.
+    """
+
+    kind: ClassVar[str] = "grouser_belt"
+    place: ClassVar[str] = "robot.track"
+
+    grouser_count: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ForceTrack(Parameters):
     """No moving surface: the drive pushes the chassis along its axis at axle height.
 
@@ -204,5 +228,7 @@ class ForceTrack(Parameters):
     wheel_count: int = 5
 
 
-Track = LineOfWheels | CircumferentialWheels | HybridWheels | BeltTrack | ForceTrack
+Track = (
+    LineOfWheels | CircumferentialWheels | HybridWheels | BeltTrack | GrouserBeltTrack | ForceTrack
+)
 """Every track model."""

@@ -255,12 +255,13 @@ pub(crate) fn geometry<'py>(
     let mut belly: Vec<[f64; 2]> = Vec::new();
     let mut hull = false;
     let gears = PyList::empty(py);
+    let grousers = PyList::empty(py);
     let shown = |part: &&Part| part.lane == near || part.kind == BodyKind::Belly;
     for (body, part) in model.parts.iter().enumerate().filter(|(_, p)| shown(p)) {
         let before = circles.len();
         match &part.shape {
             Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
-            Shape::Hull { discs } => {
+            Shape::Hull { discs, .. } => {
                 hull = true;
                 circles.extend(discs.iter().map(|d| [d.center.x, d.center.y, d.radius]));
             }
@@ -277,6 +278,10 @@ pub(crate) fn geometry<'py>(
                 drawn.set_item("drive", part.drive)?;
                 drawn.set_item("outline", rows(py, &outline))?;
                 gears.append(drawn)?;
+            }
+            Shape::Grouser(grouser) => {
+                let corners: Vec<[f64; 2]> = grouser.corners().iter().map(|p| [p.x, p.y]).collect();
+                grousers.append(rows(py, &corners))?;
             }
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }
@@ -297,6 +302,7 @@ pub(crate) fn geometry<'py>(
     result.set_item("bodies", bodies.into_pyarray(py))?;
     result.set_item("hull", hull)?;
     result.set_item("gears", gears)?;
+    result.set_item("grousers", grousers)?;
     result.set_item("wheels", wheels(py, model)?)?;
     result.set_item("belly", rows(py, &belly))?;
     let [envelope, root_envelope] = model.envelopes(BELT_TURN).map(|points| {

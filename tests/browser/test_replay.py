@@ -22,6 +22,7 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "round wheels that stop": (ROBOT.with_track(ROUND), STEP),
     "gear wheels": (ROBOT.with_track(GEARED), STEP),
     "belt": (ROBOT, STEP),
+    "belt with grousers": (ROBOT.with_track(c2d.GrouserBeltTrack()), STEP),
     "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
     "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
     "circumferential": (

@@ -11,6 +11,7 @@ from crawler2d.track import (
     CircumferentialWheels,
     ForceTrack,
     GearWheel,
+    GrouserBeltTrack,
     HybridWheels,
     LineOfWheels,
     RoundWheel,
@@ -110,7 +111,9 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
     pairs = {}
     for name, model in models.items():
         track = model.track
-        if isinstance(track, (BeltTrack, ForceTrack)) or not isinstance(track.wheel, GearWheel):
+        if isinstance(track, (BeltTrack, GrouserBeltTrack, ForceTrack)):
+            continue
+        if not isinstance(track.wheel, GearWheel):
             continue
         twin = names.get(replace(track, wheel=RoundWheel()))
         if twin is not None:

@@ -166,7 +166,7 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     envelope = geometry["envelope"]
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     shapes = {
-        "hull": envelope if hull else None,
+        "hull": geometry["root_envelope"] if hull else None,
         "envelope": None if hull else envelope,  # nothing gets inside a belt
         "inner": None if hull else inset(envelope, depth),
         "root": geometry["root_envelope"] if gears else None,
@@ -176,7 +176,8 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     return {
         "wheels": [] if hull else wheels,
         "ends": wheels if hull else [],
-        "moving": hull and robot.track.kind == "belt",
+        "moving": hull and robot.track.kind != "force",
+        "grousers": [packed(corners, _SHAPE) for corners in geometry["grousers"]],
         "pitch": outline.grouser_pitch,
         "length": outline.axle_distance + outline.front_radius + outline.rear_radius,
         "axles": outline.axle_distance / 2.0,

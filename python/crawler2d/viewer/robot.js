@@ -12,6 +12,7 @@ class Robot {
       this[name] = { points, path: outlineOf(points) };
     }
     if (this.hull) this.marks = marksOf(this.hull.points, this.pitch);
+    this.grousers = this.grousers.map((grouser) => outlineOf(unpacked(grouser)));
   }
 
   // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
@@ -70,6 +71,17 @@ class Robot {
     ctx.strokeStyle = colors.track;
     ctx.lineWidth = 2 * pixel;
     ctx.stroke(this.hull.path);
+    this.grousers.forEach((grouser, i) => {
+      // They start at the rear end of the lower run, and the belt runs clockwise.
+      const way = this.marks.lower - (i / this.grousers.length) * length - moment.way(this.ends[0].drive);
+      const [x, y, nx, ny] = at(way);
+      ctx.save();
+      ctx.translate(x, y);
+      ctx.rotate(Math.atan2(nx, -ny));
+      ctx.fillStyle = colors.track;
+      ctx.fill(grouser);
+      ctx.restore();
+    });
   }
 
   drawMassCenter(ctx, colors, pixel) {
@@ -131,5 +143,6 @@ function marksOf(points, pitch) {
     const share = (s - lengths[i]) / part;
     return [points[2 * i] + share * dx, points[2 * i + 1] + share * dy, -dy / part, dx / part];
   };
-  return { length, at, count, spacing: length / count };
+  // The last side is the lower run; `lower` is where its rear end is.
+  return { length, at, count, spacing: length / count, lower: lengths[n - 1] };
 }
