@@ -9,6 +9,7 @@ import crawler2d as c2d
 from crawler2d import _core
 from crawler2d._shapes import grousers, placed
 from crawler2d.scenario import Scenario
+from crawler2d.terrain import Terrain
 
 ROBOT = c2d.robots.engineer().with_track(c2d.GrouserBeltTrack())
 BELT, BELLY, GROUSER = 1, 3, 4
@@ -48,14 +49,14 @@ def test_nothing_seizes_a_closed_belt() -> None:
     rng = np.random.default_rng(8)
     scenarios = []
     for _ in range(250):
-        terrain = [
+        kinds: list[Terrain] = [
             c2d.terrains.step(rng.uniform(0.05, 0.2)),
             c2d.terrains.barrier(rng.uniform(0.03, 0.1), rng.uniform(0.005, 0.1)),
             c2d.terrains.ridge(rng.uniform(0.04, 0.12), rng.uniform(0.3, 2.0)),
             c2d.terrains.gap(rng.uniform(0.05, 0.3)),
             c2d.terrains.random_stepfield(int(rng.integers(1000)), rise=rng.uniform(0.01, 0.04)),
-        ][rng.integers(5)]
-        scenarios.append(Scenario(ROBOT, terrain, duration=10.0))
+        ]
+        scenarios.append(Scenario(ROBOT, kinds[rng.integers(5)], duration=10.0))
     runs = c2d.simulate_many(scenarios, threads=2)
     stops = [run.diagnosis for run in runs if run.diagnosis is not None]
     assert len(stops) > 30

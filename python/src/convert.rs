@@ -250,7 +250,7 @@ pub(crate) fn geometry<'py>(
 
     let near = ground.tracks - 1;
     let mut circles: Vec<[f64; 3]> = Vec::new();
-    let mut drives: Vec<i64> = Vec::new();
+    let mut drives: Vec<usize> = Vec::new();
     let mut bodies: Vec<usize> = Vec::new();
     let mut belly: Vec<[f64; 2]> = Vec::new();
     let mut hull = false;
@@ -286,7 +286,7 @@ pub(crate) fn geometry<'py>(
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }
         // What no drive moves follows the first.
-        drives.resize(circles.len(), part.drive.unwrap_or(0) as i64);
+        drives.resize(circles.len(), part.drive.unwrap_or(0));
         bodies.resize(bodies.len() + circles.len() - before, body);
     }
     let lanes = PyList::empty(py);

@@ -54,11 +54,11 @@ impl Ground {
                 friction,
             } => {
                 let lanes = field::barrier((*height, *thickness), *yaw, 0.0, gauge);
-                Self::skylines(lanes, *edge_radius, *friction)
+                Self::skylines(&lanes, *edge_radius, *friction)
             }
             Terrain::RandomStepfield(field) => {
                 let lanes = field::stepfield(field, gauge);
-                Self::skylines(lanes, field.edge_radius, field.friction)
+                Self::skylines(&lanes, field.edge_radius, field.friction)
             }
             _ => {
                 let lane = Described::new("terrain", terrain)?;
@@ -99,7 +99,7 @@ impl Ground {
     }
 
     /// Level tops and vertical faces under the left track, the right one and the belly.
-    fn skylines(lanes: [Skyline; 3], radius: f64, friction: f64) -> Result<Self, ScenarioError> {
+    fn skylines(lanes: &[Skyline; 3], radius: f64, friction: f64) -> Result<Self, ScenarioError> {
         let end = lanes[2].end();
         let profile = |skyline: &Skyline| {
             let points = skyline.points(-RUN_OUT, end + RUN_OUT);
@@ -108,7 +108,7 @@ impl Ground {
         if lanes[0] == lanes[1] {
             return Ok(Self::of(vec![profile(&lanes[0])?], 1, end));
         }
-        let [left, right, middle] = &lanes;
+        let [left, right, middle] = lanes;
         let tracks = [profile(left)?, profile(right)?];
         Self::apart(tracks, Some(profile(middle)?), end)
     }

@@ -1,5 +1,7 @@
 //! A random part over random ground.
 
+use std::slice::from_ref;
+
 use std::f64::consts::TAU;
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
@@ -36,7 +38,7 @@ impl Scene {
         let name = format!("scene {number} of {:#x}", draw.0);
         let ground = Ground::random(draw.below(grounds::KINDS), draw);
         let outline = Outline::random(draw.below(outlines::KINDS), draw);
-        let contact = OwnContact::new(&[outline.part.clone()], &[ground.profile.clone()]);
+        let contact = OwnContact::new(from_ref(&outline.part), from_ref(&ground.profile));
         // On a random feature but for the ends, or on the flat beside it.
         let feature = ground.curves[draw.below(ground.curves.len())];
         let [a, b] = feature.ends();
