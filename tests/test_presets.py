@@ -27,6 +27,44 @@ def test_the_engineer_has_the_figures_of_its_sources() -> None:
     assert robot.track == c2d.BeltTrack()
 
 
+@pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.gz_tracked_vehicle])
+def test_every_preset_drives_over_what_its_radius_allows(preset: Any) -> None:
+    run = c2d.simulate(preset(), c2d.terrains.step(0.05, friction=0.7))
+    assert run.outcome == "cleared"
+    assert run.scenario.robot.name == preset.__name__
+
+
+def test_the_gazebo_vehicle_is_put_together_from_its_file() -> None:
+    robot = c2d.robots.gz_tracked_vehicle()
+    assert robot.mass == pytest.approx(25.26)
+    assert robot.center_of_mass == pytest.approx((-0.0635, 0.0496), abs=5e-5)
+    assert robot.moment_of_inertia == pytest.approx(0.529, abs=5e-4)
+    assert c2d.robots.gz_tracked_vehicle(track="public").track == c2d.BeltTrack()
+
+
+def test_public_wheel_models_let_in_what_a_belt_passes() -> None:
+    """In one line each: what people run into who replace tracks by wheels."""
+    blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
+    assert c2d.simulate(c2d.robots.engineer(track="public"), blade).mechanism is not None
+    assert c2d.simulate(c2d.robots.engineer(), blade).outcome == "cleared"
+    public = c2d.robots.absolem(track="public")
+    assert public.track == c2d.LineOfWheels(8)
+    stop = c2d.simulate(
+        public, c2d.terrains.step(0.10, friction=0.7), counterfactual=True
+    ).diagnosis
+    assert stop is not None
+    assert (stop.outcome, stop.mechanism) == ("seized", "straddled")
+    assert stop.counterfactual is not None
+    assert stop.counterfactual.freed
+
+
+@pytest.mark.parametrize("name", c2d.robots.__all__)
+def test_a_word_that_is_no_track_is_refused(name: str) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        getattr(c2d.robots, name)(track="private")
+    assert caught.value.path == "track"
+
+
 def test_22_grousers_fit_on_the_engineers_belt() -> None:
     outline = c2d.robots.engineer().outline
     belt = outline.front_radius - outline.grouser_height

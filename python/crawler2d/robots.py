@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import Literal
 
 from crawler2d._arrays import real_number
+from crawler2d.errors import ScenarioError
 from crawler2d.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.track import BeltTrack, HybridWheels, LineOfWheels, Track
 
-if TYPE_CHECKING:
-    from crawler2d.track import Track
-
-__all__ = ["engineer"]
+__all__ = ["absolem", "engineer", "gz_tracked_vehicle"]
 
 
 def engineer(
@@ -18,7 +18,7 @@ def engineer(
     center_of_mass: tuple[float, float] = (0.0, 0.02),
     belly_clearance: float = 0.034,
     flippers: None = None,
-    track: Track | None = None,
+    track: Track | Literal["public"] | None = None,
 ) -> Robot:
     """Make the Servosila Engineer, a 21 kg tracked robot, without its flippers.
 
@@ -30,8 +30,9 @@ def engineer(
         [m] From level ground to the belly. Estimate; it decides when the robot lies on an edge.
     flippers : None
         Only None for now.
-    track : Track, optional
-        The model of the track; None is `Robot`'s default.
+    track : Track or "public", optional
+        The model of the track; None is `Robot`'s default, "public" that of the public simulation
+        model: three wheels a side of radius 0.08 m, slots of 26 mm between them.
 
     Returns
     -------
@@ -41,7 +42,7 @@ def engineer(
     Raises
     ------
     ScenarioError
-        If an argument is no number or no point.
+        If an argument is no number or no point, or `track` another word.
 
     Notes
     -----
@@ -103,4 +104,160 @@ def engineer(
             max_torque=6.0,
         ),
     )
-    return robot if track is None else robot.with_track(track)
+    public = HybridWheels(((-0.186, 0.0, 0.08), (0.0, 0.0, 0.08), (0.186, 0.0, 0.08)))
+    return _with_track(robot, track, public)
+
+
+def absolem(*, flippers: None = None, track: Track | Literal["public"] | None = None) -> Robot:
+    """Make the BlueBotics Absolem, a 38 kg tracked robot, without its flippers.
+
+    Parameters
+    ----------
+    flippers : None
+        Only None for now.
+    track : Track or "public", optional
+        The model of the track; None is `Robot`'s default, "public" that of the public simulation
+        model: eight wheels a track that overlap. Its makers tell of ground that gets stuck between
+        two of them and stops the robot where tracks would go on.
+
+    Returns
+    -------
+    Robot
+        The preset.
+
+    Raises
+    ------
+    ScenarioError
+        If `track` is another word.
+
+    Notes
+    -----
+    ==================  ===================================  ====================================
+    figure              value                                source
+    ==================  ===================================  ====================================
+    axle distance       0.5 m                                public model, SubT challenge
+    radius              0.089 m                              the same
+    gauge               0.397 m                              that of `gz_tracked_vehicle`
+    mass                38 kg with flippers and payload      specification, SubT challenge
+    max. speed          0.4 m/s                              the same
+    max. acceleration   1.4 m/s^2                            the same, from odometry
+    max. deceleration   4 m/s^2                              estimate
+    centre of mass      (-0.04, 0.05) m                      estimate; the body sits back
+    belly               0.5 m long, 30 mm above the axles    body of `gz_tracked_vehicle`, moved to
+                                                             the middle
+    all else            as `Robot.simple` has it             estimate
+    ==================  ===================================  ====================================
+
+    Examples
+    --------
+    What its makers tell of:
+
+    >>> import crawler2d as c2d
+    >>> run = c2d.simulate(absolem(track="public"), c2d.terrains.step(0.10, friction=0.7))
+    >>> str(run.outcome), str(run.mechanism)
+    ('seized', 'straddled')
+    """
+    robot = replace(
+        Robot.simple(38.0, axle_distance=0.5, radius=0.089, name="absolem", max_speed=0.4),
+        center_of_mass=(-0.04, 0.05),
+        belly=((-0.25, 0.03), (0.25, 0.03), (0.25, 0.169), (-0.25, 0.169)),
+        flippers=flippers,
+        gauge=0.397,
+    )
+    drivetrain = replace(robot.drivetrain, max_acceleration=1.4)
+    return _with_track(replace(robot, drivetrain=drivetrain), track, LineOfWheels(8))
+
+
+def gz_tracked_vehicle(
+    *, flippers: None = None, track: Track | Literal["public"] | None = None
+) -> Robot:
+    """Make the tracked vehicle of Gazebo's example world, without its flippers.
+
+    Parameters
+    ----------
+    flippers : None
+        Only None for now.
+    track : Track or "public", optional
+        The model of the track; None and "public" are a smooth belt, as Gazebo's track controller
+        has it.
+
+    Returns
+    -------
+    Robot
+        The preset.
+
+    Raises
+    ------
+    ScenarioError
+        If `track` is another word.
+
+    Notes
+    -----
+    ==================  ===================================  ====================================
+    figure              value                                source
+    ==================  ===================================  ====================================
+    axle distance       0.5 m                                tracked_vehicle_simple.sdf
+    radius              0.09047 m, no grousers               the same
+    gauge               0.397 m                              the same
+    mass                25.26 kg: body 13.14, tracks 6.06    the same
+    centre of mass      (-0.0635, 0.0496) m                  from the masses and places there
+    moment of inertia   0.529 kg m^2                         from the inertias and places there
+    belly               the body, 0.50 x 0.139 m             the same
+    track mass          0.1 kg                               estimate: the controller has none
+    max. speed          1 m/s                                estimate
+    max. acceleration   1 m/s^2, deceleration 4 m/s^2        estimate
+    max. torque         200 N m                              estimate: the controller has no limit
+    ==================  ===================================  ====================================
+
+    The friction of its tracks is 0.7 along the way; here friction is the terrain's.
+
+    Examples
+    --------
+    >>> gz_tracked_vehicle().mass
+    25.26
+    """
+    # Of the body and of a track, in the file: mass, place from the axles' middle, lateral inertia.
+    body, track_link = (13.14, (-0.122, 0.09945), 0.302044), (6.06, (0.0, -0.00445), 0.032554)
+    links = (body, track_link, track_link)
+    mass = sum(link[0] for link in links)
+    x, y = (sum(link[0] * link[1][axis] for link in links) / mass for axis in (0, 1))
+    inertia = sum(
+        own + part * ((place[0] - x) ** 2 + (place[1] - y) ** 2) for part, place, own in links
+    )
+    robot = Robot(
+        "gz_tracked_vehicle",
+        mass=mass,
+        center_of_mass=(x, y),
+        moment_of_inertia=inertia,
+        track_mass=0.1,
+        outline=TrackOutline(
+            axle_distance=0.5,
+            front_radius=0.09047,
+            rear_radius=0.09047,
+            grouser_height=0.0,
+            grouser_pitch=0.05,
+            grouser_thickness=0.0,
+        ),
+        belly=(
+            (-0.372085, 0.02995),
+            (0.128085, 0.02995),
+            (0.128085, 0.16895),
+            (-0.372085, 0.16895),
+        ),
+        flippers=flippers,
+        gauge=0.397,
+        drivetrain=Drivetrain(
+            max_speed=1.0, max_acceleration=1.0, max_deceleration=4.0, max_torque=200.0
+        ),
+    )
+    return _with_track(robot, track, BeltTrack())
+
+
+def _with_track(robot: Robot, track: Track | str | None, public: Track) -> Robot:
+    if track is None:
+        return robot
+    if isinstance(track, str):
+        if track != "public":
+            raise ScenarioError("track", track, 'must be a track model, "public" or None')
+        return robot.with_track(public)
+    return robot.with_track(track)

@@ -11,7 +11,6 @@ from crawler2d import terrains
 from crawler2d.batch import simulate_many
 from crawler2d.robots import engineer
 from crawler2d.scenario import Scenario
-from crawler2d.track import HybridWheels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Post", "posts", "public_wheel_model"]
 
-# [m] x, y and radius of its three wheels a side: slots of 26 mm stay between them.
-_WHEELS = ((-0.186, 0.0, 0.08), (0.0, 0.0, 0.08), (0.186, 0.0, 0.08))
 _POST_THICKNESS = 0.020
 _HEIGHTS = (0.03, 0.05, 0.08)
 
@@ -65,7 +62,7 @@ def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], R
     dict of (float, bool) to Run
         With history, by the height of the post [m] and whether the robot has a belly.
     """
-    robot = engineer(track=HybridWheels(_WHEELS))
+    robot = engineer(track="public")
     robots = {True: robot, False: replace(robot, belly=None)}
     places = [(height, belly) for belly in robots for height in _HEIGHTS]
     scenarios = [

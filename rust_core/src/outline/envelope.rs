@@ -19,18 +19,7 @@ const AS_NEAR: f64 = 1e-8;
 /// The convex hull of discs, as arcs and straight runs.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
-    stretches: Vec<Stretch>,
-}
-
-/// How a belt along the hull moves what it carries, for each metre that it runs.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Motion {
-    /// [m] Point that it turns it about, clockwise.
-    pub center: Vector,
-    /// [1/m] Turn.
-    pub turn: f64,
-    /// Motion along a line, besides.
-    pub along: Vector,
+    pub(super) stretches: Vec<Stretch>,
 }
 
 /// Where the hull lies nearest to a point inside it.
@@ -39,21 +28,6 @@ pub(crate) struct Nearest {
     /// [m] Depth of the point inside the hull.
     pub depth: f64,
     stretch: usize,
-}
-
-impl Motion {
-    /// A share of another motion in this one; one of them turns at most.
-    fn mixed(self, other: Self, share: f64) -> Self {
-        Self {
-            center: if self.turn == 0.0 {
-                other.center
-            } else {
-                self.center
-            },
-            turn: self.turn * (1.0 - share) + other.turn * share,
-            along: self.along * (1.0 - share) + other.along * share,
-        }
-    }
 }
 
 impl Envelope {
@@ -120,46 +94,14 @@ impl Envelope {
     /// The point a way [m] along the hull; the way may go round more than once.
     pub(crate) fn point_at(&self, way: f64) -> Vector {
         let way = way.rem_euclid(self.length());
-        let i = self.stretches.partition_point(|p| p.start <= way) - 1;
-        self.stretches[i].point_at(way - self.stretches[i].start)
-    }
-
-    /// The point a way [m] along the hull, and the outward normal there.
-    pub(crate) fn place_at(&self, way: f64) -> (Vector, Vector) {
-        let way = way.rem_euclid(self.length());
         let stretch = self.stretch_at(way);
-        let point = stretch.point_at(way - stretch.start);
-        let outward = match stretch.shape {
-            Form::Arc { center, radius, .. } => (point - center) / radius,
-            Form::Run { outward, .. } => outward,
-        };
-        (point, outward)
+        stretch.point_at(way - stretch.start)
     }
 
-    /// The mean motion of what a belt carries within `reach` [m] of a way along the hull: where an arc
-    /// joins a run, that of a tip would jump.
-    pub(crate) fn motion_at(&self, way: f64, reach: f64) -> Motion {
-        let way = way.rem_euclid(self.length());
-        let here = self.stretch_at(way);
-        // The nearer of its joints, and how much of the span lies beyond it.
-        let (behind, ahead) = (way - here.start, here.start + here.length - way);
-        let (gap, beyond) = if behind < ahead {
-            (behind, here.start - behind)
-        } else {
-            (ahead, way + 2.0 * ahead)
-        };
-        let mut motion = here.motion();
-        if gap < reach && self.stretches.len() > 1 {
-            let share = 0.5 * (1.0 - gap / reach);
-            let beyond = beyond.rem_euclid(self.length());
-            motion = motion.mixed(self.stretch_at(beyond).motion(), share);
-        }
-        motion
-    }
-
-    fn stretch_at(&self, way: f64) -> &Stretch {
-        let i = self.stretches.partition_point(|p| p.start <= way) - 1;
-        &self.stretches[i]
+    /// The stretch that a way [m] from 0 to the whole length leads to.
+    pub(super) fn stretch_at(&self, way: f64) -> &Stretch {
+        let next = self.stretches.partition_point(|p| p.start <= way);
+        &self.stretches[next.saturating_sub(1)]
     }
 
     /// [m] The way to the next point, along belt travel, at a straight distance from the one at

@@ -8,13 +8,15 @@ mod hull;
 mod layout;
 pub(crate) mod search;
 mod stretch;
+mod travel;
 
 use rapier2d_f64::math::Vector;
 
-pub(crate) use envelope::{Envelope, Motion};
+pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub use grouser::Grouser;
 pub(crate) use layout::wheels;
+pub(crate) use travel::Motion;
 
 use crate::scenario::TrackOutline;
 

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use rapier2d_f64::math::Vector;
 
-use super::envelope::Motion;
 use crate::plane::{cross, direction};
 
 /// [m, rad] Stretches overlap by this, so that no line slips through where two of them meet.
@@ -41,21 +40,6 @@ pub(super) enum Form {
 }
 
 impl Stretch {
-    /// How a belt moves what it carries here.
-    pub(super) fn motion(&self) -> Motion {
-        match self.shape {
-            Form::Arc { center, radius, .. } => Motion {
-                center,
-                turn: 1.0 / radius,
-                along: Vector::ZERO,
-            },
-            Form::Run { along, .. } => Motion {
-                along,
-                ..Motion::default()
-            },
-        }
-    }
-
     pub(super) fn point_at(&self, way: f64) -> Vector {
         match self.shape {
             Form::Arc {
