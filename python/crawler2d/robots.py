@@ -142,7 +142,7 @@ def absolem(*, flippers: None = None, track: Track | Literal["public"] | None = 
     max. speed          0.4 m/s                              the same
     max. acceleration   1.4 m/s^2                            the same, from odometry
     max. deceleration   4 m/s^2                              estimate
-    centre of mass      (-0.04, 0.05) m                      estimate; the body sits back
+    centre of mass      (0, 0.05) m                          estimate
     belly               0.5 m long, 30 mm above the axles    body of `gz_tracked_vehicle`, moved to
                                                              the middle
     all else            as `Robot.simple` has it             estimate
@@ -153,13 +153,15 @@ def absolem(*, flippers: None = None, track: Track | Literal["public"] | None = 
     What its makers tell of:
 
     >>> import crawler2d as c2d
-    >>> run = c2d.simulate(absolem(track="public"), c2d.terrains.step(0.10, friction=0.7))
+    >>> run = c2d.simulate(absolem(track="public"), c2d.terrains.step(0.11))
     >>> str(run.outcome), str(run.mechanism)
     ('seized', 'straddled')
+    >>> str(run.branch(track=c2d.BeltTrack()).outcome)
+    'cleared'
     """
     robot = replace(
         Robot.simple(38.0, axle_distance=0.5, radius=0.089, name="absolem", max_speed=0.4),
-        center_of_mass=(-0.04, 0.05),
+        center_of_mass=(0.0, 0.05),
         belly=((-0.25, 0.03), (0.25, 0.03), (0.25, 0.169), (-0.25, 0.169)),
         flippers=flippers,
         gauge=0.397,
