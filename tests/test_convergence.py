@@ -39,6 +39,9 @@ CELLS: list[tuple[Track, float, float]] = [
     (c2d.CircumferentialWheels(24, wheel=GEAR), 0.6, 0.050),
 ]
 
+# [s] Small gear wheels turn by a degree in a step of 1 ms, and get over far too often with it.
+FINE_STEP = 0.25e-3
+
 
 def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -> list[c2d.Run]:
     """Runs with the same draws of approach, phase, speed and friction for every solver."""
@@ -60,20 +63,25 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
 
 @pytest.mark.soak
 def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
-    solver = c2d.Solver()
-    finer = {
-        "half the time step": replace(solver, time_step=0.5 * solver.time_step),
-        "twice the substeps": replace(solver, substeps=2 * solver.substeps),
-    }
-    shifts: dict[str, list[float]] = {name: [] for name in finer}
+    names = ("half the time step", "twice the substeps")
+    # One of them moves beyond its interval by chance in one of twenty such tests.
+    confidence = 1.0 - 0.05 / (len(names) * len(CELLS))
+    shifts: dict[str, list[float]] = {name: [] for name in names}
     holds = []
     for track, friction, height in CELLS:
+        solver = c2d.Solver()
+        if isinstance(track, c2d.CircumferentialWheels):
+            solver = replace(solver, time_step=FINE_STEP)
+        finer = {
+            "half the time step": replace(solver, time_step=0.5 * solver.time_step),
+            "twice the substeps": replace(solver, substeps=2 * solver.substeps),
+        }
         base = ensemble(track, friction, height, solver)
         cleared = sum(run.outcome == "cleared" for run in base)
         for name, variant in finer.items():
             runs = ensemble(track, friction, height, variant)
             shift, low, high = newcombe(
-                sum(run.outcome == "cleared" for run in runs), RUNS, cleared, RUNS
+                sum(run.outcome == "cleared" for run in runs), RUNS, cleared, RUNS, confidence
             )
             apart = [
                 np.hypot(
@@ -94,5 +102,5 @@ def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
             turns_on = getattr(getattr(track, "wheel", None), "kind", "") == "gear"
             assert turns_on or max(apart, default=0.0) < 1e-3
     print({name: f"pooled {np.mean(values):+.4f}" for name, values in shifts.items()})
-    assert np.mean(holds) >= 0.95
+    assert all(holds)
     assert all(abs(np.mean(values)) <= 0.02 for values in shifts.values())
