@@ -1,8 +1,8 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    CircumferentialWheels, GearWheel, HybridWheels, Scenario, Terrain, TorqueSharing, Track,
-    TrackOutline, Wheel,
+    CircumferentialWheels, FieldPattern, GearWheel, HybridWheels, Scenario, Stepfield, Terrain,
+    TorqueSharing, Track, TrackOutline, Wheel,
 };
 
 use crate::common::*;
@@ -16,17 +16,19 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
             grouser_count: Some(3 + (draw.unit() * 15.0) as u32),
             grouser_height: Some(draw.between(0.02, 0.09) * smallest),
             tip_thickness: Some(0.01 * smallest),
+            // 17 grousers fit on the smallest root circle.
             base_thickness: Some(draw.between(0.01, 0.03) * smallest),
             phase_fraction: draw.unit(),
         })
     };
-    match (draw.unit() * 8.0) as u32 {
+    match (draw.unit() * 10.0) as u32 {
         0 => belt(),
         1 => force(),
         2 => force_on_wheels(),
+        8 | 9 => grouser_belt(),
         3 => Track::Circumferential(CircumferentialWheels {
             count: 3 + (draw.unit() * 30.0) as u32,
-            wheel_radius: Some(draw.between(0.12, 0.9) * smallest),
+            wheel_radius: Some(draw.between(0.25, 0.9) * smallest),
             wheel,
         }),
         4 => {
@@ -35,7 +37,7 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
                 [
                     x * outline.axle_distance,
                     y * smallest,
-                    draw.between(0.12, 1.0) * smallest,
+                    draw.between(0.25, 1.0) * smallest, // smaller ones turn too far in a step
                 ]
             };
             let placements = (0..5).map(|_| placed()).collect();
@@ -45,7 +47,44 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
     }
 }
 
+/// The same ground under both tracks, or one under each.
 fn drawn_terrain(draw: &mut Draw) -> Terrain {
+    let seed = (draw.unit() * 1e6) as u32;
+    match (draw.unit() * 8.0) as u32 {
+        0 => Terrain::DiagonalBarrier {
+            yaw: draw.between(-1.3, 1.3),
+            height: draw.between(0.01, 0.3),
+            thickness: draw.between(0.01, 0.3),
+            edge_radius: 0.0,
+            friction: draw.between(0.0, 2.0),
+        },
+        1 => Terrain::RandomStepfield(Stepfield {
+            seed,
+            pattern: [
+                FieldPattern::Flat,
+                FieldPattern::Hill,
+                FieldPattern::Diagonal,
+            ][seed as usize % 3],
+            posts: 1 + seed % 12,
+            post: draw.between(0.05, 0.4),
+            rise: draw.between(0.005, 0.1),
+            levels: 1 + seed % 5,
+            barrier_height: draw.between(-0.2, 0.3).max(0.0),
+            barrier_thickness: draw.between(0.01, 0.3),
+            barrier_yaw: draw.between(-1.0, 1.0),
+            edge_radius: 0.0,
+            friction: draw.between(0.0, 2.0),
+        }),
+        2 => Terrain::Lanes {
+            left: Box::new(drawn_lane(draw)),
+            right: Box::new(drawn_lane(draw)),
+            middle: (seed % 2 == 0).then(|| Box::new(drawn_lane(draw))),
+        },
+        _ => drawn_lane(draw),
+    }
+}
+
+fn drawn_lane(draw: &mut Draw) -> Terrain {
     let (friction, height, edge_radius) = (draw.between(0.0, 2.0), draw.between(0.01, 0.5), 0.0);
     match (draw.unit() * 10.0) as u32 {
         0 | 1 => step(height, friction),
@@ -132,7 +171,10 @@ pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
     r.drivetrain.max_torque = libm::exp(draw.between(-4.0, 2.0)) * 0.5 * r.mass * G * smallest;
     r.drivetrain.max_acceleration = libm::exp(draw.between(-3.0, 3.0));
     r.track = drawn_track(draw, &r.outline);
-    let driven = !matches!(r.track, Track::Belt(_) | Track::Force(_));
+    let driven = !matches!(
+        r.track,
+        Track::Belt(_) | Track::GrouserBelt(_) | Track::Force(_)
+    );
     if driven && draw.unit() < 0.5 {
         r.drivetrain.torque_sharing = TorqueSharing::Wheel;
     }

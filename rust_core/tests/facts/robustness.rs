@@ -2,7 +2,9 @@
 
 use std::panic::catch_unwind;
 
-use crawler2d_core::{Error, Ground, MAX_POINTS, Record, Scenario, Simulation, Terrain, simulate};
+use crawler2d_core::{
+    Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Terrain, simulate,
+};
 use serde_json::{Value, json};
 
 use crate::common::*;
@@ -42,8 +44,9 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
         // Coulomb's law in every sample, and nothing pulls.
         let ground =
             Ground::new(&scenario.terrain, scenario.robot.gauge).expect("it was built before");
-        let friction = ground.lanes[0].friction;
         for i in 0..run.contacts.time.len() {
+            let lane = |lane: &&Profile| lane.side as i64 == run.contacts.lane[i];
+            let friction = ground.lanes.iter().find(lane).expect("a lane").friction;
             let (normal, tangent) = (run.contacts.normal_force[i], run.contacts.friction_force[i]);
             assert!(
                 normal >= 0.0 && tangent.abs() <= friction * normal * (1.0 + 1e-9) + 1e-9,
