@@ -61,6 +61,7 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
     )
     return {
         "belt": StudyModel(track=BeltTrack(), source="ours"),
+        "belt with grousers": StudyModel(track=GrouserBeltTrack(), source="ours"),
         "force on skids": StudyModel(track=ForceTrack(), source="2.1"),
         "force on wheels": StudyModel(track=ForceTrack(support="wheels"), source="2.1"),
         "line of 3": StudyModel(track=LineOfWheels(3), source="Fig. 3", row=LWA_ROUND),
