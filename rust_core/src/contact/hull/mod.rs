@@ -92,10 +92,14 @@ impl HullContact {
         if lane.top(&region) < low.y {
             return;
         }
+        // What comes so fast that it is seen from far away may be as deep in the middle of a step.
+        let reach = (prediction, SHALLOW.max(prediction));
         for arc in &self.arcs {
-            let reach = (prediction, SHALLOW);
             lane.touches_of_disc(center(arc), arc.disc.radius, reach, |touch| {
-                let on_face = matches!(touch.on, On::Face(_));
+                // Behind a face lies the ground, but beyond thin ground the open again.
+                let is_real = touch.distance >= -SHALLOW
+                    || lane.holds(center(arc) - touch.normal * arc.disc.radius);
+                let on_face = is_real && matches!(touch.on, On::Face(_));
                 let yields =
                     || arc.disc.radius == 0.0 && overlap::tip_yields(lane, &arc.tip(pose), &touch);
                 if on_face && arc.nearly.holds(pose.rotation.inverse() * -touch.normal) && !yields()
