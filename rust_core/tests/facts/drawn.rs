@@ -78,7 +78,7 @@ fn drawn_terrain(draw: &mut Draw) -> Terrain {
         2 => Terrain::Lanes {
             left: Box::new(drawn_lane(draw)),
             right: Box::new(drawn_lane(draw)),
-            middle: (seed % 2 == 0).then(|| Box::new(drawn_lane(draw))),
+            middle: seed.is_multiple_of(2).then(|| Box::new(drawn_lane(draw))),
         },
         _ => drawn_lane(draw),
     }
