@@ -70,8 +70,7 @@ impl Scenario {
             ));
         }
         let ground = Ground::new(&self.terrain, self.robot.gauge)?;
-        let model = Model::on(&self.robot, &ground)?;
-        start_position(self, &model, &ground)?;
+        start_position(self, &model.placed_on(&ground), &ground)?;
         Ok(())
     }
 }

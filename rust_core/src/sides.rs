@@ -12,18 +12,22 @@ impl Model {
     /// # Errors
     /// Wheels that do not fit the robot.
     pub fn on(robot: &Robot, ground: &Ground) -> Result<Self, ScenarioError> {
-        let lumped = Self::new(robot)?;
+        Ok(Self::new(robot)?.placed_on(ground))
+    }
+
+    /// The same of a robot whose tracks are lumped.
+    pub(crate) fn placed_on(self, ground: &Ground) -> Self {
         let mut model = if ground.tracks > 1 {
-            lumped.side_by_side()
+            self.side_by_side()
         } else {
-            lumped
+            self
         };
         for part in &mut model.parts {
             if part.kind == BodyKind::Belly {
                 part.lane = ground.middle();
             }
         }
-        Ok(model)
+        model
     }
 
     /// The parts of the left track, those of the right, the belly; so their drives, those with a motor

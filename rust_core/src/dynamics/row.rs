@@ -75,11 +75,12 @@ impl Carried {
     /// far since.
     fn offset(&self, turned: Rotation, run: f64) -> Vector {
         let spoke = turned * self.spoke;
-        if self.turn == 0.0 {
-            spoke + turned * self.along * run
+        let spoke = if self.turn == 0.0 {
+            spoke
         } else {
-            Rotation::new(-self.turn * run) * spoke + turned * self.along * run
-        }
+            Rotation::new(-self.turn * run) * spoke
+        };
+        spoke + turned * self.along * run
     }
 
     /// As it was before that.
@@ -144,10 +145,9 @@ impl Levers {
     ) -> Self {
         let part = &model.parts[contact.part];
         let arm = contact.point - center;
-        let rotation = Rotation::new(angle);
         let mut carried = Carried::default();
         let motion = if part.is_carried() {
-            let motion = part.motion(run, reach);
+            let (motion, rotation) = (part.motion(run, reach), Rotation::new(angle));
             (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
             if motion.turn != 0.0 {
                 carried.spoke = arm - rotation * (motion.center - model.center_of_mass);
