@@ -45,18 +45,19 @@ pub use batch::{Progress, simulate_many};
 pub use bodies::{ChassisBody, WheelBody};
 pub use contact::Intrusion;
 pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
+pub use dynamics::ChainReading;
 pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use outcome::Outcome;
-pub use outline::{Disc, Gear, Grouser};
+pub use outline::{Disc, Gear, Grouser, ShoeLoop};
 pub use reading::Reading;
-pub use robot::{BodyKind, Model, Part, Shape};
+pub use robot::{BodyKind, ChainOfShoes, Model, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,
     ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA,
-    Scenario, SeizureCriteria, Solver, Start, Stepfield, Terrain, TorqueSharing, Track,
-    TrackOutline, Wheel,
+    Scenario, SegmentalTrack, SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain,
+    TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

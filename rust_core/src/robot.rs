@@ -1,9 +1,12 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, the drives.
 
+use std::ops::Range;
+
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
+use crate::contact::Running;
 use crate::error::ScenarioError;
-use crate::outline::{Disc, Envelope, Gear, Grouser, Motion};
+use crate::outline::{Disc, Envelope, Gear, Grouser, Motion, ShoeLoop};
 use crate::scenario::Robot;
 use crate::track;
 
@@ -30,6 +33,52 @@ pub struct Model {
     pub drive_force: f64,
     /// The drive pushes the chassis along its axis, whatever touches the ground.
     pub pushes_chassis: bool,
+    /// Chains of shoes, each with the drive of its number; then `mass`, `center_of_mass` and
+    /// `moment_of_inertia` are those of the chassis without them.
+    pub chains: Vec<ChainOfShoes>,
+}
+
+/// A closed chain of shoes round a guide of the chassis.
+#[derive(Clone, Debug)]
+pub struct ChainOfShoes {
+    /// Its own number.
+    pub number: usize,
+    /// Numbers of its shoes.
+    pub shoes: Range<usize>,
+    /// Its path along the pins, and how far these are from each other.
+    pub path: ShoeLoop,
+    /// The ends of the guide that the plates slide on, rear first.
+    pub guide: [Disc; 2],
+    /// [m] Thickness of the plates; the pins lie in their middle.
+    pub plate_thickness: f64,
+    /// [kg] Mass of a shoe.
+    pub shoe_mass: f64,
+    /// [kg m^2] Its moment of inertia about the middle of its pins.
+    pub shoe_inertia: f64,
+    /// What holds the front end out.
+    pub tensioner: Tensioner,
+    /// The guide's outline.
+    pub(crate) hull: Envelope,
+}
+
+/// A spring and a damper that push the front end of a guide along the chassis; it weighs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Tensioner {
+    /// [N] Force in the middle of its travel.
+    pub pre_tension: f64,
+    /// [N/m] Stiffness.
+    pub stiffness: f64,
+    /// [N s/m] Damping.
+    pub damping: f64,
+}
+
+impl ChainOfShoes {
+    /// Speed of the chain over that of the shoes' pin lines round the driving end: a turn moves it by as many
+    /// pitches as it takes shoes to go round.
+    pub(crate) fn drive_ratio(&self) -> f64 {
+        let half = 0.5 * self.path.pitch / (self.guide[0].radius + 0.5 * self.plate_thickness);
+        half / libm::atan(half)
+    }
 }
 
 /// What a part of the robot stands for; the code is the `body_kind` of the contact table.
@@ -43,16 +92,20 @@ pub enum BodyKind {
     Skid = 2,
     /// The underside of the chassis.
     Belly = 3,
-    /// A grouser of a moving belt.
+    /// A grouser of a moving belt or of a shoe.
     Grouser = 4,
+    /// The plate of a shoe.
+    Shoe = 5,
+    /// The guide that a chain slides on.
+    Guide = 6,
 }
 
-/// A shape fixed to the chassis that meets the ground.
+/// A shape on the chassis or on a shoe that meets the ground.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// What it stands for.
     pub kind: BodyKind,
-    /// Its form in the chassis frame.
+    /// Its form in the frame of the chassis, or of its shoe.
     pub shape: Shape,
     /// The drive that moves its surface.
     pub drive: Option<usize>,
@@ -60,6 +113,8 @@ pub struct Part {
     pub friction_limit: f64,
     /// Index of the lane of the ground that it meets.
     pub lane: usize,
+    /// The shoe that it is fixed to; else it is on the chassis.
+    pub shoe: Option<usize>,
 }
 
 /// Forms in the chassis frame.
@@ -113,6 +168,7 @@ impl Model {
                 drive: None,
                 friction_limit: f64::INFINITY,
                 lane: 0,
+                shoe: None,
             });
         }
         let radius = robot.outline.rear_radius;
@@ -127,7 +183,44 @@ impl Model {
             drive_radius: radius,
             drive_force: robot.drivetrain.max_force(&robot.outline) / track.motors as f64,
             pushes_chassis: track.pushes_chassis,
-        })
+            chains: Vec::new(),
+        }
+        .with_chains(track.chains))
+    }
+
+    /// Leaves to the chassis what the chains do not weigh.
+    fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Self {
+        if chains.is_empty() {
+            return self;
+        }
+        let places = chains.iter().flat_map(|chain| {
+            let body = (chain.shoe_mass, chain.shoe_inertia);
+            let places = chain.path.places(0.0).into_iter();
+            places.map(move |place| (body, place.translation))
+        });
+        let locked = self.locked_inertia();
+        let (total, center) = (self.mass, self.center_of_mass);
+        let (mut mass, mut moment) = (total, center * total);
+        for ((shoe, _), place) in places.clone() {
+            mass -= shoe;
+            moment -= place * shoe;
+        }
+        self.center_of_mass = moment / mass;
+        let about = |point: Vector| (point - center).length_squared();
+        let of_shoes: f64 = places
+            .map(|((shoe, inertia), place)| inertia + shoe * about(place))
+            .sum();
+        self.moment_of_inertia = locked - of_shoes - mass * about(self.center_of_mass);
+        self.mass = mass;
+        self.drive_masses.fill(0.0);
+        self.chains = chains;
+        self
+    }
+
+    /// [kg] Mass of chassis and chains.
+    pub fn total_mass(&self) -> f64 {
+        let of_chain = |chain: &ChainOfShoes| chain.shoe_mass * chain.path.count as f64;
+        self.mass + self.chains.iter().map(of_chain).sum::<f64>()
     }
 
     /// [kg m^2] Moment of inertia of one drive.
@@ -141,6 +234,38 @@ impl Model {
         self.moment_of_inertia + drives.sum::<f64>()
     }
 
+    /// The same with all that moves over the chassis fixed to it where it is.
+    pub(crate) fn as_one_body(&self, running: &Running) -> Self {
+        let (mut mass, mut moment) = (self.mass, self.center_of_mass * self.mass);
+        for chain in &self.chains {
+            for place in &running.shoes[chain.shoes.clone()] {
+                mass += chain.shoe_mass;
+                moment += place.translation * chain.shoe_mass;
+            }
+        }
+        Self {
+            mass,
+            center_of_mass: if self.chains.is_empty() {
+                self.center_of_mass
+            } else {
+                moment / mass
+            },
+            ..self.clone()
+        }
+    }
+
+    /// How the drive of a part moves it over the chassis.
+    pub(crate) fn motion(&self, part: usize, running: &Running) -> Motion {
+        let part = &self.parts[part];
+        let of_shoe = |shoe: usize| {
+            let chain = self.chains.iter().find(|c| c.shoes.contains(&shoe))?;
+            Some(chain.path.motion_at(running.shoes[shoe].translation))
+        };
+        let run = part.drive.map_or(0.0, |k| running.drives[k]);
+        let moved = part.shoe.and_then(of_shoe);
+        moved.unwrap_or_else(|| part.motion(run, 0.0))
+    }
+
     /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed
     /// circles, all their motors' force, their mass.
     pub(crate) fn closed(&self) -> Self {
@@ -148,7 +273,9 @@ impl Model {
         let belt = Envelope::new(&discs);
         // A closed belt shields a belly that lies inside of it.
         let reaches_out = |part: &&Part| match &part.shape {
-            Shape::Polygon { corners } => corners.iter().any(|c| belt.depth(*c) < 0.0),
+            Shape::Polygon { corners } if part.shoe.is_none() => {
+                corners.iter().any(|c| belt.depth(*c) < 0.0)
+            }
             _ => false,
         };
         let belly = self.parts.iter().filter(reaches_out).cloned();
@@ -162,8 +289,10 @@ impl Model {
             drive: Some(lane),
             friction_limit: f64::INFINITY,
             lane,
+            shoe: None,
         });
-        let mass: f64 = self.drive_masses.iter().sum();
+        let whole = self.with_circulating_mass();
+        let mass: f64 = whole.drive_masses.iter().sum();
         let force = self.drive_force * self.motors as f64;
         Self {
             parts: belts.chain(belly).collect(),
@@ -172,8 +301,29 @@ impl Model {
             drive_masses: vec![mass / tracks as f64; tracks],
             drive_force: force / tracks as f64,
             pushes_chassis: false,
-            ..self.clone()
+            ..whole
         }
+    }
+
+    /// The same robot with the mass of its chains at the drives, as where no shoes are simulated.
+    fn with_circulating_mass(&self) -> Self {
+        let start = |chain: &ChainOfShoes| chain.path.places(0.0);
+        let running = Running {
+            shoes: self.chains.iter().flat_map(start).collect(),
+            ..Running::default()
+        };
+        let mut whole = self.as_one_body(&running);
+        let about = |point: Vector| (point - whole.center_of_mass).length_squared();
+        let mut inertia = self.locked_inertia() + self.mass * about(self.center_of_mass);
+        for (k, chain) in self.chains.iter().enumerate() {
+            for place in &running.shoes[chain.shoes.clone()] {
+                inertia += chain.shoe_inertia + chain.shoe_mass * about(place.translation);
+            }
+            whole.drive_masses[k] = chain.shoe_mass * chain.path.count as f64;
+        }
+        whole.moment_of_inertia = inertia - (whole.locked_inertia() - whole.moment_of_inertia);
+        whole.chains.clear();
+        whole
     }
 
     /// Number of lanes that tracks meet.
@@ -206,6 +356,8 @@ impl Model {
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
+            // Never beyond the tips of the hull that it travels round but by a corner.
+            _ if part.shoe.is_some() => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
             // Never beyond the tips of the belt's hull.
             Shape::Grouser(_) => 0.0,
@@ -262,8 +414,12 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
-    /// Its own frame in that of the chassis when its surface has run so far [m].
-    pub(crate) fn place(&self, run: f64) -> Pose {
+    /// Its own frame in that of the chassis.
+    pub(crate) fn place(&self, running: &Running) -> Pose {
+        let run = self.drive.map_or(0.0, |k| running.drives[k]);
+        if let Some(shoe) = self.shoe {
+            return running.shoes[shoe];
+        }
         match &self.shape {
             Shape::Disc { center, .. } => Pose::from_translation(*center),
             Shape::Gear { center, gear } => {
@@ -290,6 +446,6 @@ impl Part {
 
     /// Whether its shape moves over the chassis at all.
     pub(crate) fn is_carried(&self) -> bool {
-        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_))
+        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.shoe.is_some()
     }
 }

@@ -1,7 +1,7 @@
 //! A robot on lanes: what lies under the left track, the right one, and the belly between them.
 
 use crate::error::ScenarioError;
-use crate::robot::{BodyKind, Model, Part};
+use crate::robot::{BodyKind, ChainOfShoes, Model, Part, Tensioner};
 use crate::scenario::Robot;
 use crate::terrain::Ground;
 
@@ -44,12 +44,18 @@ impl Model {
                 drive + motors + side * free
             }
         };
+        let shoes = self
+            .chains
+            .iter()
+            .map(|chain| chain.path.count)
+            .sum::<usize>();
         let is_belly = |part: &&Part| part.kind == BodyKind::Belly;
         let mut parts = Vec::new();
         for lane in 0..2 {
             let of_track = self.parts.iter().filter(|part| !is_belly(part));
             parts.extend(of_track.map(|part| Part {
                 drive: part.drive.map(|k| of_side(k, lane)),
+                shoe: part.shoe.map(|i| i + lane * shoes),
                 lane,
                 ..part.clone()
             }));
@@ -62,11 +68,28 @@ impl Model {
             drive_masses[of_side(k, 0)] = 0.5 * mass;
             drive_masses[of_side(k, 1)] = 0.5 * mass;
         }
+        let chains = (0..2).flat_map(|lane| {
+            let of_side = move |chain: &ChainOfShoes| ChainOfShoes {
+                number: lane,
+                shoes: chain.shoes.start + lane * shoes..chain.shoes.end + lane * shoes,
+                tensioner: Tensioner {
+                    pre_tension: 0.5 * chain.tensioner.pre_tension,
+                    stiffness: 0.5 * chain.tensioner.stiffness,
+                    damping: 0.5 * chain.tensioner.damping,
+                },
+                shoe_mass: 0.5 * chain.shoe_mass,
+                shoe_inertia: 0.5 * chain.shoe_inertia,
+                ..chain.clone()
+            };
+            self.chains.iter().map(of_side)
+        });
+        let chains = chains.collect();
         let motors = shared + 2 * motors;
         Self {
             parts,
             drives,
             drive_masses,
+            chains,
             drive_force: self.drive_force * self.motors as f64 / motors as f64,
             motors,
             ..self

@@ -1,10 +1,10 @@
 //! Where a robot stands at time 0.
 
-use rapier2d_f64::math::Vector;
+use rapier2d_f64::math::{Pose, Vector};
 
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc};
-use crate::robot::{Model, Part, Shape};
+use crate::robot::{BodyKind, Model, Part, Shape};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Profile};
 
@@ -22,8 +22,16 @@ pub(crate) fn start_position(
     };
     // What touches each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
+    let shoes = model
+        .chains
+        .iter()
+        .flat_map(|chain| chain.path.places(scenario.start.track_phase));
+    let shoes: Vec<Pose> = shoes.collect();
     for part in &model.parts {
         let Touching { discs, segments } = &mut touching[part.lane];
+        if part.kind == BodyKind::Guide {
+            continue; // inside of its chain
+        }
         discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
         match &part.shape {
             Shape::Disc { .. } => {}
@@ -48,7 +56,11 @@ pub(crate) fn start_position(
                 segments.extend(closed(&corners));
             }
             Shape::Polygon { corners } => {
-                let corners: Vec<Vector> = corners.iter().map(|c| turned(*c)).collect();
+                let place = part.shoe.map_or(Pose::IDENTITY, |shoe| shoes[shoe]);
+                let corners: Vec<Vector> = corners
+                    .iter()
+                    .map(|c| turned(place.transform_point(*c)))
+                    .collect();
                 segments.extend(closed(&corners));
             }
         }

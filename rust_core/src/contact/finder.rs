@@ -2,9 +2,9 @@
 
 use rapier2d_f64::math::Pose;
 
-use super::Contact;
 use super::own::OwnContact;
 use super::reference::ReferenceContact;
+use super::{Contact, Running};
 use crate::robot::Part;
 use crate::scenario::ContactMethod;
 use crate::terrain::Profile;
@@ -26,18 +26,16 @@ impl ContactFinder {
     }
 
     /// Writes every contact with a gap below `prediction` [m] into `contacts`, in a stable order.
-    ///
-    /// `drives` holds how far the surface of each drive has run [m].
     pub(crate) fn find(
         &mut self,
         pose: Pose,
-        drives: &[f64],
+        running: &Running,
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
         match self {
-            Self::Own(own) => own.find(pose, drives, prediction, contacts),
-            Self::Reference(reference) => reference.find(pose, drives, prediction, contacts),
+            Self::Own(own) => own.find(pose, running, prediction, contacts),
+            Self::Reference(reference) => reference.find(pose, running, prediction, contacts),
         }
     }
 }

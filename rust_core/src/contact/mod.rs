@@ -11,7 +11,7 @@ mod own;
 mod reading;
 mod reference;
 
-use rapier2d_f64::math::Vector;
+use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::Grip;
@@ -21,6 +21,15 @@ pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
 pub(crate) use reading::Readings;
+
+/// How far what moves over the chassis has moved.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Running {
+    /// [m] How far the surface of each drive has run.
+    pub drives: Vec<f64>,
+    /// Frames of the shoes in that of the chassis.
+    pub shoes: Vec<Pose>,
+}
 
 /// One place where a part is on the ground or about to be.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

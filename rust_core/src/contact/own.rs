@@ -10,7 +10,7 @@ use rapier2d_f64::math::{Pose, Vector};
 use super::gear::GearContact;
 use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
-use super::{Contact, without_redundant};
+use super::{Contact, Running, without_redundant};
 use crate::outline::Grouser;
 use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
@@ -39,6 +39,11 @@ enum Outline {
         /// In its own frame.
         hull: HullContact,
     },
+    /// A piece of a shoe.
+    Shoe {
+        shoe: usize,
+        hull: HullContact,
+    },
     Hull(HullContact),
 }
 
@@ -46,6 +51,10 @@ impl OwnContact {
     /// The outlines of a robot's parts and of the lanes that they meet.
     pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
         let outline = |i: usize, part: &Part| match (&part.shape, part.drive) {
+            _ if part.shoe.is_some() => Outline::Shoe {
+                shoe: part.shoe.unwrap_or_default(),
+                hull: HullContact::new(i, part),
+            },
             (Shape::Gear { center, gear }, Some(drive)) => Outline::Gear {
                 drive,
                 gear: GearContact::new(i, *center, *gear),
@@ -73,12 +82,10 @@ impl OwnContact {
     }
 
     /// Writes every contact with a gap below `prediction` into `contacts`.
-    ///
-    /// `drives` holds how far the surface of each drive has run [m].
     pub(crate) fn find(
         &self,
         pose: Pose,
-        drives: &[f64],
+        running: &Running,
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
@@ -98,15 +105,18 @@ impl OwnContact {
                     });
                 }
                 Outline::Gear { drive, gear } => {
-                    gear.find(lane, pose, drives[*drive], prediction, contacts);
+                    gear.find(lane, pose, running.drives[*drive], prediction, contacts);
                 }
                 Outline::Grouser {
                     drive,
                     grouser,
                     hull,
                 } => {
-                    let place = pose * grouser.place(drives[*drive]);
+                    let place = pose * grouser.place(running.drives[*drive]);
                     hull.find(lane, place, prediction, contacts);
+                }
+                Outline::Shoe { shoe, hull } => {
+                    hull.find(lane, pose * running.shoes[*shoe], prediction, contacts);
                 }
                 Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),
             }

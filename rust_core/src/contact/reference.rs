@@ -12,7 +12,7 @@ use rapier2d_f64::prelude::SharedShape;
 
 use super::hull::HullContact;
 use super::lane::Lane;
-use super::{Contact, without_redundant};
+use super::{Contact, Running, without_redundant};
 use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
 
@@ -77,19 +77,17 @@ impl ReferenceContact {
     }
 
     /// Writes every contact with a gap below `prediction` into `contacts`.
-    ///
-    /// `drives` holds how far the surface of each drive has run [m].
     pub(crate) fn find(
         &mut self,
         pose: Pose,
-        drives: &[f64],
+        running: &Running,
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
         contacts.clear();
         for i in 0..self.bodies.len() {
             let Body { part, bound, .. } = &self.bodies[i];
-            let place = pose * part.place(part.drive.map_or(0.0, |k| drives[k]));
+            let place = pose * part.place(running);
             let (center, radius) = (place.transform_point(bound.0), bound.1);
             let ground = &self.lanes[part.lane];
             if ground.profile.is_clear_of(center, radius + prediction) {

@@ -87,7 +87,7 @@ fn settle(scene: &Scene, finder: &mut ContactFinder, pose: &mut Pose) -> Option<
 
     let mut contacts = Vec::new();
     for _ in 0..ROUNDS {
-        finder.find(*pose, &scene.drive_positions, REACH, &mut contacts);
+        finder.find(*pose, &scene.running, REACH, &mut contacts);
         let center = pose.transform_point(scene.model.center_of_mass);
         // Variables: rise of the centre of mass [m], turn about it [rad].
         let mut rows = Rows::default();

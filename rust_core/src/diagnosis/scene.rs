@@ -6,7 +6,7 @@ use super::mechanism::Facts;
 use super::signals::{Bearing, DriveMean, Stance};
 use super::statics::{Condition, Role, Statics, Support};
 use super::{LoadedIntrusion, StopContact};
-use crate::contact::{Contact, Intrusion, TrackEnvelope};
+use crate::contact::{Contact, Intrusion, Running, TrackEnvelope};
 use crate::dynamics::{Direction, Levers};
 use crate::plane::{left_of, right_of};
 use crate::robot::{BodyKind, Model};
@@ -29,8 +29,8 @@ pub(crate) struct Scene<'a> {
     pub set_point: f64,
     /// [m] Half the distance of the end axles.
     pub half_length: f64,
-    /// [m] How far the surface of each drive has run.
-    pub drive_positions: Vec<f64>,
+    /// Where the moving parts are.
+    pub running: Running,
 }
 
 impl Scene<'_> {
@@ -151,21 +151,11 @@ impl Scene<'_> {
         })
     }
 
-    /// [m] How far the surface under a contact has run.
-    fn run(&self, contact: &Contact) -> f64 {
-        let drive = self.model.parts[contact.part].drive;
-        drive.map_or(0.0, |k| self.drive_positions[k])
-    }
-
     fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
         let pose = Pose::new(stance.position, stance.angle);
         let center = pose.transform_point(self.model.center_of_mass);
-        Levers::new(
-            contact,
-            (center, stance.angle),
-            (self.run(contact), 0.0),
-            self.model,
-        )
+        let motion = self.model.motion(contact.part, &self.running);
+        Levers::new(contact, (center, stance.angle), motion, self.model)
     }
 
     /// The conditions that this stop has at all.
@@ -245,7 +235,8 @@ impl Scene<'_> {
     ) -> Support {
         let center = pose.transform_point(self.model.center_of_mass);
         let at = (center, pose.rotation.angle());
-        let levers = Levers::new(contact, at, (self.run(contact), 0.0), self.model);
+        let motion = self.model.motion(contact.part, &self.running);
+        let levers = Levers::new(contact, at, motion, self.model);
         let drive = self.model.parts[contact.part].drive;
         Support::new(&levers, drive, (self.friction(contact.part), slides), role)
     }

@@ -5,13 +5,11 @@
 //! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
 //! energy.
 
-use rapier2d_f64::math::Vector;
-
 use super::Dynamics;
 use super::direct::Damper;
 use super::row::Row;
 use super::solve::{AGREEMENT, Phase};
-use super::state::State;
+use super::state::{State, Twist};
 
 /// Newton steps at most; a dozen contacts take three to six.
 const STEPS: u32 = 30;
@@ -19,12 +17,6 @@ const STEPS: u32 = 30;
 const ROUNDING: f64 = 1e-14;
 /// What is left at most of a limit of friction beyond Coulomb's law where no limits agree: so the end comes.
 const SHRINKING: f64 = 0.9;
-
-/// A change of velocity and angular velocity; the system knows that of the spins.
-struct Change {
-    velocity: Vector,
-    turn: f64,
-}
 
 impl Dynamics {
     /// Goes down to the minimum for the limits that the normal impulses give; whether it gives the same
@@ -45,8 +37,11 @@ impl Dynamics {
         if self.limit_motors(state, phase) {
             self.set_actions(state, phase);
         }
-        self.balance(state, phase);
-        if self.energy_of_contacts(state) > 0.0 {
+        // What chains take and give is not summed up: to give way is always right.
+        if self.chains.is_empty() {
+            self.balance(state, phase);
+        }
+        if !self.chains.is_empty() || self.energy_of_contacts(state) > 0.0 {
             self.give_way(state, phase);
             while self.limit_motors(state, phase) {
                 self.set_actions(state, phase);
@@ -100,13 +95,11 @@ impl Dynamics {
         self.choose_dampers(state);
         for _ in 0..STEPS {
             self.assemble_frozen(phase);
-            let Some((velocity, turn)) = self.system.solve() else {
+            let Some((velocity, turn)) = self.solve_system() else {
                 break;
             };
-            let change = Change {
-                velocity: velocity - state.velocity,
-                turn: turn - state.angular_velocity,
-            };
+            let change = Twist { velocity, turn }.less(state.twist());
+            self.change_shoes(state);
             for (k, spin) in self.system.spins.iter_mut().enumerate() {
                 let is_free = self.motors[k].share().is_some();
                 spin.change = if is_free {
@@ -118,6 +111,7 @@ impl Dynamics {
             let share = self.share_that_falls(state, &change, phase);
             state.velocity += change.velocity * share;
             state.angular_velocity += change.turn * share;
+            self.move_shoes(state, share);
             for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
                 drive.spin += spin.change * share;
             }
@@ -133,15 +127,19 @@ impl Dynamics {
         if let Some(push) = &mut self.push {
             off = off.max(push.follow_velocities(state));
         }
+        self.chains_follow_velocities(state, phase);
         self.turn_with_chassis(state, phase);
         off
     }
 
     /// [m/s] A bound of what a change moves anything by, to the order.
-    fn largest(&self, change: &Change) -> f64 {
+    fn largest(&self, change: &Twist) -> f64 {
         let spins = self.system.spins.iter();
         let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
-        of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max)
+        let of_spins = of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max);
+        let shoes = self.chains.iter().flat_map(|chain| &chain.solved);
+        let of_shoes = shoes.map(|change| change.velocity.length() + change.turn.abs());
+        of_shoes.fold(of_spins, f64::max)
     }
 
     /// Gives each contact the dampers that it is at these velocities; whether they are those that it had.
@@ -158,16 +156,19 @@ impl Dynamics {
     /// The system of the contacts as they are at these velocities.
     fn assemble_frozen(&mut self, phase: &Phase) {
         self.assemble_bodies(phase);
-        for row in self.rows.iter().filter(|row| row.bears) {
-            for (action, damper) in row.actions.iter().zip(row.frozen) {
-                self.system.add(action, action, row.drive, damper);
+        for i in 0..self.rows.len() {
+            let row = &self.rows[i];
+            if row.bears {
+                for (action, damper) in row.actions.into_iter().zip(row.frozen) {
+                    self.add(i, &action, &action, damper);
+                }
             }
         }
         self.add_push();
     }
 
     /// The share of a change after which the potential falls no more.
-    fn share_that_falls(&mut self, state: &State, change: &Change, phase: &Phase) -> f64 {
+    fn share_that_falls(&mut self, state: &State, change: &Twist, phase: &Phase) -> f64 {
         if self.slope(state, change, phase, 1.0) <= 0.0 {
             return 1.0;
         }
@@ -197,21 +198,21 @@ impl Dynamics {
     }
 
     /// [m/s] What a change of the velocities changes along a contact's normal and tangent.
-    fn changes_of(&self, row: &Row, change: &Change) -> [f64; 2] {
-        let spin = row.drive.map_or(0.0, |k| self.system.spins[k].change);
-        row.actions
-            .map(|action| action.change(change.velocity, change.turn, spin))
+    fn changes_of(&self, row: &Row, change: &Twist) -> [f64; 2] {
+        let shoe = |i: usize| self.chains[i / self.shoes_a_chain].solved[i % self.shoes_a_chain];
+        let idler = |k: usize| self.chains[k].idler_rate;
+        row.count(*change, shoe, |k| self.system.spins[k].change, idler)
     }
 
     /// The slope of the potential along a change, a share of it further on.
-    fn slope(&self, state: &State, change: &Change, phase: &Phase, share: f64) -> f64 {
+    fn slope(&self, state: &State, change: &Twist, phase: &Phase, share: f64) -> f64 {
         let m = &self.model;
         let velocity = state.velocity + change.velocity * share - phase.velocity;
         let moment = self.inertia * (state.angular_velocity + change.turn * share);
         let mut slope = m.mass * velocity.dot(change.velocity)
             + (moment - self.free_moment(phase)) * change.turn;
         for (k, spin) in self.system.spins.iter().enumerate() {
-            if let Some(of_motor) = self.motors[k].share() {
+            if let Some(of_motor) = self.motors[k].share().filter(|_| self.chains.is_empty()) {
                 let inertia = m.drive_inertia(k);
                 let free = inertia * phase.spins[k] - phase.motor_turn(of_motor, m);
                 let moment = inertia * (state.drives[k].spin + spin.change * share);
@@ -230,7 +231,7 @@ impl Dynamics {
             let of_push = push.action.change(change.velocity, change.turn, spin);
             slope -= push.damper().at(push.slip(state) + of_push * share) * of_push;
         }
-        slope
+        slope + self.slope_of_chains(state, change, phase, share)
     }
 }
 

@@ -11,15 +11,18 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
-use super::row::Row;
+use super::chain::Chain;
+use super::row::{Link, Row};
 use super::solve::{AGREEMENT, Action, Phase, Push};
 use super::state::State;
 
 /// Compliance of the dampers, in units of the contact's own admittance.
 const DAMPING: f64 = 1e-6;
-/// Solutions of the system in search of one that fits: misfits that are mended all at once can chase each
+/// Solutions of the system in search of one that fits, with all misfits mended at once: they can chase each
 /// other for ever.
-const MENDINGS: u32 = 4;
+const AT_ONCE: u32 = 4;
+/// The same of a chain, whose many contacts are then mended one by one, the worst first.
+const MENDINGS: u32 = 12;
 /// A pivot smaller than this share of the largest entry is none.
 const SINGULAR: f64 = 1e-12;
 
@@ -57,6 +60,15 @@ pub(super) struct Damper {
 }
 
 impl Damper {
+    pub(super) fn new(impulse: f64, stiffness: f64) -> Self {
+        Self { impulse, stiffness }
+    }
+
+    /// The same about a speed other than rest [m/s].
+    pub(super) fn shifted(self, speed: f64) -> Self {
+        Self::new(self.at(-speed), self.stiffness)
+    }
+
     /// One that no speed changes.
     pub(super) fn constant(impulse: f64) -> Self {
         Self {
@@ -78,7 +90,7 @@ impl Damper {
 
 /// The linear system, and what the drives with a spin of their own add to it.
 pub(super) struct System {
-    rows: [[f64; 4]; 3],
+    pub(super) rows: [[f64; 4]; 3],
     pub(super) spins: Vec<Spin>,
 }
 
@@ -187,26 +199,27 @@ impl Dynamics {
     /// Finds the impulses that all constraints agree on, if a guess can be mended to fit.
     pub(super) fn solve_at_once(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
-        for _ in 0..MENDINGS {
+        let most = if self.chains.is_empty() {
+            AT_ONCE
+        } else {
+            MENDINGS
+        };
+        for mendings in 1..=most {
             self.assemble(phase);
-            let Some((velocity, turn)) = self.system.solve() else {
+            let Some((velocity, turn)) = self.solve_system() else {
                 return false;
             };
             (state.velocity, state.angular_velocity) = (velocity, turn);
             for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
                 drive.spin = spin.value;
             }
-            let (mut fits, mut change) = (true, 0.0_f64);
-            for row in self.rows.iter_mut().filter(|row| row.bears) {
-                let (fitting, moved) = row.follow_velocities(state);
-                change = change.max(moved);
-                let grip = row.grip.towards(fitting);
-                fits &= grip == row.grip;
-                row.grip = grip;
-            }
+            self.take_shoes(state);
+            let mut change = self.rows_follow_velocities(state);
+            let fits = self.mend(state, mendings > AT_ONCE);
             if let Some(push) = &mut self.push {
                 change = change.max(push.follow_velocities(state));
             }
+            change = change.max(self.chains_follow_velocities(state, phase));
             if !fits {
                 continue;
             }
@@ -221,12 +234,43 @@ impl Dynamics {
             }
         }
         self.rows.iter_mut().for_each(Row::unsettle);
+        self.chains.iter_mut().for_each(Chain::unsettle);
         false
+    }
+
+    /// Gives the rows the impulses that belong to the velocities; how far these are from what they should be
+    /// [m/s].
+    fn rows_follow_velocities(&mut self, state: &State) -> f64 {
+        let bearing = self.rows.iter_mut().filter(|row| row.bears);
+        bearing.fold(0.0, |off, row| off.max(row.follow_velocities(state)))
+    }
+
+    /// Changes the grips that do not fit, or the worst `one` of them; whether all fitted.
+    fn mend(&mut self, state: &State, one: bool) -> bool {
+        let (mut fits, mut worst) = (true, (0.0, None));
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            let next = row.grip.towards(row.fitting);
+            if !row.bears || next == row.grip {
+                continue;
+            }
+            fits = false;
+            if !one {
+                row.grip = next;
+            } else if row.misfit(state) >= worst.0 {
+                worst = (row.misfit(state), Some(i));
+            }
+        }
+        if let Some(i) = worst.1 {
+            let row = &mut self.rows[i];
+            row.grip = row.grip.towards(row.fitting);
+        }
+        fits
     }
 
     /// Makes the impulses the ones that constraints are damped about.
     pub(super) fn settle(&mut self) {
         self.rows.iter_mut().for_each(Row::settle);
+        self.chains.iter_mut().for_each(Chain::settle);
         if let Some(push) = &mut self.push {
             push.center = push.impulse;
         }
@@ -245,39 +289,65 @@ impl Dynamics {
         for (k, motor) in self.motors.iter().enumerate() {
             let share = motor.share().unwrap_or_default();
             let of_motor = phase.motor_turn(share, m);
-            let drive_inertia = m.drive_inertia(k);
+            // The drive of a chain has no inertia but the chain's.
+            let drive_inertia = if self.chains.is_empty() {
+                m.drive_inertia(k)
+            } else {
+                1.0
+            };
             system.spins[k] = Spin {
                 inertia: drive_inertia,
                 moment: drive_inertia * phase.spins[k] - of_motor,
                 ..Spin::default()
             };
         }
+        self.assemble_chains(phase);
     }
 
     /// The system of the constraints as they are guessed.
     fn assemble(&mut self, phase: &Phase) {
         self.assemble_bodies(phase);
-        let system = &mut self.system;
-        for row in self.rows.iter().filter(|row| row.bears) {
-            let [normal, tangent] = &row.actions;
+        for i in 0..self.rows.len() {
+            let row = &self.rows[i];
+            if !row.bears {
+                continue;
+            }
+            let [normal, tangent] = row.actions;
             let [n, t] = row.dampers();
             match row.grip {
                 Grip::Open => {}
                 Grip::Sticks => {
-                    system.add(normal, normal, row.drive, n);
-                    system.add(tangent, tangent, row.drive, t);
+                    self.add(i, &normal, &normal, n);
+                    self.add(i, &tangent, &tangent, t);
                 }
                 Grip::Forwards => {
-                    let force = normal.plus(tangent, row.friction);
-                    system.add(&force, normal, row.drive, n);
+                    let force = normal.plus(&tangent, row.friction);
+                    self.add(i, &force, &normal, n);
                 }
                 Grip::Backwards => {
-                    let force = normal.plus(tangent, -row.friction);
-                    system.add(&force, normal, row.drive, n);
+                    let force = normal.plus(&tangent, -row.friction);
+                    self.add(i, &force, &normal, n);
                 }
             }
         }
         self.add_push();
+    }
+
+    /// Adds a constraint of a row whose impulse along `force` is that of a damper along `action`.
+    pub(super) fn add(&mut self, row: usize, force: &Action, action: &Action, damper: Damper) {
+        let row = &self.rows[row];
+        let on_body = [force.body(), action.body()];
+        match row.link {
+            Link::Chassis => self.system.add(force, action, row.drive, damper),
+            Link::Shoe(i) => {
+                let (chain, i) = (i / self.shoes_a_chain, i % self.shoes_a_chain);
+                self.chains[chain].add(i, on_body, damper);
+            }
+            Link::Guide { shoe, chain } => {
+                let back = [force.reaction(), action.reaction()];
+                self.chains[chain].add_rest(shoe % self.shoes_a_chain, on_body, back, damper);
+            }
+        }
     }
 
     /// Adds the push of a track that is modelled by a force alone to the system.
@@ -292,7 +362,10 @@ impl Dynamics {
 impl Row {
     /// Makes its impulses the ones that it is damped about.
     fn settle(&mut self) {
-        self.center = (self.normal_impulse, self.friction_impulse);
+        self.center.0 = self.normal_impulse;
+        if self.give == 0.0 {
+            self.center.1 = self.friction_impulse;
+        }
     }
 
     /// Takes these back.
@@ -326,22 +399,36 @@ impl Row {
             },
             Damper {
                 impulse: friction,
-                stiffness: 1.0 / (DAMPING * self.admittance.tangent),
+                stiffness: 1.0 / ((self.give + DAMPING) * self.admittance.tangent),
             },
         ]
     }
 
     /// [m/s] Along normal and tangent.
     pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
-        let spin = self.drive.map_or(0.0, |k| state.drives[k].spin);
-        let speed = |action: &Action| action.speed(state.velocity, state.angular_velocity, spin);
-        let [n, t] = &self.actions;
-        [speed(n), speed(t)]
+        let (shoe, spin) = (
+            |i: usize| state.shoes[i].twist,
+            |k: usize| state.drives[k].spin,
+        );
+        let idler = |k: usize| state.idlers[k].rate;
+        let [n, t] = self.count(state.twist(), shoe, spin, idler);
+        [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 
-    /// Takes the impulses that belong to the velocities: the grip that fits them, and how far its
-    /// velocities are from what they should be [m/s].
-    fn follow_velocities(&mut self, state: &State) -> (Grip, f64) {
+    /// [m/s] By how much its grip does not fit these velocities.
+    fn misfit(&self, state: &State) -> f64 {
+        let ([approach, slip], [n, t]) = (self.speeds(state), self.dampers());
+        let load = n.at(approach) * self.admittance.normal;
+        match self.grip {
+            _ if self.grip == Grip::Open || load <= 0.0 => load.abs(),
+            Grip::Sticks => (t.at(slip) * self.admittance.tangent).abs() - self.friction * load,
+            _ => slip.abs(),
+        }
+    }
+
+    /// Takes the impulses that belong to the velocities, and the grip that fits them; how far the velocities
+    /// are from what they should be [m/s].
+    fn follow_velocities(&mut self, state: &State) -> f64 {
         let [approach, slip] = self.speeds(state);
         let [n, t] = self.dampers();
         let (normal, friction) = (n.at(approach), t.at(slip));
@@ -356,16 +443,17 @@ impl Row {
         } else {
             (Grip::Sticks, friction)
         };
+        self.fitting = grip;
         self.normal_impulse = normal.max(0.0);
         self.friction_impulse = friction;
         let off_normal = (self.normal_impulse - self.center.0).abs() * self.admittance.normal;
         let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
         let off = match grip {
             Grip::Open => 0.0,
-            Grip::Sticks => off_normal.max(off_tangent),
-            Grip::Forwards | Grip::Backwards => off_normal,
+            Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
+            _ => off_normal,
         };
-        (grip, DAMPING * off)
+        DAMPING * off
     }
 }
 

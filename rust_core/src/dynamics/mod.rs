@@ -6,6 +6,8 @@
 //! the soft step of Erin Catto's 2D solvers (2024). A surface speed is found together with the contact
 //! forces, so that the force limit of its motor acts on the net traction inside the step.
 
+mod chain;
+mod chains;
 mod descent;
 mod direct;
 mod motors;
@@ -22,6 +24,8 @@ use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::Model;
 use crate::scenario::Solver;
+use chain::{Chain, ChainImpulses};
+pub use chains::ChainReading;
 pub(crate) use direct::Grip;
 use direct::System;
 use motors::Motor;
@@ -29,7 +33,7 @@ pub(crate) use motors::push_axis;
 use row::Row;
 pub(crate) use row::{Direction, Levers};
 use solve::{Phase, Push, Softness};
-pub(crate) use state::{DriveState, State};
+pub(crate) use state::{DriveState, State, idlers_at_rest, shoes_at_rest};
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.
@@ -64,6 +68,8 @@ pub(crate) struct Dynamics {
     system: System,
     /// Where the potential of a descent has kinks along a step.
     kinks: Vec<f64>,
+    chains: Vec<Chain>,
+    shoes_a_chain: usize,
     phase: Phase,
     loaded: Vec<LoadedContact>,
     /// [N] Push of the surroundings at the centre of mass.
@@ -76,6 +82,7 @@ pub(crate) struct Impulses {
     push: Option<f64>,
     motors: Vec<Motor>,
     contacts: Vec<LoadedContact>,
+    chains: Vec<ChainImpulses>,
 }
 
 impl Dynamics {
@@ -94,6 +101,8 @@ impl Dynamics {
             inertia: model.moment_of_inertia,
             system: System::new(model.drives),
             kinks: Vec::new(),
+            shoes_a_chain: model.chains.first().map_or(1, |chain| chain.path.count),
+            chains: model.chains.iter().cloned().map(Chain::new).collect(),
             phase: Phase::default(),
             push: model.pushes_chassis.then(Push::default),
             model,
@@ -112,6 +121,7 @@ impl Dynamics {
             push: self.push.as_ref().map(|push| push.force),
             motors: self.motors.clone(),
             contacts: self.loaded.clone(),
+            chains: self.chains.iter().map(Chain::impulses).collect(),
         }
     }
 
@@ -122,6 +132,9 @@ impl Dynamics {
         }
         self.motors = impulses.motors;
         self.loaded = impulses.contacts;
+        for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
+            chain.start_from(impulses);
+        }
     }
 
     /// The contacts of the last step with their forces.
@@ -181,6 +194,10 @@ impl Dynamics {
     ///
     /// A piece ends just before a part strikes the ground, and the next is short.
     fn piece(&self, state: &State, left: f64) -> (f64, bool) {
+        // A chain meets its guide all the time; its shoes are light, so are their blows.
+        if !self.chains.is_empty() {
+            return (left, false);
+        }
         let until_contact = |row: &Row| {
             let speed = -row.opening_speed(state);
             (speed > COLLISION_SPEED).then(|| row.gap / speed)
@@ -206,6 +223,10 @@ impl Dynamics {
 
     /// Advances by a piece of `h` [s]; the step began at `start`.
     fn substep(&mut self, state: &mut State, start: (Vector, f64), set_point: f64, h: f64) {
+        if !self.chains.is_empty() {
+            self.substep_of_chains(state, start, set_point, h);
+            return;
+        }
         let soft = Softness::new(
             self.solver.contact_frequency,
             self.solver.contact_damping_ratio,
@@ -229,8 +250,11 @@ impl Dynamics {
         for k in 0..state.drives.len() {
             state.drives[k].position += state.track_speed(&self.model, k) * h;
         }
+        for shoe in &mut state.shoes {
+            *shoe = shoe.after(h);
+        }
         for row in &mut self.rows {
-            row.follow(state, start);
+            row.follow(state, start, h);
         }
         phase.velocity += kick;
         phase.elapsed = h;
@@ -252,12 +276,16 @@ impl Dynamics {
         };
         for contact in contacts {
             let last = last.take_nearest(contact);
-            let mut row = Row::new(contact, last, state, &self.model, (middle, half));
+            let mut row = match self.model.parts[contact.part].shoe {
+                Some(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
+                None => Row::new(contact, last, state, &self.model, (middle, half)),
+            };
             let lane = self.model.parts[contact.part].lane;
             row.friction = row.friction.min(self.frictions[lane]);
             row.friction_guess *= fading;
             self.rows.push(row);
         }
+        self.rest_on_guides(state, half);
     }
 
     fn report(&mut self, state: &State, contacts: &[Contact], dt: f64) {
@@ -279,6 +307,7 @@ impl Dynamics {
             });
         }
         self.loaded = loaded;
+        self.remember_rests(contacts.len());
     }
 }
 

@@ -53,7 +53,7 @@ impl Dynamics {
                 Motor::Free => Motor::Free,
                 Motor::Holds => self.at_limit(state, phase, k),
                 at_limit => {
-                    let ahead = state.track_speed(&self.model, k) - phase.set_point;
+                    let ahead = self.ahead(state, phase, k);
                     let past = ahead * at_limit.share().unwrap_or_default();
                     if past > PAST { Motor::Holds } else { at_limit }
                 }
@@ -76,6 +76,14 @@ impl Dynamics {
         switched
     }
 
+    /// [m/s] What the surface of a drive is ahead of the set-point.
+    fn ahead(&self, state: &State, phase: &Phase, k: usize) -> f64 {
+        match self.chains.get(k) {
+            Some(chain) => chain.ahead(state, phase.set_point),
+            None => state.track_speed(&self.model, k) - phase.set_point,
+        }
+    }
+
     /// What a motor that holds has to do.
     fn at_limit(&self, state: &State, phase: &Phase, k: usize) -> Motor {
         let limit = self.model.drive_force * phase.elapsed * (1.0 + AT_LIMIT);
@@ -91,6 +99,9 @@ impl Dynamics {
 
     /// [N s] What a motor has given so far.
     pub(super) fn motor_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
+        if let Some(chain) = self.chains.get(k) {
+            return chain.drive_impulse();
+        }
         if let Some(share) = self.motors[k].share() {
             return phase.motor_impulse(share, &self.model);
         }
@@ -110,5 +121,6 @@ pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
         unit: axis,
         lever: cross(arm, axis),
         drive_lever: model.drive_radius,
+        back: 0.0,
     }
 }

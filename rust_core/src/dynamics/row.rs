@@ -2,18 +2,32 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
+use super::chain::{Rest, RestMemory};
 use super::direct::{Damper, Grip};
 use super::solve::{Action, Admittance};
-use super::state::State;
+use super::state::{State, Twist};
 use crate::contact::{Contact, LoadedContact};
+use crate::outline::Motion;
 use crate::plane::{cross, left_of, right_of};
 use crate::robot::Model;
+
+/// What a row holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Link {
+    /// The chassis, or what a drive carries over it, to the ground.
+    Chassis,
+    /// A shoe to the ground.
+    Shoe(usize),
+    /// A shoe to the guide: the chassis takes the reaction.
+    Guide { shoe: usize, chain: usize },
+}
 
 /// One contact's constraint in one step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub normal: Direction,
     pub tangent: Direction,
+    pub link: Link,
     pub drive: Option<usize>,
     pub friction: f64,
     /// Normal and tangent with the motors as they are in this solve.
@@ -23,14 +37,18 @@ pub(super) struct Row {
     pub bias: f64,
     /// In units of its own admittance.
     pub compliance: f64,
+    /// The same of a grip that gives way elastically: it is damped about what it held in the last piece.
+    pub give: f64,
     /// Whether it can bear in this solve.
     pub bears: bool,
     /// [N s] In this piece.
     pub normal_impulse: f64,
     /// [N s] In this piece.
     pub friction_impulse: f64,
-    /// What it does.
+    /// What it does, ...
     pub grip: Grip,
+    /// ... and what would fit the last velocities.
+    pub fitting: Grip,
     /// [N s] Largest friction in a descent, ...
     pub limit: f64,
     /// ... and what normal and tangent are below it.
@@ -44,6 +62,8 @@ pub(super) struct Row {
     pub friction_total: f64,
     /// [m] Gap now.
     pub gap: f64,
+    /// Which of a shoe's rests it is.
+    pub place: usize,
     start: Place,
 }
 
@@ -53,12 +73,14 @@ pub(crate) struct Direction {
     pub unit: Vector,
     /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
     pub lever: f64,
-    /// [m] Lever of the drive's spin.
+    /// [m] Lever of the drive's spin; of a place on an idler, the share of its slide.
     pub drive_lever: f64,
+    /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
+    pub back: f64,
 }
 
 /// The touching point of the robot at the start of the step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Place {
     /// [m] Gap.
     gap: f64,
@@ -104,13 +126,19 @@ impl Direction {
             unit,
             lever: cross(arm, unit) - drive_lever,
             drive_lever,
+            back: 0.0,
         }
     }
 
-    /// [m/s] Velocity of the robot's surface over the ground.
-    pub(super) fn speed(&self, state: &State, drive: Option<usize>) -> f64 {
-        let of_drive = drive.map_or(0.0, |k| self.drive_lever * state.drives[k].spin);
-        self.unit.dot(state.velocity) + self.lever * state.angular_velocity + of_drive
+    /// That of a contact of a shoe: `arm` leads there from the shoe's centre, and the track moves along
+    /// `travel`.
+    fn on_shoe(unit: Vector, arm: Vector, travel: Vector, model: &Model) -> Self {
+        Self {
+            unit,
+            lever: cross(arm, unit),
+            drive_lever: -model.drive_radius * unit.dot(travel),
+            back: 0.0,
+        }
     }
 }
 
@@ -135,19 +163,19 @@ struct Carried {
 }
 
 impl Levers {
-    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`, and the
-    /// surface of the part's drive has run so far [m], and runs as far as `reach` in half a step.
+    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`, of a part that
+    /// its drive moves so over the chassis.
     pub(crate) fn new(
         contact: &Contact,
         (center, angle): (Vector, f64),
-        (run, reach): (f64, f64),
+        over_chassis: Motion,
         model: &Model,
     ) -> Self {
         let part = &model.parts[contact.part];
         let arm = contact.point - center;
         let mut carried = Carried::default();
         let motion = if part.is_carried() {
-            let (motion, rotation) = (part.motion(run, reach), Rotation::new(angle));
+            let (motion, rotation) = (over_chassis, Rotation::new(angle));
             (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
             if motion.turn != 0.0 {
                 carried.spoke = arm - rotation * (motion.center - model.center_of_mass);
@@ -188,7 +216,7 @@ impl Row {
         } = Levers::new(
             contact,
             middle,
-            (drive_position + advance, advance.abs()),
+            part.motion(drive_position + advance, advance.abs()),
             model,
         );
         let turned = Rotation::new(middle.1 - state.angle);
@@ -204,16 +232,19 @@ impl Row {
         Self {
             normal,
             tangent,
+            link: Link::Chassis,
             drive: part.drive,
             friction: part.friction_limit,
             actions: [Action::default(); 2],
             admittance: Admittance::default(),
             bias: 0.0,
             compliance: 0.0,
+            give: 0.0,
             bears: false,
             normal_impulse: 0.0,
             friction_impulse: 0.0,
             grip: last.map_or(Grip::Open, |l| l.grip),
+            fitting: Grip::Open,
             limit: 0.0,
             frozen: [Damper::default(); 2],
             center: (0.0, 0.0),
@@ -222,22 +253,152 @@ impl Row {
             normal_total: 0.0,
             friction_total: 0.0,
             gap: start.gap,
+            place: 0,
             start,
         }
     }
 
+    /// The row of a shoe's contact that was found at half a step's `time` [s] from now.
+    pub(super) fn of_shoe(
+        contact: &Contact,
+        last: Option<LoadedContact>,
+        state: &State,
+        model: &Model,
+        (shoe, time): (usize, f64),
+    ) -> Self {
+        let part = &model.parts[contact.part];
+        let then = state.shoes[shoe].after(time);
+        let (arm, travel) = (contact.point - then.center, then.along());
+        let [normal, tangent] = [contact.normal, right_of(contact.normal)]
+            .map(|unit| Direction::on_shoe(unit, arm, travel, model));
+        let mut row = Self {
+            drive: part.drive,
+            friction: part.friction_limit,
+            grip: last.map_or(Grip::Open, |l| l.grip),
+            normal_guess: last.map_or(0.0, |l| l.normal_guess),
+            friction_guess: last.map_or(0.0, |l| l.friction_guess),
+            ..Self::between(normal, tangent, Link::Shoe(shoe))
+        };
+        row.gap = contact.distance - row.opening_speed(state) * time;
+        row
+    }
+
+    /// The row of a place where a shoe rests on the guide, without friction.
+    pub(super) fn on_guide(
+        rest: &Rest,
+        last: RestMemory,
+        state: &State,
+        (shoe, chain): (usize, usize),
+        time: f64,
+    ) -> Self {
+        let arm = rest.point - state.shoes[shoe].after(time).center;
+        let back = rest.point - state.moved(time).0;
+        let [normal, tangent] = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
+            unit,
+            lever: cross(arm, unit),
+            drive_lever: -unit.dot(rest.slides),
+            back: cross(back, unit),
+        });
+        let mut row = Self {
+            grip: last.grip,
+            normal_guess: last.force,
+            ..Self::between(normal, tangent, Link::Guide { shoe, chain })
+        };
+        row.place = rest.place;
+        row.gap = rest.gap - row.opening_speed(state) * time;
+        row
+    }
+
+    fn between(normal: Direction, tangent: Direction, link: Link) -> Self {
+        Self {
+            normal,
+            tangent,
+            link,
+            drive: None,
+            friction: 0.0,
+            actions: [Action::default(); 2],
+            admittance: Admittance::default(),
+            bias: 0.0,
+            compliance: 0.0,
+            give: 0.0,
+            bears: false,
+            normal_impulse: 0.0,
+            friction_impulse: 0.0,
+            grip: Grip::Open,
+            fitting: Grip::Open,
+            limit: 0.0,
+            frozen: [Damper::default(); 2],
+            center: (0.0, 0.0),
+            normal_guess: 0.0,
+            friction_guess: 0.0,
+            normal_total: 0.0,
+            friction_total: 0.0,
+            gap: 0.0,
+            place: 0,
+            start: Place::default(),
+        }
+    }
+
+    /// The drive whose spin it acts on.
+    pub(super) fn spin(&self) -> Option<usize> {
+        self.drive.filter(|_| matches!(self.link, Link::Chassis))
+    }
+
     /// [m/s] Speed at which the gap opens.
     pub(super) fn opening_speed(&self, state: &State) -> f64 {
-        self.normal.speed(state, self.drive)
+        self.speed_along(state, &self.normal)
     }
 
     /// [m/s] Velocity of the robot's surface over the ground along the tangent.
     pub(super) fn slip(&self, state: &State) -> f64 {
-        self.tangent.speed(state, self.drive)
+        self.speed_along(state, &self.tangent)
     }
 
-    /// Updates the gap for the motion since the start of the step, at `center` and `angle`.
-    pub(super) fn follow(&mut self, state: &State, (center, angle): (Vector, f64)) {
+    fn speed_along(&self, state: &State, along: &Direction) -> f64 {
+        let of = |twist: Twist, lever: f64| along.unit.dot(twist.velocity) + lever * twist.turn;
+        match self.link {
+            Link::Chassis => {
+                let spin = self.drive.map_or(0.0, |k| state.drives[k].spin);
+                of(state.twist(), along.lever) + along.drive_lever * spin
+            }
+            Link::Shoe(i) => of(state.shoes[i].twist, along.lever),
+            Link::Guide { shoe, chain } => {
+                of(state.shoes[shoe].twist, along.lever) - of(state.twist(), along.back)
+                    + along.drive_lever * state.idlers[chain].rate
+            }
+        }
+    }
+
+    /// [m/s] What velocities of the chassis, the shoes and the drives count along normal and tangent.
+    pub(super) fn count(
+        &self,
+        chassis: Twist,
+        shoe: impl Fn(usize) -> Twist,
+        spin: impl Fn(usize) -> f64,
+        idler: impl Fn(usize) -> f64,
+    ) -> [f64; 2] {
+        let [n, t] = &self.actions;
+        let along = |twist: Twist, spin: f64| {
+            [n, t].map(|action| action.change(twist.velocity, twist.turn, spin))
+        };
+        match self.link {
+            Link::Chassis => along(chassis, self.drive.map_or(0.0, spin)),
+            Link::Shoe(i) => along(shoe(i), 0.0),
+            Link::Guide { shoe: i, chain } => {
+                let [of_n, of_t] = along(shoe(i), idler(chain));
+                let back = |a: &Action| a.unit.dot(chassis.velocity) + a.back * chassis.turn;
+                [of_n - back(n), of_t - back(t)]
+            }
+        }
+    }
+
+    /// Updates the gap for the motion in a piece of `h` [s]; the step began at `center` and `angle`.
+    pub(super) fn follow(&mut self, state: &State, (center, angle): (Vector, f64), h: f64) {
+        if !matches!(self.link, Link::Chassis) {
+            // Its directions stay, and so does its speed through the piece.
+            self.gap += self.opening_speed(state) * h;
+            return;
+        }
         let s = &self.start;
         let run = self.drive.map_or(0.0, |k| state.drives[k].position) - s.drive_position;
         let turned = Rotation::new(state.angle - angle);

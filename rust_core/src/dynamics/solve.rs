@@ -4,13 +4,15 @@ use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
 use super::motors::{Motor, push_axis};
-use super::row::{Direction, Row};
+use super::row::{Direction, Link, Row};
 use super::state::State;
 use crate::robot::Model;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
 pub(super) const AGREEMENT: f64 = 1e-7;
+/// Rounds of a chain at most: of the one solve in a hundred that two do not settle, more settle few.
+const ROUNDS_OF_CHAINS: u32 = 2;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -51,6 +53,8 @@ pub(super) struct Action {
     pub spin_lever: f64,
     /// [m/s] What a surface that is held at the set-point adds.
     pub offset: f64,
+    /// [m] Lever of the reaction on the chassis, if that takes it.
+    pub back: f64,
 }
 
 impl Action {
@@ -61,6 +65,7 @@ impl Action {
                 lever: along.lever + along.drive_lever,
                 spin_lever: 0.0,
                 offset: -along.drive_lever * spin_of_set_point,
+                back: along.back,
             }
         } else {
             Self {
@@ -68,13 +73,29 @@ impl Action {
                 lever: along.lever,
                 spin_lever: along.drive_lever,
                 offset: 0.0,
+                back: along.back,
             }
+        }
+    }
+
+    fn of_shoe(along: &Direction, of_idler: f64) -> Self {
+        Self {
+            unit: along.unit,
+            lever: along.lever,
+            spin_lever: of_idler,
+            back: along.back,
+            ..Self::default()
         }
     }
 
     /// What it does to x, y and angle.
     pub(super) fn body(&self) -> [f64; 3] {
         [self.unit.x, self.unit.y, self.lever]
+    }
+
+    /// What it does to x, y and angle of the chassis that takes the reaction, and to the idler.
+    pub(super) fn reaction(&self) -> [f64; 4] {
+        [-self.unit.x, -self.unit.y, -self.back, self.spin_lever]
     }
 
     /// Together with a share of another.
@@ -84,6 +105,7 @@ impl Action {
             lever: self.lever + other.lever * share,
             spin_lever: self.spin_lever + other.spin_lever * share,
             offset: self.offset + other.offset * share,
+            back: self.back + other.back * share,
         }
     }
 
@@ -143,14 +165,20 @@ impl Dynamics {
     /// Finds the impulses that all constraints agree on.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
         self.set_actions(state, phase);
-        let rounds = self.solver.iterations;
+        let rounds = if self.chains.is_empty() {
+            self.solver.iterations
+        } else {
+            self.solver.iterations.min(ROUNDS_OF_CHAINS)
+        };
         // What they agree on with limits of friction is a better guess of what grips and what slides.
         let agree = |_| self.solve_at_once(state, phase) || self.descend(state, phase);
         if !(0..rounds).any(agree) {
             self.end_search(state, phase);
         }
-        // From the impulses, so that momentum is kept to the last digit.
-        self.balance(state, phase);
+        if self.chains.is_empty() {
+            // From the impulses, so that momentum is kept to the last digit; in a chain pins come first.
+            self.balance(state, phase);
+        }
     }
 
     /// How constraints act while the motors do what they do.
@@ -162,12 +190,15 @@ impl Dynamics {
         let spin_of_set_point = phase.set_point / self.model.drive_radius;
         for i in 0..self.rows.len() {
             let row = &self.rows[i];
-            let held = row.drive.is_some_and(|k| motors[k].share().is_none());
-            let n = Action::new(&row.normal, held, spin_of_set_point);
-            let t = Action::new(&row.tangent, held, spin_of_set_point);
+            let held = row.spin().is_some_and(|k| motors[k].share().is_none());
+            let [n, t] = [&row.normal, &row.tangent].map(|along| match row.link {
+                Link::Chassis => Action::new(along, held, spin_of_set_point),
+                Link::Shoe(_) => Action::of_shoe(along, 0.0),
+                Link::Guide { .. } => Action::of_shoe(along, along.drive_lever),
+            });
             let admittance = Admittance {
-                normal: self.admittance(&n, row.drive),
-                tangent: self.admittance(&t, row.drive),
+                normal: self.admittance(&n, row.link, row.drive),
+                tangent: self.admittance(&t, row.link, row.drive),
             };
             let row = &mut self.rows[i];
             (row.actions, row.admittance) = ([n, t], admittance);
@@ -176,7 +207,7 @@ impl Dynamics {
             let held = motors[0].share().is_none();
             let axis = push_axis(&self.model, state.angle);
             let action = Action::new(&axis, held, spin_of_set_point);
-            let admittance = self.admittance(&action, Some(0));
+            let admittance = self.admittance(&action, Link::Chassis, Some(0));
             if let Some(push) = &mut self.push {
                 (push.action, push.admittance) = (action, admittance);
             }
@@ -189,6 +220,7 @@ impl Dynamics {
         let m = &self.model;
         let spin_of_set_point = phase.set_point / m.drive_radius;
         let of_drive = |(k, motor): (usize, &Motor)| match motor.share() {
+            Some(_) if !self.chains.is_empty() => 0.0,
             Some(share) => phase.motor_turn(share, m),
             None => m.drive_inertia(k) * (phase.spins[k] + spin_of_set_point),
         };
@@ -249,20 +281,30 @@ impl Dynamics {
     }
 
     /// [1/kg] Velocity along an action for a unit impulse along it.
-    fn admittance(&self, action: &Action, drive: Option<usize>) -> f64 {
+    fn admittance(&self, action: &Action, link: Link, drive: Option<usize>) -> f64 {
+        let of_body = |mass: f64, inertia: f64, lever: f64| {
+            action.unit.length_squared() / mass + lever * lever / inertia
+        };
+        if let Link::Shoe(shoe) | Link::Guide { shoe, .. } = link {
+            let rule = &self.chains[shoe / self.shoes_a_chain].rule;
+            let of_shoe = of_body(rule.shoe_mass, rule.shoe_inertia, action.lever);
+            return match link {
+                Link::Guide { .. } => of_shoe + of_body(self.model.mass, self.inertia, action.back),
+                _ => of_shoe,
+            };
+        }
         let of_spin = drive.map_or(0.0, |k| {
             action.spin_lever * action.spin_lever / self.model.drive_inertia(k)
         });
-        action.unit.length_squared() / self.model.mass
-            + action.lever * action.lever / self.inertia
-            + of_spin
+        of_body(self.model.mass, self.inertia, action.lever) + of_spin
     }
 
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
     pub(super) fn turn_with_chassis(&mut self, state: &mut State, phase: &Phase) {
         let back = phase.set_point / self.model.drive_radius;
         for (drive, motor) in state.drives.iter_mut().zip(&self.motors) {
-            if motor.share().is_none() {
+            // A chain is held at its driving end, and has a speed of its own.
+            if motor.share().is_none() && self.chains.is_empty() {
                 drive.spin = state.angular_velocity - back;
             }
         }
@@ -313,6 +355,9 @@ impl Dynamics {
         if let Some(push) = &mut self.push {
             push.force = push.impulse / h;
         }
+        for chain in &mut self.chains {
+            chain.remember(h);
+        }
     }
 
     /// Adds what a piece applied to the means of a step of `dt` [s].
@@ -330,6 +375,19 @@ impl Dynamics {
 }
 
 impl Row {
+    /// Towards the end of the motion a gap may just close, softly; a penetration is pushed out.
+    pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
+        self.bears = true;
+        self.compliance = soft.compliance;
+        self.give = soft.compliance;
+        self.center.1 = self.friction_guess * h;
+        self.bias = if self.gap > 0.0 {
+            self.gap / h
+        } else {
+            (soft.push_rate * self.gap).max(-max_push_speed)
+        };
+    }
+
     /// Before the motion an open gap may just close, and a penetration is pushed out softly.
     pub(super) fn close(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
         self.bears = true;

@@ -3,8 +3,9 @@
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::plane::left_of;
-use crate::robot::Model;
+use crate::contact::Running;
+use crate::plane::{direction, left_of};
+use crate::robot::{ChainOfShoes, Model};
 
 /// The moving state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -19,6 +20,100 @@ pub(crate) struct State {
     pub angular_velocity: f64,
     /// One for each drive.
     pub drives: Vec<DriveState>,
+    /// The shoes of its chains, ...
+    pub shoes: Vec<Shoe>,
+    /// ... and their idlers.
+    pub idlers: Vec<Idler>,
+}
+
+/// State of the idler of a chain.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Idler {
+    /// [m] How far it is out.
+    pub travel: f64,
+    /// [m/s] Its rate.
+    pub rate: f64,
+}
+
+/// State of a shoe of a chain.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Shoe {
+    /// [m] Halfway between its pins.
+    pub center: Vector,
+    /// [rad] Direction of its travel along the chain; it counts full turns.
+    pub angle: f64,
+    /// Its velocity.
+    pub twist: Twist,
+}
+
+/// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its turn.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Twist {
+    pub velocity: Vector,
+    pub turn: f64,
+}
+
+impl Twist {
+    /// As x, y and turn.
+    pub(crate) fn entries(self) -> [f64; 3] {
+        [self.velocity.x, self.velocity.y, self.turn]
+    }
+
+    /// [m/s] Velocity of a point that lies so far from the centre [m].
+    pub(crate) fn at(self, arm: Vector) -> Vector {
+        self.velocity + self.turn * left_of(arm)
+    }
+
+    /// What leads from another to this.
+    pub(crate) fn less(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity - other.velocity,
+            turn: self.turn - other.turn,
+        }
+    }
+
+    /// With a share of a change.
+    pub(crate) fn plus(self, change: Self, share: f64) -> Self {
+        Self {
+            velocity: self.velocity + change.velocity * share,
+            turn: self.turn + change.turn * share,
+        }
+    }
+}
+
+impl From<[f64; 3]> for Twist {
+    fn from([x, y, turn]: [f64; 3]) -> Self {
+        Self {
+            velocity: Vector::new(x, y),
+            turn,
+        }
+    }
+}
+
+impl Shoe {
+    fn is_finite(&self) -> bool {
+        let velocity = self.twist.velocity.is_finite() && self.twist.turn.is_finite();
+        velocity && self.center.is_finite() && self.angle.is_finite()
+    }
+
+    /// Unit vector along its travel.
+    pub(crate) fn along(&self) -> Vector {
+        direction(self.angle)
+    }
+
+    /// Its frame: x along its travel, y outwards.
+    pub(crate) fn pose(&self) -> Pose {
+        Pose::new(self.center, self.angle)
+    }
+
+    /// The same after a time [s] if nothing changes the velocity.
+    pub(crate) fn after(&self, time: f64) -> Self {
+        Self {
+            center: self.center + self.twist.velocity * time,
+            angle: self.angle + self.twist.turn * time,
+            ..*self
+        }
+    }
 }
 
 /// State of one drive.
@@ -48,6 +143,16 @@ impl State {
             velocity: Vector::ZERO,
             angular_velocity: 0.0,
             drives: vec![drive; model.drives],
+            shoes: shoes_at_rest(model, Pose::new(position, angle), track_phase),
+            idlers: idlers_at_rest(model, track_phase),
+        }
+    }
+
+    /// Velocity of the chassis.
+    pub(crate) fn twist(&self) -> Twist {
+        Twist {
+            velocity: self.velocity,
+            turn: self.angular_velocity,
         }
     }
 
@@ -62,17 +167,20 @@ impl State {
         pose_at(center, angle, model)
     }
 
-    /// [m] How far the surface of each drive has run by then.
-    pub(crate) fn drive_positions_after(
-        &self,
-        time: f64,
-        model: &Model,
-    ) -> impl Iterator<Item = f64> {
+    /// Where the moving parts are by then.
+    pub(crate) fn running_after(&self, time: f64, model: &Model, running: &mut Running) {
         let speeds = (0..self.drives.len()).map(|k| self.track_speed(model, k));
-        self.drives
-            .iter()
-            .zip(speeds)
-            .map(move |(d, speed)| d.position + speed * time)
+        let drives = self.drives.iter().zip(speeds);
+        running.drives.clear();
+        running
+            .drives
+            .extend(drives.map(|(d, speed)| d.position + speed * time));
+        running.shoes.clear();
+        if !self.shoes.is_empty() {
+            let back = self.pose_after(time, model).inverse();
+            let places = self.shoes.iter().map(|shoe| back * shoe.after(time).pose());
+            running.shoes.extend(places);
+        }
     }
 
     /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
@@ -101,7 +209,33 @@ impl State {
                 .drives
                 .iter()
                 .all(|d| d.spin.is_finite() && d.position.is_finite())
+            && self.shoes.iter().all(Shoe::is_finite)
+            && self.idlers.iter().all(|i| i.travel.is_finite())
     }
+}
+
+/// The shoes of a robot at rest whose chassis frame is `pose`.
+pub(crate) fn shoes_at_rest(model: &Model, pose: Pose, track_phase: f64) -> Vec<Shoe> {
+    let of_chain = |chain: &ChainOfShoes| chain.path.places(track_phase);
+    let places = model.chains.iter().flat_map(of_chain);
+    let shoe = |place: Pose| {
+        let place = pose * place;
+        Shoe {
+            center: place.translation,
+            angle: place.rotation.angle(),
+            twist: Twist::default(),
+        }
+    };
+    places.map(shoe).collect()
+}
+
+/// The idlers of a robot at rest: where its chains are taut.
+pub(crate) fn idlers_at_rest(model: &Model, track_phase: f64) -> Vec<Idler> {
+    let idler = |chain: &ChainOfShoes| Idler {
+        travel: chain.path.travel(track_phase),
+        rate: 0.0,
+    };
+    model.chains.iter().map(idler).collect()
 }
 
 fn pose_at(center: Vector, angle: f64, model: &Model) -> Pose {

@@ -7,6 +7,7 @@ mod grouser;
 mod hull;
 mod layout;
 pub(crate) mod search;
+mod shoes;
 mod stretch;
 mod travel;
 
@@ -16,6 +17,7 @@ pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub use grouser::Grouser;
 pub(crate) use layout::wheels;
+pub use shoes::ShoeLoop;
 pub(crate) use travel::Motion;
 
 use crate::scenario::TrackOutline;

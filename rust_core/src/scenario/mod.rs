@@ -16,7 +16,7 @@ pub use settings::{ContactMethod, Drive, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub use track::{
     BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack, HybridWheels,
-    LineOfWheels, Track,
+    LineOfWheels, SegmentalTrack, ShoeShape, Track,
 };
 pub(crate) use wheel::MAX_GROUSERS;
 pub use wheel::{GearWheel, Wheel};

@@ -9,6 +9,9 @@ use crate::error::ScenarioError;
 
 /// Most wheels of one side.
 const MAX_WHEELS: u32 = 200;
+/// Most shoes of a chain.
+const MAX_SHOES: u32 = 400;
+const PLATE: Range = Range::between(1e-4, 1.0, "m");
 const RADIUS: Range = Range::between(1e-3, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
@@ -26,6 +29,8 @@ pub enum Track {
     Belt(BeltTrack),
     /// The belt with grousers that travel along it.
     GrouserBelt(GrouserBeltTrack),
+    /// A chain of shoes linked by pins.
+    Segmental(SegmentalTrack),
     /// No track at all: the drive pushes the chassis.
     Force(ForceTrack),
 }
@@ -72,6 +77,27 @@ pub struct GrouserBeltTrack {
     pub grouser_count: Option<u32>,
 }
 
+/// Rigid shoes linked by pins into a closed chain (section 2.3 of the paper).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SegmentalTrack {
+    /// Shoes of a chain; none takes the whole number that comes nearest to the outline's pitch.
+    pub shoe_count: Option<u32>,
+    /// Form of the shoes.
+    pub shoe_shape: ShoeShape,
+    /// [m] Thickness of the plates; none takes a sixteenth of the pitch.
+    pub plate_thickness: Option<f64>,
+}
+
+/// Form of a shoe in side view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShoeShape {
+    /// A flat plate with a grouser that stands on its middle.
+    Rectangle,
+    /// One body that tapers from the plate to the tip of the grouser.
+    Trapezoid,
+}
+
 /// The drive acts on the chassis as a force along it at axle height, in the air too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceTrack {
@@ -95,12 +121,13 @@ pub enum ForceSupport {
 
 impl Track {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        const KINDS: [&str; 6] = [
+        const KINDS: [&str; 7] = [
             "line",
             "circumferential",
             "hybrid",
             "belt",
             "grouser_belt",
+            "segmental",
             "force",
         ];
         let track = match f.text("kind")? {
@@ -121,6 +148,17 @@ impl Track {
             "belt" => Self::Belt(BeltTrack {}),
             "grouser_belt" => Self::GrouserBelt(GrouserBeltTrack {
                 grouser_count: f.optional_integer("grouser_count", 1, MAX_GROUSERS)?,
+            }),
+            "segmental" => Self::Segmental(SegmentalTrack {
+                shoe_count: f.optional_integer("shoe_count", 3, MAX_SHOES)?,
+                shoe_shape: f.choice(
+                    "shoe_shape",
+                    &[
+                        ("rectangle", ShoeShape::Rectangle),
+                        ("trapezoid", ShoeShape::Trapezoid),
+                    ],
+                )?,
+                plate_thickness: f.optional_number("plate_thickness", PLATE)?,
             }),
             "force" => Self::Force(ForceTrack {
                 support: f.choice(
@@ -145,7 +183,7 @@ impl Track {
             Self::Line(LineOfWheels { wheel, .. })
             | Self::Circumferential(CircumferentialWheels { wheel, .. })
             | Self::Hybrid(HybridWheels { wheel, .. }) => Some(wheel),
-            Self::Belt(_) | Self::GrouserBelt(_) | Self::Force(_) => None,
+            Self::Belt(_) | Self::GrouserBelt(_) | Self::Segmental(_) | Self::Force(_) => None,
         }
     }
 

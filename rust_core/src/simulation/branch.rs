@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::contact::Dents;
-use crate::dynamics::{DriveState, State};
+use crate::dynamics::{DriveState, State, idlers_at_rest, shoes_at_rest};
 use crate::error::Error;
 use crate::monitor::Seen;
 use crate::outcome::Outcome;
@@ -88,12 +88,15 @@ impl Simulation {
             position: now.track_position,
             ..DriveState::default()
         };
+        let now_pose = self.state.pose(self.dynamics.model());
         let state = State {
             center,
             angle: now.chassis_angle,
             velocity: self.state.velocity_at(center),
             angular_velocity: now.angular_velocity,
             drives: vec![drive; model.drives],
+            shoes: shoes_at_rest(&model, now_pose, now.track_position),
+            idlers: idlers_at_rest(&model, now.track_position),
         };
         let mut branch = Self::of(scenario, ground, model, state);
         branch.step = (self.time() / branch.time_step()).round() as u64;

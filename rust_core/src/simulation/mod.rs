@@ -3,14 +3,14 @@
 mod branch;
 mod snapshot;
 
-use rapier2d_f64::math::Vector;
+use rapier2d_f64::math::{Pose, Vector};
 
 pub use branch::Counterfactual;
 
-use crate::contact::{Contact, ContactFinder, Dents, Intrusion, LoadedContact};
+use crate::contact::{Contact, ContactFinder, Dents, Intrusion, LoadedContact, Running};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
-use crate::dynamics::{DriveState, Dynamics, State};
+use crate::dynamics::{ChainReading, DriveState, Dynamics, State};
 use crate::error::{Error, ScenarioError, SimulationError};
 use crate::events::Event;
 use crate::monitor::Monitor;
@@ -34,8 +34,8 @@ pub struct Simulation {
     set_point: f64,
     dents: Dents,
     contacts: Vec<Contact>,
-    /// [m] Where the drives are when contacts are looked for.
-    drives_then: Vec<f64>,
+    /// Where the moving parts are when contacts are looked for.
+    then: Running,
     /// [m] Farthest point of the robot from its centre of mass.
     reach: f64,
 }
@@ -93,7 +93,7 @@ impl Simulation {
             set_point: 0.0,
             dents: Dents::default(),
             contacts: Vec::new(),
-            drives_then: Vec::new(),
+            then: Running::default(),
             reach,
         }
     }
@@ -128,11 +128,9 @@ impl Simulation {
         // much as a wheel turns round an edge meanwhile.
         let (half, model) = (0.5 * self.time_step(), self.dynamics.model());
         let middle = self.state.pose_after(half, model);
-        self.drives_then.clear();
-        self.drives_then
-            .extend(self.state.drive_positions_after(half, model));
+        self.state.running_after(half, model, &mut self.then);
         self.contact
-            .find(middle, &self.drives_then, prediction, &mut self.contacts);
+            .find(middle, &self.then, prediction, &mut self.contacts);
         self.dents.forgive(&mut self.contacts);
     }
 
@@ -140,10 +138,18 @@ impl Simulation {
     fn contacts_now(&mut self) -> Vec<Contact> {
         let mut contacts = Vec::new();
         let pose = self.state.pose(self.dynamics.model());
-        let drives: Vec<f64> = self.state.drives.iter().map(|d| d.position).collect();
+        let running = self.running();
         let prediction = self.scenario.solver.prediction_distance;
-        self.contact.find(pose, &drives, prediction, &mut contacts);
+        self.contact.find(pose, &running, prediction, &mut contacts);
         contacts
+    }
+
+    /// Where the moving parts are now.
+    fn running(&self) -> Running {
+        let mut running = Running::default();
+        self.state
+            .running_after(0.0, self.dynamics.model(), &mut running);
+        running
     }
 
     fn advance(&mut self) -> Result<(), SimulationError> {
@@ -263,8 +269,10 @@ impl Simulation {
             since,
             progress: self.monitor.progress(),
         };
+        let running = self.running();
+        let model = self.dynamics.model().as_one_body(&running);
         let scene = Scene {
-            model: self.dynamics.model(),
+            model: &model,
             lanes: &self.ground.lanes,
             envelopes: self.monitor.envelopes(),
             contact: self.scenario.solver.contact,
@@ -273,7 +281,7 @@ impl Simulation {
             command: self.command,
             set_point: self.set_point,
             half_length: 0.5 * self.scenario.robot.outline.axle_distance,
-            drive_positions: self.state.drives.iter().map(|d| d.position).collect(),
+            running,
         };
         Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
     }
@@ -290,6 +298,16 @@ impl Simulation {
     /// Stops and intrusions so far.
     pub fn events(&self) -> Vec<Event> {
         self.monitor.events(self.time())
+    }
+
+    /// What the chains of shoes do now; none if there are none.
+    pub fn chain(&self) -> Option<ChainReading> {
+        self.dynamics.chain_reading(&self.state)
+    }
+
+    /// Frames of the shoes: x along their travel, y outwards.
+    pub fn shoes(&self) -> impl Iterator<Item = Pose> + '_ {
+        self.state.shoes.iter().map(|shoe| shoe.pose())
     }
 
     /// Number of drives.

@@ -13,6 +13,7 @@ pub(super) fn build(robot: &Robot) -> TrackModel {
         drives: 1,
         motors: 1,
         pushes_chassis: false,
+        chains: Vec::new(),
     }
 }
 
@@ -33,5 +34,6 @@ pub(super) fn hull(
         drive,
         friction_limit,
         lane: 0,
+        shoe: None,
     }
 }

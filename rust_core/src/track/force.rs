@@ -17,5 +17,6 @@ pub(super) fn build(robot: &Robot, force: &ForceTrack) -> Result<TrackModel, Sce
         drives: 1 + free,
         motors: 1,
         pushes_chassis: true,
+        chains: Vec::new(),
     })
 }

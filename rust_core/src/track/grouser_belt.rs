@@ -47,6 +47,7 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         drive: Some(0),
         friction_limit: f64::INFINITY,
         lane: 0,
+        shoe: None,
     };
     let surface = Shape::Hull {
         discs,
@@ -63,5 +64,6 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         drives: 1,
         motors: 1,
         pushes_chassis: false,
+        chains: Vec::new(),
     })
 }

@@ -3,10 +3,11 @@
 mod belt;
 mod force;
 mod grouser_belt;
+mod segmental;
 mod wheels;
 
 use crate::error::ScenarioError;
-use crate::robot::Part;
+use crate::robot::{ChainOfShoes, Part};
 use crate::scenario::{CircumferentialWheels, HybridWheels, LineOfWheels, Robot, Track};
 
 /// What a track model adds to the chassis.
@@ -19,6 +20,8 @@ pub(crate) struct TrackModel {
     pub motors: usize,
     /// The drive pushes the chassis itself instead of the ground under the parts.
     pub pushes_chassis: bool,
+    /// Chains of shoes, which are the track's mass.
+    pub chains: Vec<ChainOfShoes>,
 }
 
 /// Builds the model of a robot's track.
@@ -32,6 +35,7 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
         | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
         Track::Belt(_) => Ok(belt::build(robot)),
         Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
+        Track::Segmental(track) => segmental::build(robot, track),
         Track::Force(force) => force::build(robot, force),
     }
 }

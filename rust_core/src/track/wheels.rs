@@ -35,6 +35,7 @@ pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, Scenari
         drives,
         motors: drives,
         pushes_chassis: false,
+        chains: Vec::new(),
     })
 }
 
@@ -55,5 +56,6 @@ fn part(shape: Shape, drive: usize) -> Part {
         drive: Some(drive),
         friction_limit: f64::INFINITY,
         lane: 0,
+        shoe: None,
     }
 }

@@ -64,6 +64,7 @@ impl Outline {
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
+            shoe: None,
         };
         Self {
             part,

@@ -7,7 +7,7 @@ use super::curve::Curve;
 use super::grounds::Ground;
 use super::judge::Judge;
 use super::scene::{Scene, cases};
-use crate::contact::Contact;
+use crate::contact::{Contact, Running};
 use crate::draw::Draw;
 use crate::plane::{cross, left_of};
 use crate::robot::{BodyKind, Part, Shape};
@@ -257,12 +257,13 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
         drive: None,
         friction_limit: f64::INFINITY,
         lane: 0,
+        shoe: None,
     };
     let contact = OwnContact::new(&[part], &[ground.profile]);
     let mut contacts = Vec::new();
     for (behind, below) in [(1e-9, 1e-9), (1e-6, 1e-4), (1e-4, 1e-6), (5e-4, 5e-4)] {
         let pose = Pose::from_translation(Vector::new(behind, -below));
-        contact.find(pose, &[], 1e-3, &mut contacts);
+        contact.find(pose, &Running::default(), 1e-3, &mut contacts);
         for (normal, depth) in [(Vector::Y, below), (-Vector::X, behind)] {
             let is_it = |c: &Contact| c.normal == normal && (c.distance + depth).abs() < 1e-15;
             assert!(contacts.iter().any(is_it), "{behind} {below} {contacts:?}");

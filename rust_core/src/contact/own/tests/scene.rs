@@ -10,7 +10,7 @@ use super::super::OwnContact;
 use super::grounds::{self, Ground};
 use super::judge::{Approach, Judge};
 use super::outlines::{self, Outline};
-use crate::contact::Contact;
+use crate::contact::{Contact, Running};
 use crate::draw::Draw;
 
 /// More cases where time allows.
@@ -105,8 +105,12 @@ impl Scene {
 
     pub(super) fn contacts(&self, prediction: f64) -> Vec<Contact> {
         let mut contacts = Vec::new();
+        let running = Running {
+            drives: vec![self.drive],
+            ..Running::default()
+        };
         self.contact
-            .find(self.pose, &[self.drive], prediction, &mut contacts);
+            .find(self.pose, &running, prediction, &mut contacts);
         contacts
     }
 

@@ -7,7 +7,7 @@ use rapier2d_f64::math::{Pose, Vector};
 use super::super::OwnContact;
 use super::judge::Approach;
 use super::scene::{Scene, cases};
-use crate::contact::Contact;
+use crate::contact::{Contact, Running};
 use crate::draw::Draw;
 use crate::plane::left_of;
 use crate::robot::{BodyKind, Part, Shape};
@@ -104,6 +104,7 @@ fn a_rounded_edge_is_a_true_arc() {
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
+            shoe: None,
         };
         let contact = OwnContact::new(&[part], &[profile]);
         let angle = draw.between(0.25, 0.5) * TAU;
@@ -112,7 +113,11 @@ fn a_rounded_edge_is_a_true_arc() {
         let gap = draw.between(-1e-4, 1e-3);
         let pose = Pose::from_translation(middle + outward * (edge_radius + radius + gap));
         let mut contacts = Vec::new();
-        contact.find(pose, &[0.0], 2e-3, &mut contacts);
+        let running = Running {
+            drives: vec![0.0],
+            ..Running::default()
+        };
+        contact.find(pose, &running, 2e-3, &mut contacts);
         let is_it =
             |c: &Contact| (c.distance - gap).abs() < 1e-12 && (c.normal - outward).length() < 1e-9;
         assert!(

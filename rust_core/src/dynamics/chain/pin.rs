@@ -1,0 +1,103 @@
+//! A pin between two shoes: two directions in which neither moves over the other.
+
+use rapier2d_f64::math::Vector;
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::direct::Damper;
+use crate::dynamics::state::{Shoe, Twist};
+use crate::plane::left_of;
+
+/// Compliance of a pin's damper, in units of its admittance: pins are two bodies' only, and nothing else
+/// takes their load.
+const DAMPING: f64 = 1e-8;
+
+/// The pin at the front of a shoe.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Pin {
+    /// [m] From the shoe's centre, and from that of the next shoe.
+    arms: [Vector; 2],
+    /// [m] How far the next shoe's end is off this one's.
+    pub gap: Vector,
+    /// [m/s] Speed that the gap closes with.
+    bias: Vector,
+    /// [kg]
+    stiffness: f64,
+    /// [N s] On the next shoe, in this piece; ...
+    pub impulse: Vector,
+    /// ... what a direct solve starts from, ...
+    center: Vector,
+    /// ... and [N] what the next piece starts from.
+    pub force: Vector,
+    /// [N s] In this step.
+    pub total: Vector,
+}
+
+impl Pin {
+    /// Takes its place between two shoes half of `pitch` [m] from both their centres.
+    pub(super) fn follow(&mut self, shoe: &Shoe, next: &Shoe, pitch: f64) {
+        self.arms = [shoe.along() * (0.5 * pitch), next.along() * (-0.5 * pitch)];
+        self.gap = next.center + self.arms[1] - shoe.center - self.arms[0];
+    }
+
+    /// Lets it close its gap within `h` [s].
+    pub(super) fn close(&mut self, h: f64, (mass, inertia): (f64, f64), pitch: f64) {
+        self.bias = self.gap / h;
+        let arm = 0.5 * pitch;
+        let admittance = 2.0 / mass + 2.0 * arm * arm / inertia;
+        self.stiffness = 1.0 / (DAMPING * admittance);
+    }
+
+    /// [N s] Its impulse at a velocity of the next shoe's end over this one's.
+    pub(super) fn at(&self, speed: Vector) -> Vector {
+        self.center - (speed + self.bias) * self.stiffness
+    }
+
+    /// The damper along x and along y.
+    pub(super) fn dampers(&self) -> [Damper; 2] {
+        let damper =
+            |center: f64, bias: f64| Damper::new(center - self.stiffness * bias, self.stiffness);
+        [
+            damper(self.center.x, self.bias.x),
+            damper(self.center.y, self.bias.y),
+        ]
+    }
+
+    /// How the velocities of the two shoes count along x and along y.
+    pub(super) fn rows(&self) -> [[[f64; 3]; 2]; 2] {
+        let [a, b] = self.arms.map(left_of);
+        [
+            [[-1.0, 0.0, -a.x], [1.0, 0.0, b.x]],
+            [[0.0, -1.0, -a.y], [0.0, 1.0, b.y]],
+        ]
+    }
+
+    /// [m/s] Velocity of the next shoe's end over this one's.
+    pub(super) fn speed(&self, shoe: Twist, next: Twist) -> Vector {
+        next.at(self.arms[1]) - shoe.at(self.arms[0])
+    }
+
+    /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
+    pub(super) fn follow_velocities(&mut self, shoe: Twist, next: Twist) -> f64 {
+        let off = self.speed(shoe, next) + self.bias;
+        self.impulse = self.center - off * self.stiffness;
+        off.length()
+    }
+
+    pub(super) fn settle(&mut self) {
+        self.center = self.impulse;
+    }
+
+    pub(super) fn unsettle(&mut self) {
+        self.impulse = self.center;
+    }
+
+    /// Starts from the force of the last piece in a time [s].
+    pub(super) fn guess(&mut self, h: f64) {
+        self.impulse = self.force * h;
+    }
+
+    /// Keeps the force of a piece of `h` [s].
+    pub(super) fn remember(&mut self, h: f64) {
+        self.force = self.impulse / h;
+    }
+}

@@ -1,0 +1,99 @@
+//! The drive of a chain on a guide: forces along the shoes of the driving arc, and back on the chassis.
+//!
+//! It is a sprocket without teeth: what it holds is the rate at which the shoes of the arc go round, and
+//! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
+//! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::direct::Damper;
+use crate::dynamics::state::{Shoe, State, Twist};
+use crate::plane::cross;
+use crate::robot::ChainOfShoes;
+
+/// Compliance of its damper, in units of its admittance.
+const DAMPING: f64 = 1e-8;
+
+/// [1/s] Rate at which the drive makes up for what the chain is behind: a real sprocket counts its shoes,
+/// whatever their polygon does to its speed.
+const CATCHING_UP: f64 = 5.0;
+
+/// The drive of one chain.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pull {
+    /// The shoes of the arc.
+    pub shoes: Vec<Grasp>,
+    pub impulses: PullImpulses,
+    /// [kg]
+    stiffness: f64,
+}
+
+/// The part of it that lasts.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct PullImpulses {
+    /// [N s] In this piece, at the chain; ...
+    pub impulse: f64,
+    /// ... what a direct solve starts from, ...
+    pub center: f64,
+    /// ... and [N] what the next piece starts from.
+    pub force: f64,
+    /// [m] What the chain is behind.
+    pub behind: f64,
+}
+
+/// How the drive acts on one shoe and on the chassis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grasp {
+    /// Index in the chain.
+    pub shoe: usize,
+    pub on_shoe: [f64; 3],
+    pub on_chassis: [f64; 3],
+}
+
+impl Pull {
+    /// Takes hold of the shoes that are round the driving end now.
+    pub(super) fn follow(&mut self, chain: &ChainOfShoes, shoes: &[Shoe], state: &State) {
+        self.shoes.clear();
+        let forwards = crate::plane::direction(state.angle);
+        // Shoes count the more, the farther round the end they face: none begins or ends at once.
+        let share = |shoe: &Shoe| {
+            let backwards = -crate::plane::left_of(shoe.along()).dot(forwards);
+            backwards.max(0.0).powi(2)
+        };
+        let sum: f64 = shoes.iter().map(share).sum();
+        let scale = chain.drive_ratio() / sum;
+        let mut admittance = 0.0;
+        for (i, shoe) in shoes.iter().enumerate() {
+            let share = share(shoe) * scale;
+            if share > 0.0 {
+                let along = shoe.along() * share;
+                let back = cross(shoe.center - state.center, along);
+                self.shoes.push(Grasp {
+                    shoe: i,
+                    on_shoe: [along.x, along.y, 0.0],
+                    on_chassis: [-along.x, -along.y, -back],
+                });
+                admittance += share * share / chain.shoe_mass;
+            }
+        }
+        self.stiffness = 1.0 / (DAMPING * admittance.max(f64::MIN_POSITIVE));
+    }
+
+    /// [m/s] Speed that the drive aims at.
+    pub(super) fn aim(&self, set_point: f64) -> f64 {
+        set_point + CATCHING_UP * self.impulses.behind
+    }
+
+    pub(super) fn damper(&self) -> Damper {
+        Damper::new(self.impulses.center, self.stiffness)
+    }
+
+    /// [m/s] Speed of the chain.
+    pub(super) fn speed(&self, chassis: Twist, shoe: impl Fn(usize) -> Twist) -> f64 {
+        let along = |row: &[f64; 3], twist: Twist| -> f64 {
+            row.iter().zip(twist.entries()).map(|(a, v)| a * v).sum()
+        };
+        let of = |g: &Grasp| along(&g.on_shoe, shoe(g.shoe)) + along(&g.on_chassis, chassis);
+        self.shoes.iter().map(of).sum()
+    }
+}

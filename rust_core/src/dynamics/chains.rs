@@ -1,0 +1,233 @@
+//! What a robot's chains of shoes add to the equations of motion.
+
+use super::Dynamics;
+use super::row::{Link, Row};
+use super::solve::{Phase, Softness};
+use super::state::{State, Twist};
+use rapier2d_f64::math::Vector;
+
+/// [m] A shoe this close to the guide may come to rest on it within a step.
+const NEAR_GUIDE: f64 = 2e-3;
+
+/// What a chain does at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ChainReading {
+    /// [N] Largest force in a pin, the mean over the step.
+    pub tension: f64,
+    /// [m] Largest gap of a pin.
+    pub pin_gap: f64,
+    /// [m] Deepest penetration of the guide by a shoe.
+    pub guide_penetration: f64,
+    /// [m] How far the chain has run: its length for every turn of its shoes over the chassis.
+    pub travel: f64,
+}
+
+impl Dynamics {
+    /// The worst of all chains; none if there is none.
+    pub(crate) fn chain_reading(&self, state: &State) -> Option<ChainReading> {
+        let mut reading = ChainReading::default();
+        for chain in &self.chains {
+            let shoes = &state.shoes[chain.rule.shoes.clone()];
+            let (tension, gap) = chain.worst_pin(state);
+            reading.tension = reading.tension.max(tension);
+            reading.pin_gap = reading.pin_gap.max(gap);
+            let pose = state.pose(&self.model);
+            let travel = state.idlers[chain.rule.number].travel;
+            chain.rests(
+                pose,
+                travel,
+                |i| shoes[i].pose(),
+                0.0,
+                |rest| {
+                    reading.guide_penetration = reading.guide_penetration.max(-rest.gap);
+                },
+            );
+            let turned: f64 = shoes.iter().map(|shoe| state.angle - shoe.angle).sum();
+            reading.travel +=
+                turned * chain.rule.path.pitch / (std::f64::consts::TAU * self.chains.len() as f64);
+        }
+        (!self.chains.is_empty()).then_some(reading)
+    }
+
+    /// Adds a row for each place where a shoe rests on the guide, or nearly, in the middle of the step.
+    pub(super) fn rest_on_guides(&mut self, state: &State, half: f64) {
+        for chain in &self.chains {
+            let first = chain.rule.shoes.start;
+            let pose = state.pose_after(half, &self.model);
+            let place_of = |i: usize| state.shoes[first + i].after(half).pose();
+            let idler = &state.idlers[chain.rule.number];
+            let travel = idler.travel + idler.rate * half;
+            chain.rests(pose, travel, place_of, NEAR_GUIDE, |rest| {
+                let last = chain.memory[rest.shoe][rest.place];
+                let of = (first + rest.shoe, chain.rule.number);
+                self.rows.push(Row::on_guide(&rest, last, state, of, half));
+            });
+        }
+    }
+
+    /// Keeps what the rests did, which come behind the contacts with the ground.
+    pub(super) fn remember_rests(&mut self, contacts: usize) {
+        for chain in &mut self.chains {
+            chain.memory.fill(Default::default());
+        }
+        for row in &self.rows[contacts..] {
+            if let Link::Guide { shoe, chain } = row.link {
+                self.chains[chain].remember_rest(shoe % self.shoes_a_chain, row);
+            }
+        }
+    }
+
+    /// Advances by a piece of `h` [s]; the step began at `start`.
+    pub(super) fn substep_of_chains(
+        &mut self,
+        state: &mut State,
+        start: (Vector, f64),
+        set_point: f64,
+        h: f64,
+    ) {
+        let soft = Softness::new(
+            self.solver.contact_frequency,
+            self.solver.contact_damping_ratio,
+            h,
+        );
+        let kick = (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * h;
+        let mut phase = std::mem::take(&mut self.phase);
+        phase.velocity = state.velocity + kick;
+        phase.angular_velocity = state.angular_velocity;
+        phase.spins.clear();
+        phase.spins.extend(state.drives.iter().map(|d| d.spin));
+        (phase.set_point, phase.elapsed) = (set_point, h);
+        self.start_chains(state, h);
+        for row in &mut self.rows {
+            row.close_softly(h, soft, self.solver.max_push_speed);
+        }
+        self.guess(h);
+        for chain in &mut self.chains {
+            chain.guess(h);
+        }
+        self.solve(state, &phase);
+        state.center += state.velocity * h;
+        state.angle += state.angular_velocity * h;
+        for k in 0..state.drives.len() {
+            state.drives[k].position += state.track_speed(&self.model, k) * h;
+        }
+        for (chain, motor) in self.chains.iter_mut().zip(&self.motors) {
+            chain.count(state, set_point, motor.share().is_none(), h);
+        }
+        for shoe in &mut state.shoes {
+            *shoe = shoe.after(h);
+        }
+        for idler in &mut state.idlers {
+            idler.travel += idler.rate * h;
+        }
+        for row in &mut self.rows {
+            row.follow(state, start, h);
+        }
+        self.collect(state, &phase, self.solver.time_step);
+        self.phase = phase;
+    }
+
+    /// Starts a piece of `h` [s]: velocities without constraints, pins in place.
+    fn start_chains(&mut self, state: &State, h: f64) {
+        let kick = Twist {
+            velocity: Vector::new(0.0, -self.gravity) * h,
+            turn: 0.0,
+        };
+        for chain in &mut self.chains {
+            let shoes = &state.shoes[chain.rule.shoes.clone()];
+            for (free, shoe) in chain.free.iter_mut().zip(shoes) {
+                *free = shoe.twist.plus(kick, 1.0);
+            }
+            chain.follow(state, h);
+        }
+    }
+
+    /// [N s] What the drive of a chain gives if its motor does not hold the speed.
+    fn given(&self, k: usize, phase: &Phase) -> Option<f64> {
+        let share = self.motors[k].share()?;
+        Some(phase.motor_impulse(share, &self.model))
+    }
+
+    pub(super) fn assemble_chains(&mut self, phase: &Phase) {
+        for k in 0..self.chains.len() {
+            let given = self.given(k, phase);
+            self.chains[k].assemble(phase.set_point, given);
+        }
+    }
+
+    /// Velocity and angular velocity of the chassis, with the chains; none if the constraints contradict
+    /// each other.
+    pub(super) fn solve_system(&mut self) -> Option<(Vector, f64)> {
+        for chain in &mut self.chains {
+            chain.eliminate(&mut self.system.rows)?;
+        }
+        let (velocity, turn) = self.system.solve()?;
+        for chain in &mut self.chains {
+            chain.solve([velocity.x, velocity.y, turn]);
+        }
+        Some((velocity, turn))
+    }
+
+    /// Gives the shoes the velocities of the last solve.
+    pub(super) fn take_shoes(&self, state: &mut State) {
+        let solved = self.chains.iter().flat_map(|chain| &chain.solved);
+        for (shoe, twist) in state.shoes.iter_mut().zip(solved) {
+            shoe.twist = *twist;
+        }
+        for (idler, chain) in state.idlers.iter_mut().zip(&self.chains) {
+            idler.rate = chain.idler_rate;
+        }
+    }
+
+    /// Turns the velocities of the last solve into changes.
+    pub(super) fn change_shoes(&mut self, state: &State) {
+        let solved = self.chains.iter_mut().flat_map(|chain| &mut chain.solved);
+        for (twist, shoe) in solved.zip(&state.shoes) {
+            *twist = twist.less(shoe.twist);
+        }
+        for (chain, idler) in self.chains.iter_mut().zip(&state.idlers) {
+            chain.idler_rate -= idler.rate;
+        }
+    }
+
+    /// Moves the shoes' velocities by a share of the change.
+    pub(super) fn move_shoes(&self, state: &mut State, share: f64) {
+        let changes = self.chains.iter().flat_map(|chain| &chain.solved);
+        for (shoe, change) in state.shoes.iter_mut().zip(changes) {
+            shoe.twist = shoe.twist.plus(*change, share);
+        }
+        for (idler, chain) in state.idlers.iter_mut().zip(&self.chains) {
+            idler.rate += chain.idler_rate * share;
+        }
+    }
+
+    /// Takes the impulses of pins and drives that belong to the velocities, and the speeds of the drives;
+    /// how far the velocities are from what they should be [m/s].
+    pub(super) fn chains_follow_velocities(&mut self, state: &mut State, phase: &Phase) -> f64 {
+        let mut off: f64 = 0.0;
+        for k in 0..self.chains.len() {
+            let given = self.given(k, phase);
+            let chain = &mut self.chains[k];
+            let of_chain = chain.follow_velocities(state, phase.set_point, given);
+            off = off.max(of_chain);
+            state.drives[k].spin =
+                state.angular_velocity - chain.speed(state) / self.model.drive_radius;
+        }
+        off
+    }
+
+    /// What the chains add to the slope of the potential along a change.
+    pub(super) fn slope_of_chains(
+        &self,
+        state: &State,
+        change: &Twist,
+        phase: &Phase,
+        share: f64,
+    ) -> f64 {
+        let of_chain = |k: usize| {
+            let given = self.given(k, phase);
+            self.chains[k].slope(state, *change, (phase.set_point, given), share)
+        };
+        (0..self.chains.len()).map(of_chain).sum()
+    }
+}

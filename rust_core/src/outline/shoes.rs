@@ -1,0 +1,200 @@
+//! A closed chain of shoes round the ends of a track: the path of its pins.
+//!
+//! A taut chain lies on the straight runs with its pins, and round the ends with the middle of each shoe,
+//! so the pins go farther out there: along the circle on which chords of a pitch touch the end. It meets
+//! the run half a pitch before the run is over.
+
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+
+use super::search::bisect;
+use super::stretch::Form;
+use super::{Disc, Envelope, Motion};
+use crate::plane::direction;
+
+/// Places of the chain along its path over which its length is averaged.
+const PHASES: u32 = 16;
+
+/// The closed path of a chain, and the chain on it.
+#[derive(Clone, Debug)]
+pub struct ShoeLoop {
+    /// Discs whose hull the pin lines are tangent to, rear first.
+    discs: [Disc; 2],
+    /// Number of shoes.
+    pub count: usize,
+    /// [m] Distance of the pins of a shoe.
+    pub pitch: f64,
+}
+
+impl ShoeLoop {
+    /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
+    /// a shoe would be longer than half a run.
+    pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
+        let chain = Self {
+            discs,
+            count,
+            pitch: 0.0,
+        };
+        let least = Envelope::new(&discs).length() / count as f64;
+        let most = 1.1 * least;
+        if count < 3 || 2.0 * most > (discs[1].center - discs[0].center).length() {
+            return None;
+        }
+        let taut = |phase: u32| {
+            let share = f64::from(phase) / f64::from(PHASES);
+            bisect(least, most, |p: f64| chain.excess(p, share * p, 0.0))
+        };
+        let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
+        Some(Self { pitch, ..chain })
+    }
+
+    /// [m] How far the front end must be out to keep the chain taut when it has run so far [m].
+    pub(crate) fn travel(&self, run: f64) -> f64 {
+        let phase = run.rem_euclid(self.pitch);
+        let reach = 0.5 * self.pitch;
+        bisect(-reach, reach, |out| -self.excess(self.pitch, phase, out))
+    }
+
+    /// Frames of the shoes in that of the chassis when the chain has run so far [m] and is taut: x along its
+    /// travel, y outwards, the origin halfway between the pins.
+    pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
+        let phase = run.rem_euclid(self.pitch);
+        let path = self.path(self.pitch, self.travel(run));
+        let ways = self.walk(&path, self.pitch, phase);
+        let mut pins: Vec<Vector> = ways.map(|way| path.point_at(way)).collect();
+        pins.pop();
+        // Each shoe keeps its number as the chain runs.
+        let passed = (run.div_euclid(self.pitch) as i64).rem_euclid(self.count as i64);
+        pins.rotate_left(passed as usize);
+        (0..self.count)
+            .map(|i| {
+                let (rear, front) = (pins[i], pins[(i + 1) % self.count]);
+                let along = (front - rear).normalize();
+                let rotation = Rotation::from_cos_sin_unchecked(along.x, along.y);
+                Pose::from_parts(0.5 * (rear + front), rotation)
+            })
+            .collect()
+    }
+
+    /// How the chain moves a shoe whose origin is there, for each metre that it runs: the mean while the shoe
+    /// passes by.
+    pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
+        let path = Envelope::new(&self.discs);
+        path.motion_at(path.way_of(origin), 0.5 * self.pitch)
+    }
+
+    /// [m] By how much a chain of a pitch is too long with the front end so far out, and a pin at the way
+    /// `phase`.
+    fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
+        let path = self.path(pitch, out);
+        let last = self.walk(&path, pitch, phase).last().unwrap_or(phase);
+        last - phase - path.length()
+    }
+
+    /// [m] Ways to the pins of a chain, and to the one after the last.
+    fn walk<'a>(
+        &self,
+        path: &'a Envelope,
+        pitch: f64,
+        phase: f64,
+    ) -> impl Iterator<Item = f64> + use<'a> {
+        let next = move |way: &f64| Some(path.way_to_distance(*way, pitch));
+        std::iter::successors(Some(phase), next).take(self.count + 1)
+    }
+
+    /// The path of the pins with the front end so far out [m].
+    fn path(&self, pitch: f64, out: f64) -> Envelope {
+        let mut discs = self.discs;
+        discs[1].center.x += out;
+        let half = 0.5 * pitch;
+        let mut path = Envelope::new(&discs);
+        let mut start = 0.0;
+        for stretch in &mut path.stretches {
+            stretch.start = start;
+            match &mut stretch.shape {
+                Form::Arc {
+                    radius,
+                    from,
+                    sweep,
+                    ends,
+                    ..
+                } => {
+                    let beyond = libm::atan(half / *radius);
+                    *radius = (*radius * *radius + half * half).sqrt();
+                    *from += beyond;
+                    *sweep += 2.0 * beyond;
+                    *ends = [direction(*from), direction(*from - *sweep)];
+                    stretch.length = *radius * *sweep;
+                }
+                Form::Run { begin, along, .. } => {
+                    *begin += *along * half;
+                    stretch.length -= pitch;
+                }
+            }
+            start += stretch.length;
+        }
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ends(rear: f64, front: f64) -> [Disc; 2] {
+        let disc = |x, radius| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        };
+        [disc(-0.1825, rear), disc(0.1825, front)]
+    }
+
+    #[test]
+    fn chain_closes_wherever_it_has_run_to() {
+        for (rear, front, count) in [(0.0505, 0.0505, 22), (0.0505, 0.0505, 44), (0.06, 0.04, 23)] {
+            let chain = ShoeLoop::new(ends(rear, front), count).unwrap();
+            for k in 0..100 {
+                let run = 0.0123 * f64::from(k);
+                let places = chain.places(run);
+                let pin = |i: usize, side: f64| {
+                    places[i].transform_point(Vector::new(0.5 * side * chain.pitch, 0.0))
+                };
+                for i in 0..count {
+                    let gap = pin(i, 1.0) - pin((i + 1) % count, -1.0);
+                    assert!(gap.length() < 1e-9, "{count} shoes at {run}: {gap}");
+                    let [rear_end, mut front_end] = ends(rear, front);
+                    front_end.center.x += chain.travel(run);
+                    for disc in [rear_end, front_end] {
+                        let spoke = disc.center - places[i].translation;
+                        let local = places[i].rotation.inverse() * spoke;
+                        if local.x.abs() < 0.5 * chain.pitch {
+                            assert!(-local.y > disc.radius - 1e-9, "shoe {i} cuts an end");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shoes_keep_their_numbers() {
+        let chain = ShoeLoop::new(ends(0.0505, 0.0505), 22).unwrap();
+        for k in 0..200 {
+            let (now, next) = (0.01 * f64::from(k), 0.01 * f64::from(k + 1));
+            let moved = chain.places(now).into_iter().zip(chain.places(next));
+            for (a, b) in moved {
+                assert!((b.translation - a.translation).length() < 0.012);
+            }
+        }
+    }
+
+    #[test]
+    fn many_short_shoes_are_as_long_as_the_outline() {
+        let discs = ends(0.06, 0.04);
+        let length = Envelope::new(&discs).length();
+        for (count, longer) in [(23, 0.03), (46, 0.01), (368, 2e-4)] {
+            let chain = ShoeLoop::new(discs, count).unwrap();
+            let excess = chain.pitch * count as f64 / length - 1.0;
+            assert!(0.0 < excess && excess < longer, "{count} shoes: {excess}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! A chain of rigid shoes linked by pins (section 2.3 of the paper), on a guide of the chassis.
+//!
+//! The outer faces of the plates run along the roots of the outline, the pins in the middle of the plates,
+//! and the guide under their inner faces, so that the robot stands as high as the built one.
+
+use super::TrackModel;
+use crate::error::ScenarioError;
+use crate::outline::{self, Disc, Envelope, ShoeLoop};
+use crate::robot::{BodyKind, ChainOfShoes, Part, Shape, Tensioner};
+use crate::scenario::{Robot, SegmentalTrack, ShoeShape};
+use rapier2d_f64::math::Vector;
+
+/// Shoes on a guide.
+pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
+    let outline = &robot.outline;
+    let ends = |inside: f64| {
+        outline::end_discs(outline).map(|disc| Disc {
+            radius: disc.radius - inside,
+            ..disc
+        })
+    };
+    let roots = Envelope::new(&ends(outline.grouser_height));
+    let count = track
+        .shoe_count
+        .unwrap_or_else(|| (roots.length() / outline.grouser_pitch).round().max(3.0) as u32);
+    let count = count as usize;
+    let plate_thickness = track
+        .plate_thickness
+        .unwrap_or(roots.length() / count as f64 / 16.0);
+    let guide = ends(outline.grouser_height + plate_thickness);
+    if let Some(end) = guide.iter().find(|end| end.radius <= 0.0) {
+        let rule = format!(
+            "must leave a guide: its smaller end would have a radius of {} m",
+            end.radius
+        );
+        let value = plate_thickness;
+        return Err(ScenarioError::new(
+            "robot.track.plate_thickness",
+            value,
+            rule,
+        ));
+    }
+    let pins = ends(outline.grouser_height + 0.5 * plate_thickness);
+    let Some(path) = ShoeLoop::new(pins, count) else {
+        let rule = "must be enough that a shoe is shorter than the distance of the axles";
+        let value = count as f64;
+        return Err(ScenarioError::new("robot.track.shoe_count", value, rule));
+    };
+    let pre_tension = 0.05 * robot.mass * 9.81;
+    let stiffness = pre_tension / (0.1 * path.pitch);
+    let tensioner = Tensioner {
+        pre_tension,
+        stiffness,
+        damping: 2.0 * (stiffness * robot.track_mass).sqrt(),
+    };
+    let shoe_mass = robot.track_mass / count as f64;
+    let mut parts = Vec::new();
+    for shoe in 0..count {
+        let shapes = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
+        parts.extend(shapes.into_iter().map(|(kind, corners)| Part {
+            kind,
+            shape: Shape::Polygon { corners },
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            shoe: Some(shoe),
+        }));
+    }
+    parts.push(Part {
+        kind: BodyKind::Guide,
+        shape: Shape::Hull {
+            discs: guide.to_vec(),
+            grouser_height: plate_thickness + outline.grouser_height,
+        },
+        drive: None,
+        friction_limit: f64::INFINITY,
+        lane: 0,
+        shoe: None,
+    });
+    Ok(TrackModel {
+        parts,
+        drives: 1,
+        motors: 1,
+        pushes_chassis: false,
+        chains: vec![ChainOfShoes {
+            number: 0,
+            shoes: 0..count,
+            tensioner,
+            plate_thickness,
+            shoe_mass,
+            // A thin plate between its pins.
+            shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
+            hull: Envelope::new(&guide),
+            guide,
+            path,
+        }],
+    })
+}
+
+/// The convex pieces of a shoe in its own frame, counter-clockwise.
+fn shapes(
+    robot: &Robot,
+    shape: ShoeShape,
+    pitch: f64,
+    plate_thickness: f64,
+) -> Vec<(BodyKind, Vec<Vector>)> {
+    let (half, face) = (0.5 * pitch, 0.5 * plate_thickness);
+    let (height, tip) = (
+        robot.outline.grouser_height,
+        0.5 * robot.outline.grouser_thickness.min(pitch),
+    );
+    let corners = |points: &[(f64, f64)]| points.iter().map(|(x, y)| Vector::new(*x, *y)).collect();
+    let plate = corners(&[(-half, -face), (half, -face), (half, face), (-half, face)]);
+    if height == 0.0 {
+        return vec![(BodyKind::Shoe, plate)];
+    }
+    let top = face + height;
+    match shape {
+        ShoeShape::Rectangle => vec![
+            (BodyKind::Shoe, plate),
+            (
+                BodyKind::Grouser,
+                corners(&[(-tip, -face), (tip, -face), (tip, top), (-tip, top)]),
+            ),
+        ],
+        ShoeShape::Trapezoid => vec![(
+            BodyKind::Shoe,
+            corners(&[
+                (-half, -face),
+                (half, -face),
+                (half, face),
+                (tip, top),
+                (-tip, top),
+                (-half, face),
+            ]),
+        )],
+    }
+}
