@@ -55,6 +55,14 @@ VARIANTS = {
         ROBOT.with_track(c2d.GrouserBeltTrack(grouser_count=20)),
         c2d.terrains.gap(0.08, edge_radius=0.003),
     ),
+    "segmental-step": Scenario(
+        ROBOT.with_track(
+            c2d.SegmentalTrack(
+                shoe_count=30, shoe_shape="trapezoid", plate_thickness=0.002, pre_tension=4.0
+            )
+        ),
+        c2d.terrains.step(0.04),
+    ),
     "line-barrier": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
         c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),

@@ -289,6 +289,9 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_would_move_it() -> N
             "interlocked",
             "wheel 2 bears on it with 150 N, wheel 1 with 40 N, a grouser's flank against it",
         ),
+        # Shoes have no numbers that a reader could count.
+        ({"body_kind": [5, 5, 5]}, "undercut", "a shoe slides on it with 150 N, another with 40 N"),
+        ({"body_kind": [6, 4, 4]}, "undercut", "the guide slides on it with 150 N, a grouser with"),
         # A hundredth of the force is not worth a name.
         ({"normal_force": [150.0, 1.0, 60.0]}, "straddled", "wheel 2 slides on it with 150 N;"),
     ],

@@ -226,11 +226,22 @@ def test_the_data_set_has_units_and_provenance(run: c2d.Run) -> None:
     dataset = run.to_xarray()
     assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1}
     assert dataset["position"].sel(axis="x").values == pytest.approx(run.position[:, 0])
-    assert {name: dataset[name].attrs["units"] for name in UNITS} == UNITS
+    assert {name: dataset[name].attrs["units"] for name in dataset} == {
+        name: unit for name, unit in UNITS.items() if name not in ("time", "shoe_poses")
+    }
     assert dataset.attrs["outcome"] == "cleared"
     assert Scenario.from_json(dataset.attrs["scenario"]) == run.scenario
     assert dataset.attrs["identity"] == run.scenario.identity
     assert dataset.attrs["build_version"] == c2d.__version__
+
+
+def test_the_data_set_of_a_chain_has_its_shoes() -> None:
+    robot = c2d.robots.engineer(track=c2d.SegmentalTrack())
+    run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=0.5))
+    dataset = run.to_xarray()
+    assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1, "shoe": 22, "pose": 3}
+    assert dataset["shoe_poses"].sel(pose="x").values == pytest.approx(run.shoe_poses[:, :, 0])
+    assert dataset["track_tension"].values == pytest.approx(run.track_tension)
 
 
 def test_a_missing_package_names_its_extra(run: c2d.Run, monkeypatch: pytest.MonkeyPatch) -> None:

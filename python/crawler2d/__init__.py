@@ -41,6 +41,7 @@ from crawler2d.track import (
     HybridWheels,
     LineOfWheels,
     RoundWheel,
+    SegmentalTrack,
 )
 
 __all__ = [
@@ -65,6 +66,7 @@ __all__ = [
     "Run",
     "Scenario",
     "ScenarioError",
+    "SegmentalTrack",
     "SeizureCriteria",
     "Simulation",
     "SimulationDiverged",

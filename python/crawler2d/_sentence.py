@@ -13,8 +13,15 @@ if TYPE_CHECKING:
 
 __all__ = ["sentence"]
 
-_BELT, _BELLY, _GROUSER = 1, 3, 4
-_NAMES = {_BELT: "the belt", 2: "the skid", _BELLY: "the belly", _GROUSER: "a grouser"}
+_BELT, _BELLY, _GROUSER, _SHOE, _GUIDE = 1, 3, 4, 5, 6
+_NAMES = {
+    _BELT: "the belt",
+    2: "the skid",
+    _BELLY: "the belly",
+    _GROUSER: "a grouser",
+    _SHOE: "a shoe",
+    _GUIDE: "the guide",
+}
 """What a reader calls the bodies that are no wheels, by their code in `body_kind`."""
 _LEAST_SHARE = 0.02
 """Smaller shares are noise to a reader."""
@@ -53,6 +60,8 @@ def _inside(d: Diagnosis) -> str:
     has_grousers = piece.depth - piece.root_depth > _LEAST_DEPTH
     if rear != front:
         where = f"between wheels {rear} and {front}"
+    elif _is_chain(d):
+        where = "between two shoes"
     elif has_grousers:
         where = f"between two grousers of wheel {rear}"
     else:
@@ -81,6 +90,8 @@ def _on_it(d: Diagnosis) -> str:
     told = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
     told = [body for body in told if forces[body] >= _LEAST_SHARE * sum(forces.values())]
     names = [_name(d, body) for body in told]
+    if len(names) == 2 and names[0] == names[1]:
+        names[1] = "another"
     does = ["slide" if sliding[body] > 0.5 * forces[body] else "bear" for body in told]
     with_force = [f"with {forces[body]:.0f} N" for body in told]
     if not told:
@@ -96,6 +107,13 @@ def _on_it(d: Diagnosis) -> str:
 def _name(d: Diagnosis, body: int) -> str:
     kinds = d.contacts["body_kind"][d.contacts["body"] == body]
     return _NAMES.get(int(kinds[0]) if len(kinds) else 0, f"wheel {body}")
+
+
+def _is_chain(d: Diagnosis) -> bool:
+    """Tell shoes from other bodies by what bears: nothing gets inside a belt with grousers."""
+    kinds = d.contacts["body_kind"]
+    told = (_SHOE, _GUIDE) if d.intrusion is None else (_GROUSER, _SHOE, _GUIDE)
+    return bool(np.isin(kinds, told).any())
 
 
 def _belly(d: Diagnosis) -> str:
@@ -153,7 +171,8 @@ def _moved_by(d: Diagnosis) -> str:
 
 
 def _belt(d: Diagnosis) -> str:
-    if d.counterfactual is None or np.isin(d.contacts["body_kind"], (_BELT, _GROUSER)).any():
+    is_belt = np.isin(d.contacts["body_kind"], (_BELT, _GROUSER)).any() and not _is_chain(d)
+    if d.counterfactual is None or is_belt:
         return ""
     if d.counterfactual.freed:
         return "a closed belt gets away"

@@ -18,8 +18,10 @@ __all__ = [
     "extent",
     "grousers",
     "inset",
+    "pins",
     "placed",
     "seen_lanes",
+    "shoes",
     "turned",
 ]
 
@@ -94,6 +96,28 @@ def grousers(geometry: dict[str, Any], run: float) -> list[NDArray[np.float64]]:
         place = line[side] + (way - ways[side]) * along
         outlines.append(closed(place - corners[:, :1] * along + corners[:, 1:] * outward))
     return outlines
+
+
+def shoes(run: Run, geometry: dict[str, Any], sample: int) -> list[NDArray[np.float64]]:
+    """[m] Outlines of the pieces of the shoes of the near track where they are at a sample."""
+    outlines = []
+    for shoe, corners in geometry["shoes"]:
+        x, y, angle = run.shoe_poses[sample, shoe]
+        outlines.append(closed(corners @ _rotation(angle).T + (x, y)))
+    return outlines
+
+
+def pins(run: Run, geometry: dict[str, Any]) -> NDArray[np.float64]:
+    """[m] Rear pins of the n shoes of the near track at each of k samples, shape (k, n, 2).
+
+    The front pin of a shoe is the rear pin of the next one; of the last, that of the first.
+    """
+    near = sorted({shoe for shoe, _ in geometry["shoes"]})
+    # Plates reach from pin to pin.
+    half = max((corners[:, 0].max() for _, corners in geometry["shoes"]), default=0.0)
+    x, y, angle = np.moveaxis(run.shoe_poses[:, near], 2, 0)
+    there: NDArray[np.float64] = np.stack([x - half * np.cos(angle), y - half * np.sin(angle)], 2)
+    return there
 
 
 def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:

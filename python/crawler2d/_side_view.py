@@ -17,6 +17,7 @@ from crawler2d._shapes import (
     inset,
     placed,
     seen_lanes,
+    shoes,
     turned,
 )
 
@@ -30,7 +31,7 @@ __all__ = ["side_view"]
 
 # Okabe and Ito's palette: told apart by colour-blind readers.
 _BLACK, _BLUE, _RED, _GREEN = "#222222", "#0072B2", "#D55E00", "#009E73"
-_GROUND, _PURPLE = "#D9D2C5", "#A3327B"
+_GROUND, _PURPLE, _GUIDE = "#D9D2C5", "#A3327B", "#AAAAAA"
 
 # A contact force as large as the weight is drawn as long as this share of the axle distance, and a
 # larger one of a robot that wedges itself in no longer.
@@ -116,15 +117,34 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
         for gear in geometry["gears"]:
             draw(turned(gear, run.drive_positions[sample]), _BLACK)
     elif geometry["hull"]:
-        draw(closed(geometry["root_envelope"]), _BLACK)
+        # What shoes slide on is no more than a hint behind them.
+        draw(closed(geometry["root_envelope"]), _GUIDE if geometry["shoes"] else _BLACK)
         run_so_far = run.drive_positions[sample, int(geometry["drives"][0])]
         for outline in grousers(geometry, float(run_so_far)):
             draw(outline, _BLACK)
+        _draw_shoes(run, geometry, sample, ax, alpha=alpha)
     else:
         for x, y, radius in geometry["circles"]:
             draw(circle(x, y, radius), _BLACK)
     center = placed(run, sample, np.array([run.scenario.robot.center_of_mass]))
     ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
+
+
+def _draw_shoes(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
+    """Fill the shoes; a chain has hundreds of them in all poses, and one artist a pose is fast."""
+    outlines = shoes(run, geometry, sample)
+    if not outlines:
+        return
+    collections = extra("matplotlib.collections", "plot")
+    ax.add_collection(
+        collections.PolyCollection(
+            outlines,
+            facecolor=(_BLACK, 0.5 * alpha),
+            edgecolor=(_BLACK, alpha),
+            linewidth=0.6,
+            zorder=2,
+        )
+    )
 
 
 def _draw_contacts(run: Run, sample: int, ax: Axes) -> None:

@@ -9,7 +9,7 @@ _FIELDS_BY_UNIT = {
         "approach axle_distance barrier_height barrier_thickness base_thickness belly"
         " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
         " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
-        " points post prediction_distance"
+        " plate_thickness points post prediction_distance"
         " radius rear_radius rise run stationary_distance thickness tip_thickness track_phase"
         " wheel_radius width"
     ),
@@ -19,12 +19,13 @@ _FIELDS_BY_UNIT = {
     "kg m^2": "moment_of_inertia",
     "m/s": "max_push_speed max_speed speed",
     "m/s^2": "gravity max_acceleration max_deceleration",
+    "N": "pre_tension",
     "N m": "max_torque",
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
         " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
-        " skid_friction"
+        " shoe_count skid_friction"
         " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
         " wheel_count"
     ),
@@ -54,5 +55,8 @@ METRICS = {
     "intrusion_depth": "m",
     "intrusion_root_depth": "m",
     "intrusion_force": "N",
+    "max_track_tension": "N",
+    "max_pin_gap": "m",
+    "max_guide_penetration": "m",
 }
 """Unit of every metric of a run."""

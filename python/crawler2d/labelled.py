@@ -29,15 +29,18 @@ UNITS = {
     "drive_speeds": "m/s",
     "drive_positions": "m",
     "drive_forces": "N",
+    "track_tension": "N",
+    "shoe_poses": "m, m, rad",
 }
 """Unit of every array of a run."""
 
-_SECOND_DIMENSION = {
-    "position": "axis",
-    "velocity": "axis",
-    "drive_speeds": "drive",
-    "drive_positions": "drive",
-    "drive_forces": "drive",
+_DIMENSIONS = {
+    "position": ("axis",),
+    "velocity": ("axis",),
+    "drive_speeds": ("drive",),
+    "drive_positions": ("drive",),
+    "drive_forces": ("drive",),
+    "shoe_poses": ("shoe", "pose"),
 }
 
 
@@ -46,17 +49,19 @@ def to_dataset(run: Run) -> xarray.Dataset:
     xr = extra("xarray", "analysis")
     variables = {}
     for name, unit in UNITS.items():
-        if name == "time":
+        values = getattr(run, name)
+        if name == "time" or not values.size:  # a track without shoes has no poses of shoes
             continue
-        second = _SECOND_DIMENSION.get(name)
-        dimensions = ("time",) if second is None else ("time", second)
+        dimensions = ("time", *_DIMENSIONS.get(name, ()))
         attributes = {"units": unit, "long_name": name.replace("_", " ")}
-        variables[name] = (dimensions, getattr(run, name).copy(), attributes)
+        variables[name] = (dimensions, values.copy(), attributes)
+    labels = {"axis": ["x", "y"], "pose": ["x", "y", "angle"]}
+    used = {dimension for dimensions, *_ in variables.values() for dimension in dimensions}
     dataset: xarray.Dataset = xr.Dataset(
         variables,
         coords={
             "time": ("time", run.time.copy(), {"units": "s", "long_name": "time"}),
-            "axis": ["x", "y"],
+            **{name: label for name, label in labels.items() if name in used},
         },
         attrs={
             "outcome": str(run.outcome),

@@ -82,6 +82,9 @@ class Run:
                                     the end, below the circumscribed circles; 0 if there is none
     `intrusion_root_depth`   m      the same below the root circles
     `intrusion_force`        N      its mean normal force
+    `max_track_tension`      N      largest force in a pin of a chain of shoes; 0 without one
+    `max_pin_gap`            m      farthest that a pin was off
+    `max_guide_penetration`  m      deepest overlap of a shoe with the guide
     =======================  =====  ===============================================================
 
     The track distance exceeds the path length by the slip; on gear wheels also because these roll
@@ -207,6 +210,19 @@ class Run:
     def drive_forces(self) -> NDArray[np.float64]:
         """[N] Force of the motor of each drive, 0 for free wheels, interval means, shape (n, k)."""
         return self._recorded("drive_forces")
+
+    @property
+    def track_tension(self) -> NDArray[np.float64]:
+        """[N] Largest force in a pin of a chain of shoes, 0 for other tracks, shape (n,)."""
+        return self._recorded("track_tension")
+
+    @property
+    def shoe_poses(self) -> NDArray[np.float64]:
+        """[m, m, rad] Middle x, y and direction of travel of each of s shoes, shape (n, s, 3).
+
+        The origin of a shoe lies halfway between its pins; s is 0 for other tracks.
+        """
+        return self._recorded("shoe_poses")
 
     @property
     def contacts(self) -> Table:

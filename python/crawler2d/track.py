@@ -16,6 +16,7 @@ __all__ = [
     "HybridWheels",
     "LineOfWheels",
     "RoundWheel",
+    "SegmentalTrack",
     "Track",
     "Wheel",
 ]
@@ -203,6 +204,53 @@ class GrouserBeltTrack(Parameters):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SegmentalTrack(Parameters):
+    """A chain of rigid shoes linked by pins, on a guide of the chassis (section 2.3, Figs. 9, 10).
+
+    Every shoe is a body. The outer faces of the plates run along the roots of the outline, the pins
+    in the middle of the plates, so that the robot stands as high as the built one. The plates slide
+    on the guide without friction; its front end sits on a spring and a damper, the tensioner, which
+    takes up what the polygon of the shoes needs more or less as it runs. The drive pulls on the
+    shoes round the rear end, with the same forces back on the chassis: a sprocket without teeth,
+    which counts its shoes. Grousers are those of `robot.outline`, with a `grouser_height` of 0
+    there are none.
+
+    A run has the forces and gaps of the pins (`Run.track_tension`, `max_track_tension`,
+    `max_pin_gap`), the places of its shoes (`Run.shoe_poses`), and may end as *detracked*.
+
+    Parameters
+    ----------
+    shoe_count : int, optional
+        Shoes of one chain, 3 to 400; None takes the whole number that comes nearest to the
+        outline's `grouser_pitch`: 22 for the Engineer. A shoe may be half as long as the distance
+        of the axles.
+    shoe_shape : {"rectangle", "trapezoid"}
+        A flat plate with a grouser on its middle, or one body that tapers from the pins to the tip.
+    plate_thickness : float, optional
+        [m] Thickness of the plates. None takes a sixteenth of the pitch, our assumption.
+    pre_tension : float, optional
+        [N] Force of the tensioner of one track. None takes a fortieth of the robot's weight, our
+        assumption: much more lifts the robot over the corners of the polygon.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(track=c2d.SegmentalTrack(shoe_count=36))
+    >>> run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=1.0))
+    >>> run.metrics["max_pin_gap"] < 1e-4
+    True
+    """
+
+    kind: ClassVar[str] = "segmental"
+    place: ClassVar[str] = "robot.track"
+
+    shoe_count: int | None = None
+    shoe_shape: Literal["rectangle", "trapezoid"] = "rectangle"
+    plate_thickness: float | None = None
+    pre_tension: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ForceTrack(Parameters):
     """No moving surface: the drive pushes the chassis along its axis at axle height.
 
@@ -229,6 +277,12 @@ class ForceTrack(Parameters):
 
 
 Track = (
-    LineOfWheels | CircumferentialWheels | HybridWheels | BeltTrack | GrouserBeltTrack | ForceTrack
+    LineOfWheels
+    | CircumferentialWheels
+    | HybridWheels
+    | BeltTrack
+    | GrouserBeltTrack
+    | SegmentalTrack
+    | ForceTrack
 )
 """Every track model."""

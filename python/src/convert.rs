@@ -78,7 +78,7 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let why = run.diagnosis.as_ref();
     result.set_item("diagnosis", why.map(|d| diagnosis::of(py, d)).transpose()?)?;
     result.set_item("metrics", metrics)?;
-    result.set_item("trace", trace(py, run.trace, run.drives)?)?;
+    result.set_item("trace", trace(py, run.trace, (run.drives, run.shoes))?)?;
     result.set_item("contacts", contacts(py, run.contacts)?)?;
     result.set_item("edges", edges(py, &run.edges)?)?;
     result.set_item("events", events(py, &run.events)?)?;
@@ -167,7 +167,11 @@ pub(crate) fn failure<'py>(
     Ok(result)
 }
 
-fn trace(py: Python<'_>, trace: Trace, drives: usize) -> PyResult<Bound<'_, PyDict>> {
+fn trace(
+    py: Python<'_>,
+    trace: Trace,
+    (drives, shoes): (usize, usize),
+) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
     let n = trace.time.len();
     if n == 0 {
@@ -198,6 +202,11 @@ fn trace(py: Python<'_>, trace: Trace, drives: usize) -> PyResult<Bound<'_, PyDi
     columns.set_item(
         "drive_forces",
         trace.drive_forces.into_pyarray(py).reshape([n, drives])?,
+    )?;
+    columns.set_item("track_tension", trace.track_tension.into_pyarray(py))?;
+    columns.set_item(
+        "shoe_poses",
+        trace.shoe_poses.into_pyarray(py).reshape([n, shoes, 3])?,
     )?;
     Ok(columns)
 }
@@ -256,6 +265,7 @@ pub(crate) fn geometry<'py>(
     let mut hull = false;
     let gears = PyList::empty(py);
     let grousers = PyList::empty(py);
+    let shoes = PyList::empty(py);
     let shown = |part: &&Part| part.lane == near || part.kind == BodyKind::Belly;
     for (body, part) in model.parts.iter().enumerate().filter(|(_, p)| shown(p)) {
         let before = circles.len();
@@ -283,6 +293,10 @@ pub(crate) fn geometry<'py>(
                 let corners: Vec<[f64; 2]> = grouser.corners().iter().map(|p| [p.x, p.y]).collect();
                 grousers.append(rows(py, &corners))?;
             }
+            Shape::Polygon { corners } if part.shoe.is_some() => {
+                let corners: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
+                shoes.append((part.shoe, rows(py, &corners)))?;
+            }
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }
         // What no drive moves follows the first.
@@ -303,6 +317,7 @@ pub(crate) fn geometry<'py>(
     result.set_item("hull", hull)?;
     result.set_item("gears", gears)?;
     result.set_item("grousers", grousers)?;
+    result.set_item("shoes", shoes)?;
     result.set_item("wheels", wheels(py, model)?)?;
     result.set_item("belly", rows(py, &belly))?;
     let [envelope, root_envelope] = model.envelopes(BELT_TURN).map(|points| {

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 /// How a run ended; where several apply, the first of this list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
+    /// The chain of the track has left its guide.
+    Detracked,
     /// The chassis turned past its balance point.
     TippedOver,
     /// An end axle left the terrain.
@@ -31,6 +33,7 @@ impl Outcome {
     /// Name as in tables.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Detracked => "detracked",
             Self::TippedOver => "tipped_over",
             Self::LeftTerrain => "left_terrain",
             Self::Cleared => "cleared",

@@ -73,11 +73,11 @@ pub struct Tensioner {
 }
 
 impl ChainOfShoes {
-    /// Speed of the chain over that of the shoes' pin lines round the driving end: a turn moves it by as many
-    /// pitches as it takes shoes to go round.
-    pub(crate) fn drive_ratio(&self) -> f64 {
-        let half = 0.5 * self.path.pitch / (self.guide[0].radius + 0.5 * self.plate_thickness);
-        half / libm::atan(half)
+    /// [m] Radius at which the drive pulls: a turn moves the chain by as many pitches as it takes shoes to go
+    /// round.
+    pub(crate) fn drive_radius(&self) -> f64 {
+        let half = 0.5 * self.path.pitch;
+        half / libm::atan(half / (self.guide[0].radius + 0.5 * self.plate_thickness))
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Run {
     pub events: Vec<Event>,
     /// Number of drives.
     pub drives: usize,
+    /// Number of shoes of all chains.
+    pub shoes: usize,
     /// [s] Computing time; kept apart from the metrics, which repeat bit by bit.
     pub wall_time: f64,
 }
@@ -79,11 +81,17 @@ pub struct Metrics {
     pub intrusion_root_depth: f64,
     /// [N] Its mean normal force.
     pub intrusion_force: f64,
+    /// [N] Largest force in a pin of a chain; 0 without chains.
+    pub max_track_tension: f64,
+    /// [m] Largest gap of a pin.
+    pub max_pin_gap: f64,
+    /// [m] Deepest penetration of a chain's guide by a shoe.
+    pub max_guide_penetration: f64,
 }
 
 impl Metrics {
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 20] {
+    pub fn entries(&self) -> [(&'static str, f64); 23] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -105,6 +113,9 @@ impl Metrics {
             ("intrusion_depth", self.intrusion_depth),
             ("intrusion_root_depth", self.intrusion_root_depth),
             ("intrusion_force", self.intrusion_force),
+            ("max_track_tension", self.max_track_tension),
+            ("max_pin_gap", self.max_pin_gap),
+            ("max_guide_penetration", self.max_guide_penetration),
         ]
     }
 }
@@ -245,6 +256,9 @@ fn advance(
         intrusion_depth: inside.map_or(0.0, |e| e.depth),
         intrusion_root_depth: inside.map_or(0.0, |e| e.root_depth),
         intrusion_force: inside.map_or(0.0, |e| e.force),
+        max_track_tension: seen.max_track_tension,
+        max_pin_gap: seen.max_pin_gap,
+        max_guide_penetration: seen.max_guide_penetration,
     };
     Ok(Run {
         outcome,
@@ -255,6 +269,7 @@ fn advance(
         edges: simulation.ground().edges(),
         events,
         drives: simulation.drives(),
+        shoes: simulation.shoes().len(),
         wall_time: begin.elapsed().as_secs_f64(),
     })
 }

@@ -65,6 +65,10 @@ pub struct Trace {
     pub drive_positions: Vec<f64>,
     /// [N] Force of each motor, mean over the interval.
     pub drive_forces: Vec<f64>,
+    /// [N] Largest force in a pin of a chain; 0 without chains.
+    pub track_tension: Vec<f64>,
+    /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
+    pub shoe_poses: Vec<f64>,
 }
 
 /// Contacts of all samples.
@@ -203,6 +207,11 @@ impl Recorder {
                 .push(simulation.drive_states()[k].position);
             t.drive_forces.push(*force / steps);
             *force = 0.0;
+        }
+        t.track_tension.push(simulation.chain().tension);
+        for shoe in simulation.shoes() {
+            t.shoe_poses
+                .extend([shoe.center.x, shoe.center.y, shoe.angle]);
         }
         self.traction = 0.0;
         self.contacts.append(simulation, &mut self.readings);

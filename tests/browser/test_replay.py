@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
@@ -23,6 +24,11 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "gear wheels": (ROBOT.with_track(GEARED), STEP),
     "belt": (ROBOT, STEP),
     "belt with grousers": (ROBOT.with_track(c2d.GrouserBeltTrack()), STEP),
+    "shoes": (ROBOT.with_track(c2d.SegmentalTrack()), c2d.terrains.step(0.05)),
+    "shoes on two lanes": (
+        ROBOT.with_track(c2d.SegmentalTrack(shoe_shape="trapezoid")),
+        c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03)),
+    ),
     "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
     "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
     "circumferential": (
@@ -41,6 +47,18 @@ PIXELS = """canvas => {
 COLOURS = f"canvas => new Set(({PIXELS})(canvas)).size"
 # Changes with any pixel.
 CHECKSUM = f"canvas => ({PIXELS})(canvas).reduce((sum, p) => (Math.imul(sum, 31) + p) | 0, 0)"
+# From now on, with which transform [a, b, c, d, e, f] each path of its own is filled.
+FILLS = """() => {
+    window.fills = [];
+    const fill = CanvasRenderingContext2D.prototype.fill;
+    CanvasRenderingContext2D.prototype.fill = function (path, ...rule) {
+        if (path instanceof Path2D) {
+            const { a, b, c, d, e, f } = this.getTransform();
+            window.fills.push([a, b, c, d, e, f]);
+        }
+        return path === undefined ? fill.call(this) : fill.call(this, path, ...rule);
+    };
+}"""
 # Two frames later everything asked for is drawn.
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
@@ -240,6 +258,30 @@ def test_keys_work_once_where_a_control_has_the_focus(open_page: Open, stopped: 
     assert page.get_attribute("#play", "aria-label") == "pause"
     page.keyboard.press("Space")
     assert page.get_attribute("#play", "aria-label") == "play"
+
+
+@pytest.mark.parametrize("name", ["shoes", "shoes on two lanes"])
+def test_the_shoes_of_the_page_lie_where_the_run_has_them(open_page: Open, name: str) -> None:
+    run = simulated(name)
+    sample = 170  # the front is on the step
+    page = open_page(run.to_html(time=run.time[sample - 1]))
+    page.evaluate(FILLS)
+    page.keyboard.press("ArrowRight")
+    page.evaluate(DRAWN)
+    fills = [np.array(fill).reshape(3, 2).T for fill in page.evaluate("window.fills")]
+    world, *others = fills  # the ground is in the frame of the world
+    poses = run.shoe_poses[sample, -22:]  # of two tracks the right one is in front
+    drawn = []
+    for fill in others:
+        turn = np.linalg.solve(world[:, :2], fill)
+        turn[:, 2] -= np.linalg.solve(world[:, :2], world[:, 2])
+        drawn.append(turn)
+    for x, y, angle in poses:
+        pose = np.array([[np.cos(angle), -np.sin(angle), x], [np.sin(angle), np.cos(angle), y]])
+        misses = [np.abs(pose - other) for other in drawn]
+        nearest = min(misses, key=lambda miss: float(miss.max()))
+        assert nearest[:, 2].max() < 1e-4  # [m]
+        assert nearest[:, :2].max() < 1e-3  # [rad]
 
 
 @pytest.mark.parametrize("layer", ["forces", "speeds", "envelope"])

@@ -15,6 +15,7 @@ from crawler2d.track import (
     HybridWheels,
     LineOfWheels,
     RoundWheel,
+    SegmentalTrack,
     Track,
 )
 
@@ -112,7 +113,7 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
     pairs = {}
     for name, model in models.items():
         track = model.track
-        if isinstance(track, (BeltTrack, GrouserBeltTrack, ForceTrack)):
+        if isinstance(track, (BeltTrack, GrouserBeltTrack, SegmentalTrack, ForceTrack)):
             continue
         if not isinstance(track.wheel, GearWheel):
             continue

@@ -21,8 +21,9 @@ class Recording {
     const { frames, contacts } = data;
     this.count = frames.count;
     this.drives = frames.drives;
+    this.shoes = frames.shoes;
     this.events = data.events;
-    for (const name of ["time", "x", "y", "angle", "speed", "commanded", "ways"]) {
+    for (const name of ["time", "x", "y", "angle", "speed", "commanded", "ways", "pins"]) {
       this[name] = unpacked(frames[name]);
     }
     this.contacts = {};
@@ -69,6 +70,8 @@ class Recording {
       time, frame,
       x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle), speed: mixed(this.speed),
       way: (drive) => mixed(this.ways, this.drives, drive),
+      // The rear pin of a shoe, in the chassis frame.
+      pin: (shoe) => [0, 1].map((axis) => mixed(this.pins, 2 * this.shoes, 2 * shoe + axis)),
     };
   }
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d._shapes import SLIVER, extent, inset, seen_lanes
+from crawler2d._shapes import SLIVER, extent, inset, pins, seen_lanes
 from crawler2d.viewer.packed import packed
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ MOST_FRAMES = 3000
 _LENGTH, _SHAPE, _ANGLE, _TIME = 1e-5, 5e-6, 1e-4, 1e-4
 _SPEED = 1e-4
 _WAY = 1e-4
+# From the chassis, so that 16 bits do for a robot of three metres.
+_PIN = 5e-5
 # The same for arrows, as a share of the usual size, which is drawn some 100 pixels long.
 _ARROW = 1e-2
 # Impacts last one sample; arrows as long as theirs would leave all others unreadable.
@@ -59,7 +61,7 @@ def recording(run: Run, time: float | None = None) -> dict[str, Any]:
         "every": every,
         "first": int(np.abs(run.time[kept] - time).argmin()),
         "extent": [_number(value) for value in bounds],
-        "frames": _frames(run, kept),
+        "frames": _frames(run, geometry, kept),
         "contacts": _contacts(run, kept),
         "events": _events(run),
         "ground": _ground(geometry),
@@ -67,10 +69,12 @@ def recording(run: Run, time: float | None = None) -> dict[str, Any]:
     }
 
 
-def _frames(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
+def _frames(run: Run, geometry: dict[str, Any], kept: NDArray[np.int64]) -> dict[str, Any]:
+    rear_pins = _on_chassis(run, pins(run, geometry))
     return {
         "count": int(kept.size),
         "drives": int(run.drive_positions.shape[1]),
+        "shoes": rear_pins.shape[1],
         "time": packed(run.time[kept], _TIME),
         "x": packed(run.position[kept, 0], _LENGTH),
         "y": packed(run.position[kept, 1], _LENGTH),
@@ -78,7 +82,23 @@ def _frames(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
         "speed": packed(run.track_speed[kept], _SPEED),
         "commanded": packed(run.commanded_speed[kept], _SPEED),
         "ways": packed(run.drive_positions[kept], _WAY),
+        "pins": packed(rear_pins[kept], _PIN),
     }
+
+
+def _on_chassis(run: Run, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """[m] Points at each of k samples, shape (k, n, 2), in the chassis frame."""
+    x, y = np.moveaxis(points - run.position[:, None], 2, 0)
+    cosine, sine = np.cos(run.chassis_angle)[:, None], np.sin(run.chassis_angle)[:, None]
+    return np.stack([cosine * x + sine * y, cosine * y - sine * x], 2)
+
+
+def _shoes(geometry: dict[str, Any]) -> list[list[dict[str, Any]]]:
+    """Convex pieces of each shoe of the near track, in the order of the pins."""
+    pieces: dict[int, list[dict[str, Any]]] = {}
+    for shoe, corners in geometry["shoes"]:
+        pieces.setdefault(shoe, []).append(packed(corners, _SHAPE))
+    return [pieces[shoe] for shoe in sorted(pieces)]
 
 
 def _contacts(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
@@ -178,6 +198,8 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
         "ends": wheels if hull else [],
         "moving": hull and robot.track.kind != "force",
         "grousers": [packed(corners, _SHAPE) for corners in geometry["grousers"]],
+        "shoes": _shoes(geometry),
+        "pin_radius": _pin_radius(geometry),
         "pitch": outline.grouser_pitch,
         "length": outline.axle_distance + outline.front_radius + outline.rear_radius,
         "axles": outline.axle_distance / 2.0,
@@ -187,6 +209,12 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
             for name, shape in shapes.items()
         },
     }
+
+
+def _pin_radius(geometry: dict[str, Any]) -> float:
+    """[m] Half of what would fill the plate, which is as thick inwards of its pins as outwards."""
+    inwards = [-corners[:, 1].min() for _, corners in geometry["shoes"]]
+    return 0.5 * float(max(inwards, default=0.0))
 
 
 def _number(value: float) -> float | None:

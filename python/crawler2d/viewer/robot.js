@@ -13,6 +13,11 @@ class Robot {
     }
     if (this.hull) this.marks = marksOf(this.hull.points, this.pitch);
     this.grousers = this.grousers.map((grouser) => outlineOf(unpacked(grouser)));
+    this.shoes = this.shoes.map((pieces) => {
+      const path = new Path2D();
+      for (const piece of pieces) path.addPath(outlineOf(unpacked(piece)));
+      return path;
+    });
   }
 
   // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
@@ -56,8 +61,8 @@ class Robot {
       ctx.restore();
     }
     const { length, at, spacing, count } = this.marks;
-    // Skids do not move, and so bear no marks.
-    for (let i = 0; this.moving && i < count; i++) {
+    // Skids do not move, and so bear no marks; shoes are marks enough.
+    for (let i = 0; this.moving && !this.shoes.length && i < count; i++) {
       const [x, y, nx, ny] = at(i * spacing - moment.way(this.ends[0].drive), length);
       const long = i % 6 === 0;
       const depth = (long ? 0.2 : 0.11) * this.ends[0].radius;
@@ -68,8 +73,9 @@ class Robot {
       ctx.lineTo(x + depth * nx, y + depth * ny);
       ctx.stroke();
     }
-    ctx.strokeStyle = colors.track;
-    ctx.lineWidth = 2 * pixel;
+    // What shoes slide on is no more than a hint behind them.
+    ctx.strokeStyle = this.shoes.length ? colors.chassis : colors.track;
+    ctx.lineWidth = (this.shoes.length ? 1 : 2) * pixel;
     ctx.stroke(this.hull.path);
     this.grousers.forEach((grouser, i) => {
       // They start at the rear end of the lower run, and the belt runs clockwise.
@@ -82,6 +88,30 @@ class Robot {
       ctx.fill(grouser);
       ctx.restore();
     });
+    this.drawShoes(ctx, colors, pixel, moment);
+  }
+
+  // Each between its rear pin and that of the next one.
+  drawShoes(ctx, colors, pixel, moment) {
+    const pins = this.shoes.map((_, i) => moment.pin(i));
+    this.shoes.forEach((shoe, i) => {
+      const [x, y] = pins[i];
+      const [nextX, nextY] = pins[(i + 1) % pins.length];
+      ctx.save();
+      ctx.translate((x + nextX) / 2, (y + nextY) / 2);
+      ctx.rotate(Math.atan2(nextY - y, nextX - x));
+      ctx.fillStyle = ctx.strokeStyle = colors.track;
+      ctx.lineWidth = 0.8 * pixel; // so that a thin plate is seen from afar
+      ctx.fill(shoe);
+      ctx.stroke(shoe);
+      ctx.restore();
+    });
+    ctx.fillStyle = colors.halo;
+    for (const [x, y] of pins) {
+      ctx.beginPath();
+      ctx.arc(x, y, Math.min(1.6 * pixel, this.pin_radius), 0, 2 * Math.PI);
+      ctx.fill();
+    }
   }
 
   drawMassCenter(ctx, colors, pixel) {

@@ -1,6 +1,7 @@
 //! What a robot's chains of shoes add to the equations of motion.
 
 use super::Dynamics;
+use super::chain::Chain;
 use super::row::{Link, Row};
 use super::solve::{Phase, Softness};
 use super::state::{State, Twist};
@@ -9,59 +10,63 @@ use rapier2d_f64::math::Vector;
 /// [m] A shoe this close to the guide may come to rest on it within a step.
 const NEAR_GUIDE: f64 = 2e-3;
 
-/// What a chain does at an instant.
+/// What the chains did in a step; the worst of all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChainReading {
-    /// [N] Largest force in a pin, the mean over the step.
+    /// [N] Largest force in a pin.
     pub tension: f64,
     /// [m] Largest gap of a pin.
     pub pin_gap: f64,
     /// [m] Deepest penetration of the guide by a shoe.
     pub guide_penetration: f64,
-    /// [m] How far the chain has run: its length for every turn of its shoes over the chassis.
-    pub travel: f64,
+    /// Whether a shoe has left the guide for good.
+    pub is_off: bool,
 }
 
 impl Dynamics {
-    /// The worst of all chains; none if there is none.
-    pub(crate) fn chain_reading(&self, state: &State) -> Option<ChainReading> {
+    /// What the chains did in the last step; nothing if there is none.
+    pub(crate) fn chain_reading(&self) -> ChainReading {
         let mut reading = ChainReading::default();
         for chain in &self.chains {
-            let shoes = &state.shoes[chain.rule.shoes.clone()];
-            let (tension, gap) = chain.worst_pin(state);
-            reading.tension = reading.tension.max(tension);
-            reading.pin_gap = reading.pin_gap.max(gap);
-            let pose = state.pose(&self.model);
-            let travel = state.idlers[chain.rule.number].travel;
-            chain.rests(
-                pose,
-                travel,
-                |i| shoes[i].pose(),
-                0.0,
-                |rest| {
-                    reading.guide_penetration = reading.guide_penetration.max(-rest.gap);
-                },
-            );
-            let turned: f64 = shoes.iter().map(|shoe| state.angle - shoe.angle).sum();
-            reading.travel +=
-                turned * chain.rule.path.pitch / (std::f64::consts::TAU * self.chains.len() as f64);
+            for (force, gap) in chain.pins() {
+                reading.tension = reading.tension.max(force);
+                reading.pin_gap = reading.pin_gap.max(gap);
+            }
+            reading.is_off |= chain.is_off;
         }
-        (!self.chains.is_empty()).then_some(reading)
+        let on_guide = |row: &&Row| matches!(row.link, Link::Guide { .. });
+        let gaps = self.rows.iter().filter(on_guide).map(|row| row.gap);
+        reading.guide_penetration = gaps.fold(0.0, |deepest, gap| deepest.max(-gap));
+        reading
+    }
+
+    /// [N s] Momentum of chassis and shoes.
+    pub(crate) fn momentum(&self, state: &State) -> Vector {
+        let of_chain = |chain: &Chain| {
+            let shoes = &state.shoes[chain.rule.shoes.clone()];
+            let velocities = shoes.iter().map(|shoe| shoe.twist.velocity);
+            velocities.sum::<Vector>() * chain.rule.shoe_mass
+        };
+        let of_shoes: Vector = self.chains.iter().map(of_chain).sum();
+        state.velocity * self.model.mass + of_shoes
     }
 
     /// Adds a row for each place where a shoe rests on the guide, or nearly, in the middle of the step.
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64) {
-        for chain in &self.chains {
+        let pose = state.pose_after(half, &self.model);
+        for chain in &mut self.chains {
             let first = chain.rule.shoes.start;
-            let pose = state.pose_after(half, &self.model);
             let place_of = |i: usize| state.shoes[first + i].after(half).pose();
             let idler = &state.idlers[chain.rule.number];
             let travel = idler.travel + idler.rate * half;
+            let number = chain.rule.number;
+            let memory = std::mem::take(&mut chain.memory);
             chain.rests(pose, travel, place_of, NEAR_GUIDE, |rest| {
-                let last = chain.memory[rest.shoe][rest.place];
-                let of = (first + rest.shoe, chain.rule.number);
+                let last = memory[rest.shoe][rest.place];
+                let of = (first + rest.shoe, number);
                 self.rows.push(Row::on_guide(&rest, last, state, of, half));
             });
+            chain.memory = memory;
         }
     }
 
@@ -133,12 +138,13 @@ impl Dynamics {
             velocity: Vector::new(0.0, -self.gravity) * h,
             turn: 0.0,
         };
+        let pose = state.pose(&self.model);
         for chain in &mut self.chains {
             let shoes = &state.shoes[chain.rule.shoes.clone()];
             for (free, shoe) in chain.free.iter_mut().zip(shoes) {
                 *free = shoe.twist.plus(kick, 1.0);
             }
-            chain.follow(state, h);
+            chain.follow(state, pose, h);
         }
     }
 

@@ -33,7 +33,7 @@ pub(crate) use motors::push_axis;
 use row::Row;
 pub(crate) use row::{Direction, Levers};
 use solve::{Phase, Push, Softness};
-pub(crate) use state::{DriveState, State, idlers_at_rest, shoes_at_rest};
+pub(crate) use state::{DriveState, Shoe, State, idlers_at_rest, shoes_at_rest};
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.

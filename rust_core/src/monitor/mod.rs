@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{LoadedContact, TrackEnvelope};
 use crate::diagnosis::{Signals, Stance};
-use crate::dynamics::DriveState;
+use crate::dynamics::{ChainReading, DriveState};
 use crate::events::{Event, IntrusionWatch};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
@@ -66,6 +66,12 @@ pub(crate) struct Seen {
     pub path_length: f64,
     /// How much the chassis shook so far.
     pub shaking: Shaking,
+    /// [N] Largest force in a pin of a chain so far.
+    pub max_track_tension: f64,
+    /// [m] Largest gap of a pin so far.
+    pub max_pin_gap: f64,
+    /// [m] Deepest penetration of a chain's guide by a shoe so far.
+    pub max_guide_penetration: f64,
 }
 
 impl Seen {
@@ -88,6 +94,9 @@ impl Seen {
             drive_work: 0.0,
             path_length: 0.0,
             shaking: Shaking::default(),
+            max_track_tension: 0.0,
+            max_pin_gap: 0.0,
+            max_guide_penetration: 0.0,
         }
     }
 }
@@ -163,6 +172,17 @@ impl Monitor {
             if !self.has_grousers {
                 self.watch_stationary(now, window, loaded);
             }
+        }
+    }
+
+    /// Takes in what the chains did in the same step.
+    pub(crate) fn observe_chains(&mut self, chains: ChainReading) {
+        let seen = &mut self.seen;
+        seen.max_track_tension = seen.max_track_tension.max(chains.tension);
+        seen.max_pin_gap = seen.max_pin_gap.max(chains.pin_gap);
+        seen.max_guide_penetration = seen.max_guide_penetration.max(chains.guide_penetration);
+        if chains.is_off {
+            seen.ended.get_or_insert(Outcome::Detracked);
         }
     }
 

@@ -155,17 +155,16 @@ mod tests {
             for k in 0..100 {
                 let run = 0.0123 * f64::from(k);
                 let places = chain.places(run);
-                let pin = |i: usize, side: f64| {
-                    places[i].transform_point(Vector::new(0.5 * side * chain.pitch, 0.0))
+                let pin = |place: &Pose, side: f64| {
+                    place.transform_point(Vector::new(0.5 * side * chain.pitch, 0.0))
                 };
-                for i in 0..count {
-                    let gap = pin(i, 1.0) - pin((i + 1) % count, -1.0);
+                for (i, place) in places.iter().enumerate() {
+                    let gap = pin(place, 1.0) - pin(&places[(i + 1) % count], -1.0);
                     assert!(gap.length() < 1e-9, "{count} shoes at {run}: {gap}");
                     let [rear_end, mut front_end] = ends(rear, front);
                     front_end.center.x += chain.travel(run);
                     for disc in [rear_end, front_end] {
-                        let spoke = disc.center - places[i].translation;
-                        let local = places[i].rotation.inverse() * spoke;
+                        let local = place.inverse_transform_point(disc.center);
                         if local.x.abs() < 0.5 * chain.pitch {
                             assert!(-local.y > disc.radius - 1e-9, "shoe {i} cuts an end");
                         }

@@ -12,6 +12,7 @@ const MAX_WHEELS: u32 = 200;
 /// Most shoes of a chain.
 const MAX_SHOES: u32 = 400;
 const PLATE: Range = Range::between(1e-4, 1.0, "m");
+const PRE_TENSION: Range = Range::between(1e-3, 1e6, "N");
 const RADIUS: Range = Range::between(1e-3, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
@@ -86,6 +87,8 @@ pub struct SegmentalTrack {
     pub shoe_shape: ShoeShape,
     /// [m] Thickness of the plates; none takes a sixteenth of the pitch.
     pub plate_thickness: Option<f64>,
+    /// [N] Force of the tensioner of one track; none takes a fortieth of the weight.
+    pub pre_tension: Option<f64>,
 }
 
 /// Form of a shoe in side view.
@@ -159,6 +162,7 @@ impl Track {
                     ],
                 )?,
                 plate_thickness: f.optional_number("plate_thickness", PLATE)?,
+                pre_tension: f.optional_number("pre_tension", PRE_TENSION)?,
             }),
             "force" => Self::Force(ForceTrack {
                 support: f.choice(

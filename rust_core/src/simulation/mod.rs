@@ -3,14 +3,14 @@
 mod branch;
 mod snapshot;
 
-use rapier2d_f64::math::{Pose, Vector};
+use rapier2d_f64::math::Vector;
 
 pub use branch::Counterfactual;
 
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, LoadedContact, Running};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
-use crate::dynamics::{ChainReading, DriveState, Dynamics, State};
+use crate::dynamics::{ChainReading, DriveState, Dynamics, Shoe, State};
 use crate::error::{Error, ScenarioError, SimulationError};
 use crate::events::Event;
 use crate::monitor::Monitor;
@@ -166,6 +166,9 @@ impl Simulation {
         let drives = self.state.drives.iter().copied().zip(speeds);
         self.monitor
             .observe(&reading, self.command, self.dynamics.loaded(), drives);
+        if !model.chains.is_empty() {
+            self.monitor.observe_chains(self.dynamics.chain_reading());
+        }
     }
 
     /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
@@ -300,14 +303,19 @@ impl Simulation {
         self.monitor.events(self.time())
     }
 
-    /// What the chains of shoes do now; none if there are none.
-    pub fn chain(&self) -> Option<ChainReading> {
-        self.dynamics.chain_reading(&self.state)
+    /// What the chains of shoes did in the last step; nothing if there are none.
+    pub fn chain(&self) -> ChainReading {
+        self.dynamics.chain_reading()
     }
 
-    /// Frames of the shoes: x along their travel, y outwards.
-    pub fn shoes(&self) -> impl Iterator<Item = Pose> + '_ {
-        self.state.shoes.iter().map(|shoe| shoe.pose())
+    /// [N s] Momentum of the whole robot.
+    pub fn momentum(&self) -> Vector {
+        self.dynamics.momentum(&self.state)
+    }
+
+    /// The shoes of all chains.
+    pub(crate) fn shoes(&self) -> &[Shoe] {
+        &self.state.shoes
     }
 
     /// Number of drives.
@@ -318,6 +326,11 @@ impl Simulation {
     /// [m/s] Surface speed of one drive.
     pub fn drive_speed(&self, drive: usize) -> f64 {
         self.state.track_speed(self.dynamics.model(), drive)
+    }
+
+    /// [N] Force of all motors at the surface, the mean over the last step.
+    pub fn drive_force(&self) -> f64 {
+        self.state.drives.iter().map(|drive| drive.force).sum()
     }
 
     pub(crate) fn drive_states(&self) -> &[DriveState] {

@@ -10,6 +10,11 @@ use crate::robot::{BodyKind, ChainOfShoes, Part, Shape, Tensioner};
 use crate::scenario::{Robot, SegmentalTrack, ShoeShape};
 use rapier2d_f64::math::Vector;
 
+/// [m/s^2] By which the default pre-tension is a share of the weight; that of the scenario may be none.
+const GRAVITY: f64 = 9.81;
+/// Pitches by which the tensioner moves from its pre-tension to none.
+const SOFTNESS: f64 = 0.1;
+
 /// Shoes on a guide.
 pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
     let outline = &robot.outline;
@@ -46,8 +51,9 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         let value = count as f64;
         return Err(ScenarioError::new("robot.track.shoe_count", value, rule));
     };
-    let pre_tension = 0.05 * robot.mass * 9.81;
-    let stiffness = pre_tension / (0.1 * path.pitch);
+    // Both tracks together.
+    let pre_tension = 2.0 * track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
+    let stiffness = pre_tension / (SOFTNESS * path.pitch);
     let tensioner = Tensioner {
         pre_tension,
         stiffness,

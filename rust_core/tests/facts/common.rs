@@ -2,7 +2,8 @@
 
 use crawler2d_core::{
     BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, GrouserBeltTrack,
-    HybridWheels, LineOfWheels, Record, Run, Scenario, Simulation, Terrain, Track, Wheel, simulate,
+    HybridWheels, LineOfWheels, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation,
+    Terrain, Track, Wheel, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -83,6 +84,16 @@ pub(crate) fn belt() -> Track {
 pub(crate) fn grouser_belt() -> Track {
     Track::GrouserBelt(GrouserBeltTrack {
         grouser_count: None,
+    })
+}
+
+/// A chain of so many shoes, or of as many as the outline's pitch asks for.
+pub(crate) fn segmental(shoe_count: Option<u32>) -> Track {
+    Track::Segmental(SegmentalTrack {
+        shoe_count,
+        shoe_shape: ShoeShape::Rectangle,
+        plate_thickness: None,
+        pre_tension: None,
     })
 }
 

@@ -25,7 +25,8 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
         0 => belt(),
         1 => force(),
         2 => force_on_wheels(),
-        8 | 9 => grouser_belt(),
+        8 => grouser_belt(),
+        9 => segmental(None),
         3 => Track::Circumferential(CircumferentialWheels {
             count: 3 + (draw.unit() * 30.0) as u32,
             wheel_radius: Some(draw.between(0.25, 0.9) * smallest),
@@ -173,7 +174,7 @@ pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
     r.track = drawn_track(draw, &r.outline);
     let driven = !matches!(
         r.track,
-        Track::Belt(_) | Track::GrouserBelt(_) | Track::Force(_)
+        Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_)
     );
     if driven && draw.unit() < 0.5 {
         r.drivetrain.torque_sharing = TorqueSharing::Wheel;

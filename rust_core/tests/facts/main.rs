@@ -24,6 +24,7 @@ mod judged;
 mod lanes;
 mod repeat;
 mod robustness;
+mod segmental;
 mod seizure;
 mod slopes;
 mod snapshots;

@@ -274,6 +274,7 @@ fn no_fall_is_so_fast_that_the_ground_is_missed() {
     for track in [
         belt(),
         grouser_belt(),
+        segmental(None),
         line(3),
         line_of(3, paper_gear()),
         circumferential(24, paper_gear()),

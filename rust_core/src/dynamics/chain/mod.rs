@@ -9,12 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use super::direct::{Damper, Grip};
 use super::row::Row;
-use super::state::{State, Twist};
+use super::state::{Shoe, State, Twist};
 use crate::robot::ChainOfShoes;
 use pin::Pin;
 use pull::{Grasp, Pull, PullImpulses};
 use system::ChainSystem;
 
+/// Pitches by which a chain that has jumped off its guide hangs off it at least.
+const FAR_OFF: f64 = 2.0;
 /// Places at which a shoe can rest on the guide: on either end of it, and with its front pin.
 pub(super) const RESTS: usize = 3;
 
@@ -24,6 +26,8 @@ pub(super) struct Chain {
     pins: Vec<Pin>,
     pull: Pull,
     system: ChainSystem,
+    /// Unit vectors along the shoes in this piece.
+    alongs: Vec<Vector>,
     /// What the shoes' rests did last.
     pub memory: Vec<[RestMemory; RESTS]>,
     /// Velocities as they are without constraints, and as they come out of a solve.
@@ -33,6 +37,8 @@ pub(super) struct Chain {
     pub idler_rate: f64,
     /// What holds the idler in this piece.
     idler: Damper,
+    /// Whether a shoe was too far off the guide to come back when they were last looked at.
+    pub is_off: bool,
 }
 
 /// What a rest's next solve starts from.
@@ -73,11 +79,13 @@ impl Chain {
             pins: vec![Pin::default(); count],
             pull: Pull::default(),
             system: ChainSystem::new(count),
+            alongs: Vec::with_capacity(count),
             memory: vec![Default::default(); count],
             free: vec![Twist::default(); count],
             solved: vec![Twist::default(); count],
             idler_rate: 0.0,
             idler: Damper::default(),
+            is_off: false,
             rule,
         }
     }
@@ -97,14 +105,23 @@ impl Chain {
     }
 
     /// Brings pins and drive to where the shoes are, the pins to close their gaps in `h` [s].
-    pub(super) fn follow(&mut self, state: &State, h: f64) {
+    pub(super) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let (pitch, masses) = (self.rule.path.pitch, self.masses());
+        self.alongs.clear();
+        self.alongs.extend(shoes.iter().map(Shoe::along));
         for (i, pin) in self.pins.iter_mut().enumerate() {
-            pin.follow(&shoes[i], &shoes[(i + 1) % shoes.len()], pitch);
+            let pair = [i, (i + 1) % shoes.len()];
+            pin.follow(
+                pair.map(|i| shoes[i].center),
+                pair.map(|i| self.alongs[i]),
+                pitch,
+            );
             pin.close(h, masses, pitch);
         }
-        self.pull.follow(&self.rule, shoes, state);
+        let axle = chassis.transform_point(self.rule.guide[0].center);
+        self.pull
+            .follow(&self.rule, (shoes, &self.alongs), state, axle);
         let tensioner = &self.rule.tensioner;
         let travel = state.idlers[self.rule.number].travel;
         let force = tensioner.pre_tension - tensioner.stiffness * travel;
@@ -126,7 +143,7 @@ impl Chain {
 
     /// Calls `found` for every place within `reach` [m] of the guide at which a shoe could rest.
     pub(super) fn rests(
-        &self,
+        &mut self,
         chassis: Pose,
         travel: f64,
         place_of: impl Fn(usize) -> Pose,
@@ -135,6 +152,8 @@ impl Chain {
     ) {
         let rule = &self.rule;
         let (half, below) = (0.5 * rule.path.pitch, 0.5 * rule.plate_thickness);
+        let deepest = -0.5 * rule.guide[0].radius.min(rule.guide[1].radius);
+        self.is_off = false;
         for i in 0..rule.path.count {
             let place = place_of(i);
             let on_chassis = chassis.inverse() * place;
@@ -155,6 +174,7 @@ impl Chain {
             }
             let corner = on_chassis.transform_point(Vector::new(half, -below));
             let gap = -rule.hull.depth(corner);
+            self.is_off |= gap < deepest || gap > FAR_OFF * rule.path.pitch;
             if gap < reach {
                 found(Rest {
                     shoe: i,
@@ -258,9 +278,9 @@ impl Chain {
 
     /// Keeps count of what the chain is behind the set-point, as long as the motor holds.
     pub(super) fn count(&mut self, state: &State, set_point: f64, holds: bool, h: f64) {
-        let behind = (set_point - self.speed(state)) * h;
-        let impulses = &mut self.pull.impulses;
-        impulses.behind = if holds { impulses.behind + behind } else { 0.0 };
+        if holds {
+            self.pull.impulses.behind += (set_point - self.speed(state)) * h;
+        }
     }
 
     /// The slope of the potential of shoes, pins and drive along the change `solved`, a share of it further on.
@@ -295,23 +315,10 @@ impl Chain {
         self.pull.impulses.impulse
     }
 
-    /// [N] The largest force in a pin, and [m] the largest gap of one.
-    pub(super) fn worst_pin(&self, state: &State) -> (f64, f64) {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let mut worst: (f64, f64) = (0.0, 0.0);
-        for (i, pin) in self.pins.iter().enumerate() {
-            let mut pin = *pin;
-            pin.follow(
-                &shoes[i],
-                &shoes[(i + 1) % shoes.len()],
-                self.rule.path.pitch,
-            );
-            worst = (
-                worst.0.max(pin.force.length()),
-                worst.1.max(pin.gap.length()),
-            );
-        }
-        worst
+    /// [N] Force in each pin, and [m] its gap.
+    pub(super) fn pins(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let reading = |pin: &Pin| (pin.force.length(), pin.gap.length());
+        self.pins.iter().map(reading)
     }
 
     pub(super) fn settle(&mut self) {

@@ -4,7 +4,7 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::direct::Damper;
-use crate::dynamics::state::{Shoe, Twist};
+use crate::dynamics::state::Twist;
 use crate::plane::left_of;
 
 /// Compliance of a pin's damper, in units of its admittance: pins are two bodies' only, and nothing else
@@ -33,10 +33,10 @@ pub(super) struct Pin {
 }
 
 impl Pin {
-    /// Takes its place between two shoes half of `pitch` [m] from both their centres.
-    pub(super) fn follow(&mut self, shoe: &Shoe, next: &Shoe, pitch: f64) {
-        self.arms = [shoe.along() * (0.5 * pitch), next.along() * (-0.5 * pitch)];
-        self.gap = next.center + self.arms[1] - shoe.center - self.arms[0];
+    /// Takes its place between two centres, half of `pitch` [m] along the shoes from both of them.
+    pub(super) fn follow(&mut self, centers: [Vector; 2], alongs: [Vector; 2], pitch: f64) {
+        self.arms = [alongs[0] * (0.5 * pitch), alongs[1] * (-0.5 * pitch)];
+        self.gap = centers[1] + self.arms[1] - centers[0] - self.arms[0];
     }
 
     /// Lets it close its gap within `h` [s].

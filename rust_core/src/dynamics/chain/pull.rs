@@ -4,11 +4,12 @@
 //! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
 //! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
 
+use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::direct::Damper;
 use crate::dynamics::state::{Shoe, State, Twist};
-use crate::plane::cross;
+use crate::plane::{cross, direction, left_of};
 use crate::robot::ChainOfShoes;
 
 /// Compliance of its damper, in units of its admittance.
@@ -51,32 +52,40 @@ pub(super) struct Grasp {
 }
 
 impl Pull {
-    /// Takes hold of the shoes that are round the driving end now.
-    pub(super) fn follow(&mut self, chain: &ChainOfShoes, shoes: &[Shoe], state: &State) {
+    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`.
+    pub(super) fn follow(
+        &mut self,
+        chain: &ChainOfShoes,
+        (shoes, alongs): (&[Shoe], &[Vector]),
+        state: &State,
+        axle: Vector,
+    ) {
         self.shoes.clear();
-        let forwards = crate::plane::direction(state.angle);
-        // Shoes count the more, the farther round the end they face: none begins or ends at once.
-        let share = |shoe: &Shoe| {
-            let backwards = -crate::plane::left_of(shoe.along()).dot(forwards);
-            backwards.max(0.0).powi(2)
-        };
-        let sum: f64 = shoes.iter().map(share).sum();
-        let scale = chain.drive_ratio() / sum;
-        let mut admittance = 0.0;
-        for (i, shoe) in shoes.iter().enumerate() {
-            let share = share(shoe) * scale;
+        let forwards = direction(state.angle);
+        let (mut torque, mut squares) = (0.0, 0.0);
+        for (i, (shoe, along)) in shoes.iter().zip(alongs).enumerate() {
+            // Shoes count the more, the farther round the end they face: none begins or ends at once.
+            let share = (-left_of(*along).dot(forwards)).max(0.0).powi(2);
             if share > 0.0 {
-                let along = shoe.along() * share;
+                let along = along * share;
+                // The torque counts: a shoe farther out is faster, and pulls the less for it.
+                torque += cross(along, shoe.center - axle);
+                squares += share * share;
                 let back = cross(shoe.center - state.center, along);
                 self.shoes.push(Grasp {
                     shoe: i,
                     on_shoe: [along.x, along.y, 0.0],
                     on_chassis: [-along.x, -along.y, -back],
                 });
-                admittance += share * share / chain.shoe_mass;
             }
         }
-        self.stiffness = 1.0 / (DAMPING * admittance.max(f64::MIN_POSITIVE));
+        let scale = chain.drive_radius() / torque;
+        for grasp in &mut self.shoes {
+            grasp.on_shoe = grasp.on_shoe.map(|entry| entry * scale);
+            grasp.on_chassis = grasp.on_chassis.map(|entry| entry * scale);
+        }
+        let admittance = scale * scale * squares / chain.shoe_mass;
+        self.stiffness = 1.0 / (DAMPING * admittance);
     }
 
     /// [m/s] Speed that the drive aims at.

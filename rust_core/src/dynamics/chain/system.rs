@@ -1,87 +1,75 @@
 //! The linear system of a chain of shoes, eliminated into that of the chassis.
 //!
 //! Each shoe has three rows and meets its two neighbours and the chassis only, so the elimination goes
-//! once round the chain. The last shoe closes it: like the chassis and the drive it is carried along as a
-//! border.
+//! once round the chain. The last shoe closes it: like the chassis, the drive and the idler it is carried
+//! along as a border.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::dynamics::direct::Damper;
 use crate::dynamics::state::Twist;
 
-/// Columns beside a shoe's own: those of the next shoe, ...
-const NEXT: usize = 0;
-/// ... of the one that closes the chain, ...
-const CLOSING: usize = 3;
-/// ... of the chassis, ...
-const CHASSIS: usize = 6;
-/// ... of drive and idler, and the right-hand side.
-const DRIVE: usize = 9;
-const IDLER: usize = 10;
-const RIGHT: usize = 11;
-const WIDTH: usize = 12;
-/// Rows of the border: those of the closing shoe, the chassis, drive and idler; so are its columns, and
-/// the right-hand side.
+/// Rows and columns of the border: three of the closing shoe, three of the chassis, ...
+const CLOSING: usize = 0;
+const CHASSIS: usize = 3;
+/// ... one of the drive, and one of the idler; then the right-hand side.
+const DRIVE: usize = 6;
+const IDLER: usize = 7;
 const BORDER: usize = 8;
-const OF_DRIVE: usize = 6;
-const OF_IDLER: usize = 7;
-const OF_RIGHT: usize = 8;
-
-type Block = [[f64; 3]; 3];
-type Wide = [[f64; WIDTH]; 3];
+const RIGHT: usize = 8;
+const WIDTH: usize = 9;
 
 /// What of the system belongs to one shoe.
 #[derive(Clone, Copy, Default)]
 struct Entry {
-    own: Block,
-    beside: Wide,
-    /// Rows of the chassis in the columns of the shoe, ...
-    below: Block,
-    /// ... of the drive and of the idler.
-    drive: [f64; 3],
-    idler: [f64; 3],
+    own: Matrix3<f64>,
+    /// Its rows in the columns of the next shoe; those of the next in its own are the transpose.
+    next: Matrix3<f64>,
+    /// Its rows in the columns of the border, and the right-hand side.
+    beside: SMatrix<f64, 3, WIDTH>,
+    /// Rows of the border in its columns.
+    below: SMatrix<f64, BORDER, 3>,
 }
 
 /// The system of one chain.
 pub(super) struct ChainSystem {
     shoes: Vec<Entry>,
-    /// Each shoe's row once its own columns are eliminated.
-    solved: Vec<Wide>,
-    border: [[f64; BORDER + 1]; BORDER],
+    /// Columns of the next shoe and of the border once those of a shoe itself are eliminated.
+    solved: Vec<(Matrix3<f64>, SMatrix<f64, 3, WIDTH>)>,
+    border: SMatrix<f64, BORDER, WIDTH>,
 }
 
 impl ChainSystem {
     pub(super) fn new(count: usize) -> Self {
         Self {
             shoes: vec![Entry::default(); count],
-            solved: vec![Wide::default(); count],
-            border: [[0.0; BORDER + 1]; BORDER],
+            solved: vec![Default::default(); count],
+            border: SMatrix::zeros(),
         }
     }
 
     /// Shoes of a mass and inertia that nothing acts on, with such velocities, and an idler on a damper.
     pub(super) fn start(&mut self, (mass, inertia): (f64, f64), free: &[Twist], idler: Damper) {
+        let masses = Vector3::new(mass, mass, inertia);
         for (shoe, twist) in self.shoes.iter_mut().zip(free) {
             *shoe = Entry::default();
-            let masses = [mass, mass, inertia];
-            for (i, v) in twist.entries().into_iter().enumerate() {
-                shoe.own[i][i] = masses[i];
-                shoe.beside[i][RIGHT] = masses[i] * v;
-            }
+            shoe.own.set_diagonal(&masses);
+            let momentum = masses.component_mul(&Vector3::from(twist.entries()));
+            shoe.beside.set_column(RIGHT, &momentum);
         }
-        self.border = [[0.0; BORDER + 1]; BORDER];
-        self.border[OF_DRIVE][OF_DRIVE] = 1.0;
-        self.border[OF_IDLER][OF_IDLER] = idler.stiffness;
-        self.border[OF_IDLER][OF_RIGHT] = idler.at(0.0);
+        self.border = SMatrix::zeros();
+        self.border[(DRIVE, DRIVE)] = 1.0;
+        self.border[(IDLER, IDLER)] = idler.stiffness;
+        self.border[(IDLER, RIGHT)] = idler.at(0.0);
     }
 
     /// Adds a constraint on one shoe: the impulse of a damper along `action` acts along `force`.
-    pub(super) fn add(&mut self, shoe: usize, [force, action]: [[f64; 3]; 2], damper: Damper) {
+    pub(super) fn add(&mut self, shoe: usize, rows: [[f64; 3]; 2], damper: Damper) {
         let entry = &mut self.shoes[shoe];
-        for i in 0..3 {
-            for j in 0..3 {
-                entry.own[i][j] += damper.stiffness * force[i] * action[j];
-            }
-            entry.beside[i][RIGHT] += force[i] * damper.at(0.0);
-        }
+        let [force, action] = rows.map(Vector3::from);
+        entry.own += force * action.transpose() * damper.stiffness;
+        let mut right = entry.beside.column_mut(RIGHT);
+        right += force * damper.at(0.0);
     }
 
     /// The same of a constraint that acts on chassis and idler, too; these are the first three and the last
@@ -94,53 +82,41 @@ impl ChainSystem {
         damper: Damper,
     ) {
         self.add(shoe, on_shoe, damper);
+        let [force, action] = on_shoe.map(Vector3::from);
+        let [back_force, back_action] = back.map(of_chassis_and_idler);
         let entry = &mut self.shoes[shoe];
-        let ([force, action], [back_force, back_action]) = (on_shoe, back);
-        let stiffness = damper.stiffness;
-        for i in 0..3 {
-            for j in 0..3 {
-                entry.beside[i][CHASSIS + j] += stiffness * force[i] * back_action[j];
-                entry.below[i][j] += stiffness * back_force[i] * action[j];
-            }
-            entry.beside[i][IDLER] += stiffness * force[i] * back_action[3];
-            entry.idler[i] += stiffness * back_force[3] * action[i];
-        }
-        const PLACES: [usize; 4] = [3, 4, 5, OF_IDLER];
-        for (i, force) in PLACES.into_iter().zip(back_force) {
-            for (j, action) in PLACES.into_iter().zip(back_action) {
-                self.border[i][j] += stiffness * force * action;
-            }
-            self.border[i][OF_RIGHT] += force * damper.at(0.0);
-        }
+        let mut beside = entry.beside.fixed_columns_mut::<BORDER>(0);
+        beside += force * back_action.transpose() * damper.stiffness;
+        entry.below += back_force * action.transpose() * damper.stiffness;
+        let mut border = self.border.fixed_columns_mut::<BORDER>(0);
+        border += back_force * back_action.transpose() * damper.stiffness;
+        let mut right = self.border.column_mut(RIGHT);
+        right += back_force * damper.at(0.0);
     }
 
     /// Adds a pin between a shoe and the next: one row `[of the shoe, of the next]` of its velocity.
     pub(super) fn add_pin(&mut self, shoe: usize, [a, b]: [[f64; 3]; 2], damper: Damper) {
-        let next = (shoe + 1) % self.shoes.len();
         self.add(shoe, [a, a], damper);
-        self.add(next, [b, b], damper);
-        let beside = &mut self.shoes[shoe].beside;
-        for i in 0..3 {
-            for j in 0..3 {
-                beside[i][NEXT + j] += damper.stiffness * a[i] * b[j];
-            }
-        }
+        self.add((shoe + 1) % self.shoes.len(), [b, b], damper);
+        let link = Vector3::from(a) * Vector3::from(b).transpose();
+        self.shoes[shoe].next += link * damper.stiffness;
     }
 
     /// Joins a shoe to the drive: how the drive's speed counts its velocity, and that of the chassis.
     pub(super) fn add_drive(&mut self, shoe: usize, on_shoe: [f64; 3], on_chassis: [f64; 3]) {
+        let entry = &mut self.shoes[shoe];
         for i in 0..3 {
-            self.shoes[shoe].beside[i][DRIVE] += on_shoe[i];
-            self.shoes[shoe].drive[i] += on_shoe[i];
-            self.border[3 + i][OF_DRIVE] += on_chassis[i];
-            self.border[OF_DRIVE][3 + i] += on_chassis[i];
+            entry.beside[(i, DRIVE)] += on_shoe[i];
+            entry.below[(DRIVE, i)] += on_shoe[i];
+            self.border[(CHASSIS + i, DRIVE)] += on_chassis[i];
+            self.border[(DRIVE, CHASSIS + i)] += on_chassis[i];
         }
     }
 
     /// The damper of the drive.
     pub(super) fn set_drive(&mut self, damper: Damper) {
-        self.border[OF_DRIVE][OF_DRIVE] = -1.0 / damper.stiffness;
-        self.border[OF_DRIVE][OF_RIGHT] = damper.at(0.0) / damper.stiffness;
+        self.border[(DRIVE, DRIVE)] = -1.0 / damper.stiffness;
+        self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.stiffness;
     }
 
     /// A constant impulse on a shoe and on the chassis.
@@ -152,8 +128,8 @@ impl ChainSystem {
         impulse: f64,
     ) {
         for i in 0..3 {
-            self.shoes[shoe].beside[i][RIGHT] += on_shoe[i] * impulse;
-            self.border[3 + i][OF_RIGHT] += on_chassis[i] * impulse;
+            self.shoes[shoe].beside[(i, RIGHT)] += on_shoe[i] * impulse;
+            self.border[(CHASSIS + i, RIGHT)] += on_chassis[i] * impulse;
         }
     }
 
@@ -162,157 +138,95 @@ impl ChainSystem {
     pub(super) fn eliminate(&mut self, chassis: &mut [[f64; 4]; 3]) -> Option<()> {
         let last = self.shoes.len() - 1;
         let closing = self.shoes[last];
-        // Rows of the border in the columns of the shoe.
-        let mut below = [[0.0; 3]; BORDER];
-        for i in 0..3 {
-            for j in 0..3 {
-                below[i][j] = closing.beside[i][NEXT + j];
-                self.shoes[0].beside[i][CLOSING + j] += closing.beside[j][NEXT + i];
-            }
-        }
+        let mut before = closing.next.transpose();
         for k in 0..last {
-            let Entry {
-                own,
-                mut beside,
-                below: of_chassis,
-                drive,
-                idler,
-            } = self.shoes[k];
-            for i in 0..3 {
-                for j in 0..3 {
-                    below[3 + i][j] += of_chassis[i][j];
-                }
-                below[OF_DRIVE][i] += drive[i];
-                below[OF_IDLER][i] += idler[i];
-            }
-            let link: Block = [0, 1, 2].map(|i| [0, 1, 2].map(|j| beside[i][NEXT + j]));
+            let mut entry = self.shoes[k];
+            // The closing shoe is the one before the first, and the one behind the last but one.
             if k + 1 == last {
-                for i in 0..3 {
-                    for j in 0..3 {
-                        beside[i][CLOSING + j] += link[i][j];
-                        below[i][j] += link[j][i];
-                    }
-                    beside[i][NEXT..NEXT + 3].fill(0.0);
-                }
+                before += std::mem::take(&mut entry.next);
             }
-            let solved = product(&inverse(&own)?, &beside);
-            for (row, share) in self.border.iter_mut().zip(&below) {
-                for (j, solved) in solved.iter().enumerate() {
-                    for (entry, x) in row.iter_mut().zip(&solved[CLOSING..]) {
-                        *entry -= share[j] * x;
-                    }
-                }
-            }
-            if k + 1 < last {
-                let next = &mut self.shoes[k + 1];
-                for i in 0..3 {
-                    for j in 0..3 {
-                        let share = link[j][i];
-                        for c in 0..3 {
-                            next.own[i][c] -= share * solved[j][NEXT + c];
-                        }
-                        for c in CLOSING..WIDTH {
-                            next.beside[i][c] -= share * solved[j][c];
-                        }
-                    }
-                }
-                for row in &mut below {
-                    let share = *row;
-                    for c in 0..3 {
-                        row[c] = -(0..3).map(|j| share[j] * solved[j][NEXT + c]).sum::<f64>();
-                    }
-                }
-            }
-            self.solved[k] = solved;
+            add_block(&mut entry.beside, 0, CLOSING, &before);
+            add_block(&mut entry.below, CLOSING, 0, &before.transpose());
+            before = Matrix3::zeros();
+            let inverse = entry.own.try_inverse()?;
+            let (next, beside) = (inverse * entry.next, inverse * entry.beside);
+            self.border.gemm(-1.0, &entry.below, &beside, 1.0);
+            let back = entry.next.transpose();
+            let behind = &mut self.shoes[k + 1];
+            behind.own.gemm(-1.0, &back, &next, 1.0);
+            behind.beside.gemm(-1.0, &back, &beside, 1.0);
+            behind.below.gemm(-1.0, &entry.below, &next, 1.0);
+            self.solved[k] = (next, beside);
         }
-        let closing = self.shoes[last];
-        for i in 0..3 {
-            for j in 0..3 {
-                self.border[i][j] += closing.own[i][j];
-                self.border[i][3 + j] += closing.beside[i][CHASSIS + j];
-                self.border[3 + i][j] += closing.below[i][j];
+        add_block(&mut self.border, CLOSING, CLOSING, &closing.own);
+        let mut rows = self.border.fixed_rows_mut::<3>(CLOSING);
+        rows += closing.beside;
+        let mut columns = self.border.fixed_columns_mut::<3>(CLOSING);
+        columns += closing.below;
+        self.solve_border()?;
+        for (i, row) in chassis.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let column = if j < 3 { CHASSIS + j } else { RIGHT };
+                *entry += self.border[(CHASSIS + i, column)];
             }
-            self.border[i][OF_DRIVE] += closing.beside[i][DRIVE];
-            self.border[i][OF_IDLER] += closing.beside[i][IDLER];
-            self.border[i][OF_RIGHT] += closing.beside[i][RIGHT];
-            self.border[OF_DRIVE][i] += closing.drive[i];
-            self.border[OF_IDLER][i] += closing.idler[i];
         }
-        // The closing shoe, the drive and the idler in terms of the chassis.
-        for pivot in [0, 1, 2, OF_IDLER, OF_DRIVE] {
-            let by = self.border[pivot][pivot];
+        Some(())
+    }
+
+    /// Brings the closing shoe, the drive and the idler into terms of the chassis.
+    fn solve_border(&mut self) -> Option<()> {
+        for pivot in [0, 1, 2, IDLER, DRIVE] {
+            let by = self.border[(pivot, pivot)];
             if by == 0.0 || !by.is_finite() {
                 return None;
             }
-            let row = self.border[pivot].map(|entry| entry / by);
-            self.border[pivot] = row;
-            for (i, other) in self.border.iter_mut().enumerate() {
-                if i != pivot {
-                    let share = other[pivot];
-                    for (entry, x) in other.iter_mut().zip(row) {
-                        *entry -= share * x;
-                    }
-                }
-            }
-        }
-        for (i, row) in chassis.iter_mut().enumerate() {
-            for (entry, x) in row.iter_mut().zip(&self.border[3 + i][3..6]) {
-                *entry += x;
-            }
-            row[3] += self.border[3 + i][OF_RIGHT];
+            let row = self.border.row(pivot) / by;
+            let mut column = self.border.column(pivot).into_owned();
+            column[pivot] = 0.0;
+            self.border.gemm(-1.0, &column, &row, 1.0);
+            self.border.set_row(pivot, &row);
         }
         Some(())
     }
 
     /// The velocities of the shoes with those of the chassis; returns that of the idler.
     pub(super) fn follow(&self, chassis: [f64; 3], shoes: &mut [Twist]) -> f64 {
-        let of_border = |i: usize| {
-            let row = &self.border[i];
-            row[OF_RIGHT] - (0..3).map(|j| row[3 + j] * chassis[j]).sum::<f64>()
-        };
-        let (drive, idler) = (of_border(OF_DRIVE), of_border(OF_IDLER));
-        let closing = [0, 1, 2].map(of_border);
+        let mut known = SVector::<f64, WIDTH>::zeros();
+        known.fixed_rows_mut::<3>(CHASSIS).copy_from_slice(&chassis);
+        known[RIGHT] = -1.0;
+        let of_border = -(self.border * known);
+        for i in [0, 1, 2, DRIVE, IDLER] {
+            known[i] = of_border[i];
+        }
         let last = shoes.len() - 1;
-        shoes[last] = Twist::from(closing);
-        let mut next = [0.0; 3];
+        let closing = known.fixed_rows::<3>(CLOSING).into_owned();
+        shoes[last] = Twist::from(<[f64; 3]>::from(closing));
+        let mut behind = Vector3::zeros();
         for k in (0..last).rev() {
-            let mut of_shoe = [0.0; 3];
-            for (v, row) in of_shoe.iter_mut().zip(&self.solved[k]) {
-                *v = row[RIGHT] - row[DRIVE] * drive - row[IDLER] * idler;
-                for j in 0..3 {
-                    *v -= row[NEXT + j] * next[j]
-                        + row[CLOSING + j] * closing[j]
-                        + row[CHASSIS + j] * chassis[j];
-                }
-            }
-            shoes[k] = Twist::from(of_shoe);
-            next = of_shoe;
+            let (next, beside) = &self.solved[k];
+            behind = -(beside * known + next * behind);
+            shoes[k] = Twist::from(<[f64; 3]>::from(behind));
         }
-        idler
+        known[IDLER]
     }
 }
 
-/// The inverse; none of a singular one.
-fn inverse(a: &Block) -> Option<Block> {
-    let minor = |i: usize, j: usize| {
-        let (r, c) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
-        a[r[0]][c[0]] * a[r[1]][c[1]] - a[r[0]][c[1]] * a[r[1]][c[0]]
-    };
-    let determinant: f64 = (0..3).map(|j| a[0][j] * minor(0, j)).sum();
-    if determinant == 0.0 || !determinant.is_finite() {
-        return None;
-    }
-    Some([0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(j, i) / determinant)))
+/// Entries of the border of what acts on chassis and idler.
+fn of_chassis_and_idler([x, y, turn, slide]: [f64; 4]) -> SVector<f64, BORDER> {
+    let mut entries = SVector::<f64, BORDER>::zeros();
+    entries
+        .fixed_rows_mut::<3>(CHASSIS)
+        .copy_from_slice(&[x, y, turn]);
+    entries[IDLER] = slide;
+    entries
 }
 
-fn product(a: &Block, b: &Wide) -> Wide {
-    let mut c = [[0.0; WIDTH]; 3];
-    for (row, shares) in c.iter_mut().zip(a) {
-        for (share, b) in shares.iter().zip(b) {
-            for (entry, x) in row.iter_mut().zip(b) {
-                *entry += share * x;
-            }
-        }
-    }
-    c
+fn add_block<const R: usize, const C: usize>(
+    to: &mut SMatrix<f64, R, C>,
+    row: usize,
+    column: usize,
+    block: &Matrix3<f64>,
+) {
+    let mut place = to.fixed_view_mut::<3, 3>(row, column);
+    place += block;
 }

@@ -1,0 +1,152 @@
+"""A chain of shoes in pictures and words: where its shoes lie, and what they are called."""
+
+import base64
+import json
+import re
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d import _core
+from crawler2d._shapes import shoes
+from crawler2d.track import Track
+
+mpl.use("Agg")
+from matplotlib import pyplot as plt
+from matplotlib.collections import PolyCollection
+
+GROUSER, SHOE = 4, 5
+STEP = c2d.terrains.step(0.06)
+LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
+RUNS: dict[str, tuple[c2d.SegmentalTrack, Any]] = {
+    "plates": (c2d.SegmentalTrack(), STEP),
+    "trapezoids": (c2d.SegmentalTrack(shoe_shape="trapezoid"), STEP),
+    "short shoes": (c2d.SegmentalTrack(shoe_count=44), STEP),
+    "two lanes": (c2d.SegmentalTrack(), LANES),
+}
+
+
+def simulated(track: Track, terrain: Any = STEP, **fields: Any) -> c2d.Run:
+    return c2d.simulate(c2d.robots.engineer(track=track), terrain, **fields)
+
+
+@pytest.fixture(scope="module", params=RUNS)
+def chain(request: pytest.FixtureRequest) -> c2d.Run:
+    return simulated(*RUNS[request.param])
+
+
+def drawn_shoes(ax: Any) -> list[Any]:
+    """[m] Outlines of the pieces of the shoes of the only pose that is drawn."""
+    (found,) = [c for c in ax.collections if type(c) is PolyCollection]
+    return [np.array(path.vertices) for path in found.get_paths()]
+
+
+def distance(point: Any, outline: Any) -> float:
+    """[m] Of a point from a closed line."""
+    a, way = outline[:-1], np.diff(outline, axis=0)
+    keep = np.hypot(*way.T) > 0.0  # a path ends twice
+    a, way = a[keep], way[keep]
+    share = np.sum((point - a) * way, axis=1) / np.sum(way * way, axis=1)
+    feet = a + np.clip(share, 0.0, 1.0)[:, None] * way
+    return float(np.hypot(*(feet - point).T).min())
+
+
+def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
+    table = chain.contacts
+    near = table["lane"].max()
+    # Of two tracks the right one is in front; behind the parts of each comes its guide.
+    pieces = len(_core.geometry(chain.scenario.to_json())["shoes"])
+    first = pieces + 1 if near else 0
+    distances = []
+    for sample in range(20, chain.time.size, 8):
+        _, ax = plt.subplots()
+        chain.plot(chain.time[sample], axes=ax)
+        outlines = drawn_shoes(ax)
+        plt.close("all")
+        assert len(outlines) == pieces
+        now = (table["time"] == chain.time[sample]) & (table["lane"] == near)
+        for row in np.flatnonzero(now & np.isin(table["body_kind"], (GROUSER, SHOE))):
+            point = np.array([table["x"][row], table["y"][row]])
+            distances.append(distance(point, outlines[table["body"][row] - first]))
+    assert len(distances) > 100
+    # Contacts are means over an interval, in which a shoe that is not at rest moves by millimetres.
+    assert np.quantile(distances, 0.85) < 1e-4
+    assert max(distances) < 4e-3
+
+
+def test_each_pose_has_its_shoes(chain: c2d.Run) -> None:
+    _, ax = plt.subplots()
+    chain.plot([0.0, 1.0, 2.0], axes=ax)
+    assert len([c for c in ax.collections if type(c) is PolyCollection]) == 3
+    plt.close("all")
+
+
+def unpacked(column: dict[str, Any]) -> Any:
+    """As `unpacked` of data.js."""
+    counts = np.frombuffer(base64.b64decode(column["data"]), f"<u{column['bits'] // 8}")
+    return column["start"] + column["step"] * counts.astype(float)
+
+
+def page_of(run: c2d.Run) -> Any:
+    found = re.search(r'id="recording"[^>]*>(.*?)</script>', run.to_html(), re.DOTALL)
+    assert found
+    return json.loads(found[1])
+
+
+def test_the_page_has_the_shoes_to_a_tenth_of_a_millimetre(chain: c2d.Run) -> None:
+    page = page_of(chain)
+    frames, robot = page["frames"], page["robot"]
+    pins = unpacked(frames["pins"]).reshape(frames["count"], frames["shoes"], 2)
+    ways = np.roll(pins, -1, axis=1) - pins
+    middles, angles = pins + 0.5 * ways, np.arctan2(ways[..., 1], ways[..., 0])
+    geometry = _core.geometry(chain.scenario.to_json())
+    for sample in range(0, frames["count"], 10):
+        turn = chain.chassis_angle[sample]
+        placed = [
+            (rotated(unpacked(piece).reshape(-1, 2), angle) + middle)
+            for pieces, middle, angle in zip(
+                robot["shoes"], middles[sample], angles[sample], strict=True
+            )
+            for piece in pieces
+        ]
+        for here, there in zip(placed, shoes(chain, geometry, sample), strict=True):
+            world = rotated(here, turn) + chain.position[sample]
+            assert np.abs(world - there[:-1]).max() < 1e-4
+
+
+def rotated(points: Any, angle: float) -> Any:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return points @ np.array([[cosine, sine], [-sine, cosine]])
+
+
+def test_other_tracks_have_no_shoes() -> None:
+    page = page_of(simulated(c2d.GrouserBeltTrack(), duration=0.5))
+    assert page["frames"]["shoes"] == 0
+    assert page["robot"]["shoes"] == []
+
+
+def test_fifteen_seconds_of_a_chain_take_less_than_500_kb() -> None:
+    run = simulated(c2d.SegmentalTrack(), c2d.terrains.step(0.1))
+    assert run.time.size == 1501
+    assert len(run.to_html().encode()) < 500_000
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "trapezoid"])
+def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
+    run = simulated(c2d.SegmentalTrack(shoe_shape=shape), c2d.terrains.step(0.1))
+    assert run.outcome == c2d.Outcome.STALLED
+    told = str(run.diagnosis)
+    assert "inside the envelope between two shoes, at x" in told
+    name = {"rectangle": "a grouser", "trapezoid": "a shoe"}[shape]
+    assert f"; {name} bears on it with" in told
+    assert "wheel" not in told
+
+
+def test_the_guide_is_called_by_its_name() -> None:
+    run = simulated(c2d.SegmentalTrack(), c2d.terrains.step(0.08))
+    assert re.search(
+        r"; a grouser bears on it with \d+ N, the guide with \d+ N", str(run.diagnosis)
+    )
