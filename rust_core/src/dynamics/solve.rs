@@ -13,6 +13,8 @@ use crate::robot::Model;
 pub(super) const AGREEMENT: f64 = 1e-7;
 /// Rounds of a chain at most: of the one solve in a hundred that two do not settle, more settle few.
 const ROUNDS_OF_CHAINS: u32 = 2;
+/// Compliance of a guide in units of the ground's: shoes are light, but the robot stands on them with it.
+const GUIDE_GIVES: f64 = 0.1;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -378,7 +380,10 @@ impl Row {
     /// Towards the end of the motion a gap may just close, softly; a penetration is pushed out.
     pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
         self.bears = true;
-        self.compliance = soft.compliance;
+        self.compliance = match self.link {
+            Link::Guide { .. } => GUIDE_GIVES * soft.compliance,
+            _ => soft.compliance,
+        };
         self.give = soft.compliance;
         self.center.1 = self.friction_guess * h;
         self.bias = if self.gap > 0.0 {

@@ -47,7 +47,10 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     }
     let pins = ends(outline.grouser_height + 0.5 * plate_thickness);
     let Some(path) = ShoeLoop::new(pins, count) else {
-        let rule = "must be enough that a shoe is shorter than the distance of the axles";
+        let rule = format!(
+            "must be enough that a shoe is at most half as long as the distance of the axles, {} m",
+            outline.axle_distance
+        );
         let value = count as f64;
         return Err(ScenarioError::new("robot.track.shoe_count", value, rule));
     };

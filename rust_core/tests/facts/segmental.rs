@@ -122,7 +122,7 @@ fn a_push_is_held_by_the_force_of_the_motors() {
     for count in COUNTS {
         let mut scenario = chained(count);
         scenario.terrain = slope(0.0, 0.9);
-        let (push, phases) = (60.0, 12);
+        let (push, phases) = (60.0, 24);
         let (mut sum, mut least, mut most) = (0.0, f64::INFINITY, 0.0_f64);
         for phase in 0..phases {
             let pitch = 1.056 / f64::from(count);
@@ -137,8 +137,8 @@ fn a_push_is_held_by_the_force_of_the_motors() {
         }
         let mean = sum / f64::from(phases);
         println!("{count} shoes: {mean:.4} of the motors' force, {least:.3} to {most:.3}");
-        // A dozen phases of long shoes, each with its own lever, do not settle the mean better.
-        assert!((mean - 1.0).abs() < if count < 36 { 0.05 } else { 0.01 });
+        // Levers scatter by 0.15 and 0.08 for 22 and 44 shoes: two standard errors.
+        assert!((mean - 1.0).abs() < if count < 36 { 0.06 } else { 0.03 });
     }
 }
 
@@ -150,49 +150,44 @@ struct Trial {
     commands: Vec<f64>,
 }
 
+/// Grounds that are long enough for a minute.
 fn trials(seed: u64) -> Vec<Trial> {
     let mut draw = Draw(seed);
-    let mut blocks = vec![[-3.0, 0.0], [0.0, 0.0]];
+    let mut blocks = vec![[0.0, 0.0]];
     for block in 0..20 {
         let height = draw.between(0.0, 0.06);
         blocks.extend([block, block + 1].map(|end| [0.2 * f64::from(end), height]));
     }
-    blocks.extend([[4.0, 0.0], [9.0, 0.0]]);
-    let points = |points: Vec<[f64; 2]>, goal| Terrain::Points {
-        points,
-        goal,
-        edge_radius: 0.0,
-        friction: 0.9,
-    };
-    let barrier = Terrain::Barrier {
-        height: 0.05,
-        thickness: 0.01,
-        edge_radius: 0.0,
-        friction: 0.9,
-    };
-    let ramp = Terrain::Ramp {
-        angle: 35_f64.to_radians(),
-        length: 1.0,
-        edge_radius: 0.0,
-        friction: 0.9,
-    };
-    let drop = points(vec![[-5.0, 0.2], [0.0, 0.2], [0.0, 0.0], [60.0, 0.0]], 59.0);
-    let trial = |name, terrain, commands: &[f64]| Trial {
-        name,
-        terrain,
-        commands: commands.to_vec(),
+    blocks.push([4.0, 0.0]);
+    let rising = |height: f64| vec![[0.0, 0.0], [0.0, height]];
+    let knife = vec![[0.0, 0.0], [0.0, 0.05], [0.01, 0.05], [0.01, 0.0]];
+    let ramp = vec![[0.0, 0.0], [1.0, 35_f64.to_radians().tan()]];
+    let trial = |name, corners: Vec<[f64; 2]>, commands: &[f64]| {
+        let (first, last) = (corners[0], corners[corners.len() - 1]);
+        let ends = [[-10.0, first[1]], [last[0] + 60.0, last[1]]];
+        let points = [&ends[..1], &corners, &ends[1..]].concat();
+        Trial {
+            name,
+            terrain: Terrain::Points {
+                points,
+                goal: last[0] + 59.0,
+                edge_radius: 0.0,
+                friction: 0.9,
+            },
+            commands: commands.to_vec(),
+        }
     };
     vec![
-        trial("flat", slope(0.0, 0.9), &[0.4]),
-        trial("step of 50 mm", step(0.05, 0.9), &[0.4]),
-        trial("step of 80 mm", step(0.08, 0.9), &[0.4]),
-        trial("step of 100 mm", step(0.10, 0.9), &[0.4]),
-        trial("knife edge", barrier, &[0.4]),
-        trial("blocks", points(blocks, 8.0), &[0.4]),
+        trial("flat", vec![[0.0, 0.0]], &[0.4]),
+        trial("step of 50 mm", rising(0.05), &[0.4]),
+        trial("step of 80 mm", rising(0.08), &[0.4]),
+        trial("step of 100 mm", rising(0.10), &[0.4]),
+        trial("knife edge", knife, &[0.4]),
+        trial("blocks", blocks, &[0.4]),
         trial("ramp", ramp, &[0.4]),
-        trial("drop", drop, &[0.8]),
-        trial("reversing", slope(0.0, 0.9), &[0.4, -0.4]),
-        trial("stop and start", step(0.05, 0.9), &[0.4, 0.0]),
+        trial("drop", vec![[0.0, 0.2], [0.0, 0.0]], &[0.8]),
+        trial("reversing", vec![[0.0, 0.0]], &[0.4, -0.4]),
+        trial("stop and start", rising(0.05), &[0.4, 0.0]),
     ]
 }
 
@@ -266,7 +261,7 @@ fn no_chain_leaves_its_guide() {
                     "{count} shoes, {name}, start {start}"
                 );
                 assert!(seen.pin_gap < most_gap(name), "{count}, {name}: {seen:?}");
-                assert!(seen.guide_penetration < 5e-3, "{count}, {name}: {seen:?}");
+                assert!(seen.guide_penetration < 2e-3, "{count}, {name}: {seen:?}");
             }
             println!(
                 "{count} shoes, {name}: pins {:.4} mm, guide {:.3} mm, tension {:.0} N",
@@ -293,7 +288,7 @@ fn without_grousers_it_climbs_as_high_as_the_belt() {
         })
     };
     let smooth = highest(belt());
-    for (count, within) in [(44, 0.05), (88, 0.03)] {
+    for (count, within) in [(44, 0.04), (88, 0.03)] {
         let shoes = highest(segmental(Some(count)));
         println!("belt {smooth:.5} m, {count} shoes {shoes:.5} m");
         assert!((shoes / smooth - 1.0).abs() < within);

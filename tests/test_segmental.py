@@ -1,0 +1,122 @@
+"""A chain of shoes as Python users meet it: shapes, figures, errors, variants."""
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.scenario import Scenario
+
+ENGINEER = c2d.robots.engineer()
+
+
+def chain(**options: object) -> c2d.Robot:
+    return ENGINEER.with_track(c2d.SegmentalTrack(**options))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "trapezoid"])
+@pytest.mark.parametrize("count", [22, 36, 44])
+def test_shoes_stay_linked_and_the_robot_as_high_as_built(shape: str, count: int) -> None:
+    robot = chain(shoe_count=count, shoe_shape=shape)
+    run = c2d.simulate(Scenario(robot, c2d.terrains.flat(), duration=5.0))
+    assert run.shoe_poses.shape == (run.time.size, count, 3)
+    pitch = _pitch(run)
+    middle, angle = run.shoe_poses[:, :, :2], run.shoe_poses[:, :, 2]
+    along = 0.5 * pitch * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    gaps = np.linalg.norm(np.roll(middle - along, -1, axis=1) - (middle + along), axis=-1)
+    assert gaps.max() < 1e-4
+    assert run.metrics["max_pin_gap"] < 1e-4
+    settled = run.time > 2.0
+    assert run.position[settled, 1] == pytest.approx(0.064, abs=1e-3)
+
+
+def _pitch(run: c2d.Run) -> float:
+    """[m] Distance of the pins: that with which the first chain closes best."""
+    middle, angle = run.shoe_poses[0, :, :2], run.shoe_poses[0, :, 2]
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    between = np.roll(middle, -1, axis=0) - middle
+    halves = 0.5 * (along + np.roll(along, -1, axis=0))
+    return float(np.sum(between * halves) / np.sum(halves * halves))
+
+
+def test_ground_speed_is_the_belts() -> None:
+    run = c2d.simulate(Scenario(chain(), c2d.terrains.flat(), duration=12.0))
+    steady = run.time > 4.0
+    ground = np.ptp(run.position[steady, 0]) / np.ptp(run.time[steady])
+    belt = np.ptp(run.track_position[steady]) / np.ptp(run.time[steady])
+    assert belt == pytest.approx(0.4, rel=0.005)
+    assert ground == pytest.approx(0.4, rel=0.01)
+
+
+def test_a_tighter_chain_has_more_tension() -> None:
+    def tension(newtons: float) -> float:
+        robot = chain(shoe_count=44, pre_tension=newtons)
+        run = c2d.simulate(
+            Scenario(robot, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), duration=2.0)
+        )
+        return float(run.track_tension[-1])
+
+    loose, tight = tension(5.0), tension(50.0)
+    # Both tracks are lumped, and each has two runs: the tensioner's force is in a pin of the two.
+    assert tight - loose == pytest.approx(45.0, rel=0.2)
+
+
+def test_forces_of_the_ground_bear_the_weight() -> None:
+    robot = chain()
+    run = c2d.simulate(Scenario(robot, c2d.terrains.flat(), duration=6.0))
+    contacts = run.contacts
+    upwards = contacts["normal_force"] * contacts["normal_y"]
+    upwards = upwards - contacts["friction_force"] * contacts["normal_x"]
+    settled = contacts["time"] > 2.0
+    samples = np.count_nonzero(run.time > 2.0)
+    weight = robot.mass * 9.81
+    assert upwards[settled].sum() / samples == pytest.approx(weight, rel=2e-3)
+
+
+def test_the_same_bits_again_and_from_a_snapshot() -> None:
+    scenario = Scenario(chain(), c2d.terrains.step(0.05), duration=3.0)
+    first, again = (c2d.simulate(scenario) for _ in range(2))
+    assert first.shoe_poses.tobytes() == again.shoe_poses.tobytes()
+    half = c2d.Simulation(scenario)
+    half.advance(1.0)
+    copy = c2d.Simulation.from_snapshot(half.snapshot())
+    half.advance(0.5)
+    copy.advance(0.5)
+    assert half.snapshot() == copy.snapshot()
+
+
+@pytest.mark.parametrize(
+    ("options", "path", "rule"),
+    [
+        ({"shoe_count": 2}, "robot.track.shoe_count", "from 3 to 400"),
+        ({"shoe_count": 5}, "robot.track.shoe_count", "half as long as the distance of the axles"),
+        ({"shoe_count": 22.5}, "robot.track.shoe_count", "integer"),
+        ({"shoe_shape": "round"}, "robot.track.shoe_shape", "rectangle"),
+        ({"plate_thickness": 0.06}, "robot.track.plate_thickness", "leave a guide"),
+        ({"plate_thickness": -1.0}, "robot.track.plate_thickness", "m"),
+        ({"pre_tension": 0.0}, "robot.track.pre_tension", "N"),
+        ({"pre_tension": float("nan")}, "robot.track.pre_tension", "N"),
+    ],
+)
+def test_bad_fields_are_refused_by_name(options: dict[str, object], path: str, rule: str) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.simulate(Scenario(chain(**options), c2d.terrains.flat(), duration=0.1))
+    assert path in str(caught.value)
+    assert rule in str(caught.value)
+
+
+def test_the_closed_belt_of_a_stop_weighs_as_much() -> None:
+    scenario = Scenario(chain(), c2d.terrains.step(0.1), duration=6.0)
+    run = c2d.simulate(scenario, counterfactual=True)
+    assert run.diagnosis is not None
+    assert run.diagnosis.counterfactual is not None
+
+
+def test_a_belt_takes_over_from_a_chain_and_back() -> None:
+    scenario = Scenario(chain(), c2d.terrains.step(0.05), duration=4.0)
+    run = c2d.simulate(scenario)
+    belt = run.branch(at=1.0, track=c2d.BeltTrack())
+    assert belt.outcome == c2d.Outcome.CLEARED
+    back = c2d.simulate(scenario.replace({"robot.track": c2d.BeltTrack()})).branch(
+        at=1.0, track=c2d.SegmentalTrack()
+    )
+    assert back.metrics["max_pin_gap"] < 2e-3
