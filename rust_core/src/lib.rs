@@ -16,6 +16,7 @@
 
 mod batch;
 mod bodies;
+mod chain;
 mod check;
 mod contact;
 mod diagnosis;
@@ -43,6 +44,7 @@ mod track;
 
 pub use batch::{Progress, simulate_many};
 pub use bodies::{ChassisBody, WheelBody};
+pub use chain::{ChainOfShoes, Tensioner};
 pub use contact::Intrusion;
 pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
 pub use dynamics::ChainReading;
@@ -51,7 +53,7 @@ pub use events::{Event, EventKind};
 pub use outcome::Outcome;
 pub use outline::{Disc, Gear, Grouser, ShoeLoop};
 pub use reading::Reading;
-pub use robot::{BodyKind, ChainOfShoes, Model, Part, Shape};
+pub use robot::{BodyKind, Model, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,

@@ -1,7 +1,8 @@
 //! A robot on lanes: what lies under the left track, the right one, and the belly between them.
 
+use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
-use crate::robot::{BodyKind, ChainOfShoes, Model, Part, Tensioner};
+use crate::robot::{BodyKind, Model, Part};
 use crate::scenario::Robot;
 use crate::terrain::Ground;
 

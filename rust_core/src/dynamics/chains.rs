@@ -3,7 +3,7 @@
 use super::Dynamics;
 use super::chain::Chain;
 use super::row::{Link, Row};
-use super::solve::{Phase, Softness};
+use super::solve::Phase;
 use super::state::{State, Twist};
 use rapier2d_f64::math::Vector;
 
@@ -90,32 +90,21 @@ impl Dynamics {
         set_point: f64,
         h: f64,
     ) {
-        let soft = Softness::new(
-            self.solver.contact_frequency,
-            self.solver.contact_damping_ratio,
-            h,
-        );
-        let kick = (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * h;
-        let mut phase = std::mem::take(&mut self.phase);
-        phase.velocity = state.velocity + kick;
-        phase.angular_velocity = state.angular_velocity;
-        phase.spins.clear();
-        phase.spins.extend(state.drives.iter().map(|d| d.spin));
-        (phase.set_point, phase.elapsed) = (set_point, h);
+        let soft = self.softness(h);
+        let phase = self.start_phase(state, set_point, h);
         self.start_chains(state, h);
         for row in &mut self.rows {
             row.close_softly(h, soft, self.solver.max_push_speed);
         }
         self.guess(h);
-        for chain in &mut self.chains {
-            chain.guess(h);
-        }
         self.solve(state, &phase);
-        state.center += state.velocity * h;
-        state.angle += state.angular_velocity * h;
-        for k in 0..state.drives.len() {
-            state.drives[k].position += state.track_speed(&self.model, k) * h;
-        }
+        self.move_on(state, start, h);
+        self.move_chains(state, set_point, h);
+        self.end_phase(state, phase);
+    }
+
+    /// Moves shoes and idlers by `h` [s] at the velocities that they have.
+    fn move_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         for (chain, motor) in self.chains.iter_mut().zip(&self.motors) {
             chain.count(state, set_point, motor.share().is_none(), h);
         }
@@ -125,14 +114,9 @@ impl Dynamics {
         for idler in &mut state.idlers {
             idler.travel += idler.rate * h;
         }
-        for row in &mut self.rows {
-            row.follow(state, start, h);
-        }
-        self.collect(state, &phase, self.solver.time_step);
-        self.phase = phase;
     }
 
-    /// Starts a piece of `h` [s]: velocities without constraints, pins in place.
+    /// Starts a piece of `h` [s]: velocities without constraints, pins in place, with their last forces.
     fn start_chains(&mut self, state: &State, h: f64) {
         let kick = Twist {
             velocity: Vector::new(0.0, -self.gravity) * h,
@@ -145,6 +129,7 @@ impl Dynamics {
                 *free = shoe.twist.plus(kick, 1.0);
             }
             chain.follow(state, pose, h);
+            chain.guess(h);
         }
     }
 

@@ -10,6 +10,7 @@ mod chain;
 mod chains;
 mod descent;
 mod direct;
+mod grip;
 mod motors;
 mod row;
 mod solve;
@@ -26,8 +27,8 @@ use crate::robot::Model;
 use crate::scenario::Solver;
 use chain::{Chain, ChainImpulses};
 pub use chains::ChainReading;
-pub(crate) use direct::Grip;
 use direct::System;
+pub(crate) use grip::Grip;
 use motors::Motor;
 pub(crate) use motors::push_axis;
 use row::Row;
@@ -227,39 +228,58 @@ impl Dynamics {
             self.substep_of_chains(state, start, set_point, h);
             return;
         }
-        let soft = Softness::new(
-            self.solver.contact_frequency,
-            self.solver.contact_damping_ratio,
-            h,
-        );
-        let half = 0.5 * h;
-        let kick = (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * half;
-        let mut phase = std::mem::take(&mut self.phase);
-        phase.velocity = state.velocity + kick;
-        phase.angular_velocity = state.angular_velocity;
-        phase.spins.clear();
-        phase.spins.extend(state.drives.iter().map(|d| d.spin));
-        (phase.set_point, phase.elapsed) = (set_point, half);
+        let (soft, half) = (self.softness(h), 0.5 * h);
+        let mut phase = self.start_phase(state, set_point, half);
         for row in &mut self.rows {
             row.close(h, soft, self.solver.max_push_speed);
         }
         self.guess(half);
         self.solve(state, &phase);
+        self.move_on(state, start, h);
+        phase.velocity += self.kick(half);
+        phase.elapsed = h;
+        self.guess_more(half);
+        self.solve(state, &phase);
+        self.end_phase(state, phase);
+    }
+
+    fn softness(&self, h: f64) -> Softness {
+        let (frequency, damping) = (
+            self.solver.contact_frequency,
+            self.solver.contact_damping_ratio,
+        );
+        Softness::new(frequency, damping, h)
+    }
+
+    /// [m/s] What weight and surroundings change of the velocity in a time [s].
+    fn kick(&self, time: f64) -> Vector {
+        (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * time
+    }
+
+    /// What a solve starts from after a time [s] in which nothing but weight and surroundings push.
+    fn start_phase(&mut self, state: &State, set_point: f64, time: f64) -> Phase {
+        let mut phase = std::mem::take(&mut self.phase);
+        phase.velocity = state.velocity + self.kick(time);
+        phase.angular_velocity = state.angular_velocity;
+        phase.spins.clear();
+        phase.spins.extend(state.drives.iter().map(|d| d.spin));
+        (phase.set_point, phase.elapsed) = (set_point, time);
+        phase
+    }
+
+    /// Moves body, drives and gaps by `h` [s] at the velocities that they have.
+    fn move_on(&mut self, state: &mut State, start: (Vector, f64), h: f64) {
         state.center += state.velocity * h;
         state.angle += state.angular_velocity * h;
         for k in 0..state.drives.len() {
             state.drives[k].position += state.track_speed(&self.model, k) * h;
         }
-        for shoe in &mut state.shoes {
-            *shoe = shoe.after(h);
-        }
         for row in &mut self.rows {
             row.follow(state, start, h);
         }
-        phase.velocity += kick;
-        phase.elapsed = h;
-        self.guess_more(half);
-        self.solve(state, &phase);
+    }
+
+    fn end_phase(&mut self, state: &mut State, phase: Phase) {
         self.collect(state, &phase, self.solver.time_step);
         self.phase = phase;
     }

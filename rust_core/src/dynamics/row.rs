@@ -2,14 +2,19 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
-use super::chain::{Rest, RestMemory};
-use super::direct::{Damper, Grip};
-use super::solve::{Action, Admittance};
+use super::direct::Damper;
+use super::grip::Grip;
+use super::solve::{Action, Admittance, Softness};
 use super::state::{State, Twist};
 use crate::contact::{Contact, LoadedContact};
 use crate::outline::Motion;
 use crate::plane::{cross, left_of, right_of};
 use crate::robot::Model;
+
+/// Compliance of the contacts of shoes in units of what goes with the contact frequency: shoes are light, but
+/// the robot stands on them. Harder ones meet hardly any deeper, and jam harder.
+const ON_GUIDE: f64 = 0.1;
+const ON_GROUND: f64 = 0.3;
 
 /// What a row holds.
 #[derive(Clone, Copy, Debug)]
@@ -126,17 +131,6 @@ impl Direction {
             unit,
             lever: cross(arm, unit) - drive_lever,
             drive_lever,
-            back: 0.0,
-        }
-    }
-
-    /// That of a contact of a shoe: `arm` leads there from the shoe's centre, and the track moves along
-    /// `travel`.
-    fn on_shoe(unit: Vector, arm: Vector, travel: Vector, model: &Model) -> Self {
-        Self {
-            unit,
-            lever: cross(arm, unit),
-            drive_lever: -model.drive_radius * unit.dot(travel),
             back: 0.0,
         }
     }
@@ -258,58 +252,8 @@ impl Row {
         }
     }
 
-    /// The row of a shoe's contact that was found at half a step's `time` [s] from now.
-    pub(super) fn of_shoe(
-        contact: &Contact,
-        last: Option<LoadedContact>,
-        state: &State,
-        model: &Model,
-        (shoe, time): (usize, f64),
-    ) -> Self {
-        let part = &model.parts[contact.part];
-        let then = state.shoes[shoe].after(time);
-        let (arm, travel) = (contact.point - then.center, then.along());
-        let [normal, tangent] = [contact.normal, right_of(contact.normal)]
-            .map(|unit| Direction::on_shoe(unit, arm, travel, model));
-        let mut row = Self {
-            drive: part.drive,
-            friction: part.friction_limit,
-            grip: last.map_or(Grip::Open, |l| l.grip),
-            normal_guess: last.map_or(0.0, |l| l.normal_guess),
-            friction_guess: last.map_or(0.0, |l| l.friction_guess),
-            ..Self::between(normal, tangent, Link::Shoe(shoe))
-        };
-        row.gap = contact.distance - row.opening_speed(state) * time;
-        row
-    }
-
-    /// The row of a place where a shoe rests on the guide, without friction.
-    pub(super) fn on_guide(
-        rest: &Rest,
-        last: RestMemory,
-        state: &State,
-        (shoe, chain): (usize, usize),
-        time: f64,
-    ) -> Self {
-        let arm = rest.point - state.shoes[shoe].after(time).center;
-        let back = rest.point - state.moved(time).0;
-        let [normal, tangent] = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
-            unit,
-            lever: cross(arm, unit),
-            drive_lever: -unit.dot(rest.slides),
-            back: cross(back, unit),
-        });
-        let mut row = Self {
-            grip: last.grip,
-            normal_guess: last.force,
-            ..Self::between(normal, tangent, Link::Guide { shoe, chain })
-        };
-        row.place = rest.place;
-        row.gap = rest.gap - row.opening_speed(state) * time;
-        row
-    }
-
-    fn between(normal: Direction, tangent: Direction, link: Link) -> Self {
+    /// One between other bodies, without friction or a past.
+    pub(super) fn between(normal: Direction, tangent: Direction, link: Link) -> Self {
         Self {
             normal,
             tangent,
@@ -405,5 +349,40 @@ impl Row {
         let offset = s.carried.offset(turned, run);
         let moved = state.center - center + turned * s.arm + offset - s.arm - s.carried.spoke;
         self.gap = s.gap + self.normal.unit.dot(moved);
+    }
+
+    /// Towards the end of the motion a gap may just close, softly; a penetration is pushed out.
+    pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
+        self.bears = true;
+        let share = match self.link {
+            Link::Guide { .. } => ON_GUIDE,
+            _ => ON_GROUND,
+        };
+        self.compliance = share * soft.compliance;
+        self.give = soft.compliance;
+        self.center.1 = self.friction_guess * h;
+        self.bias = if self.gap > 0.0 {
+            self.gap / h
+        } else {
+            (soft.push_rate * self.gap).max(-max_push_speed)
+        };
+    }
+
+    /// Before the motion an open gap may just close, and a penetration is pushed out softly.
+    pub(super) fn close(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
+        self.bears = true;
+        if self.gap > 0.0 {
+            (self.bias, self.compliance) = (self.gap / h, 0.0);
+        } else {
+            self.bias = (soft.push_rate * self.gap).max(-max_push_speed);
+            // The load of half the time stands for the load of all of it.
+            self.compliance = 2.0 * soft.compliance;
+        }
+    }
+
+    /// [N m s] What its impulses turn the drive with.
+    pub(super) fn torque(&self) -> f64 {
+        self.normal.drive_lever * self.normal_impulse
+            + self.tangent.drive_lever * self.friction_impulse
     }
 }

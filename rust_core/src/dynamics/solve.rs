@@ -4,7 +4,7 @@ use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
 use super::motors::{Motor, push_axis};
-use super::row::{Direction, Link, Row};
+use super::row::{Direction, Link};
 use super::state::State;
 use crate::robot::Model;
 
@@ -13,8 +13,6 @@ use crate::robot::Model;
 pub(super) const AGREEMENT: f64 = 1e-7;
 /// Rounds of a chain at most: of the one solve in a hundred that two do not settle, more settle few.
 const ROUNDS_OF_CHAINS: u32 = 2;
-/// Compliance of a guide in units of the ground's: shoes are light, but the robot stands on them with it.
-const GUIDE_GIVES: f64 = 0.1;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -373,41 +371,5 @@ impl Dynamics {
             state.drives[k].force += impulse / dt;
             state.drives[k].traction += self.torques[k] / (self.model.drive_radius * dt);
         }
-    }
-}
-
-impl Row {
-    /// Towards the end of the motion a gap may just close, softly; a penetration is pushed out.
-    pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
-        self.bears = true;
-        self.compliance = match self.link {
-            Link::Guide { .. } => GUIDE_GIVES * soft.compliance,
-            _ => soft.compliance,
-        };
-        self.give = soft.compliance;
-        self.center.1 = self.friction_guess * h;
-        self.bias = if self.gap > 0.0 {
-            self.gap / h
-        } else {
-            (soft.push_rate * self.gap).max(-max_push_speed)
-        };
-    }
-
-    /// Before the motion an open gap may just close, and a penetration is pushed out softly.
-    pub(super) fn close(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
-        self.bears = true;
-        if self.gap > 0.0 {
-            (self.bias, self.compliance) = (self.gap / h, 0.0);
-        } else {
-            self.bias = (soft.push_rate * self.gap).max(-max_push_speed);
-            // The load of half the time stands for the load of all of it.
-            self.compliance = 2.0 * soft.compliance;
-        }
-    }
-
-    /// [N m s] What its impulses turn the drive with.
-    fn torque(&self) -> f64 {
-        self.normal.drive_lever * self.normal_impulse
-            + self.tangent.drive_lever * self.friction_impulse
     }
 }

@@ -3,9 +3,10 @@
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
+use crate::chain::ChainOfShoes;
 use crate::contact::Running;
 use crate::plane::{direction, left_of};
-use crate::robot::{ChainOfShoes, Model};
+use crate::robot::Model;
 
 /// The moving state.
 #[derive(Clone, Debug, Serialize, Deserialize)]

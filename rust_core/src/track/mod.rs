@@ -6,8 +6,9 @@ mod grouser_belt;
 mod segmental;
 mod wheels;
 
+use crate::chain::ChainOfShoes;
 use crate::error::ScenarioError;
-use crate::robot::{ChainOfShoes, Part};
+use crate::robot::Part;
 use crate::scenario::{CircumferentialWheels, HybridWheels, LineOfWheels, Robot, Track};
 
 /// What a track model adds to the chassis.

@@ -4,9 +4,10 @@
 //! and the guide under their inner faces, so that the robot stands as high as the built one.
 
 use super::TrackModel;
+use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Envelope, ShoeLoop};
-use crate::robot::{BodyKind, ChainOfShoes, Part, Shape, Tensioner};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::scenario::{Robot, SegmentalTrack, ShoeShape};
 use rapier2d_f64::math::Vector;
 

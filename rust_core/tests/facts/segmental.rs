@@ -228,9 +228,9 @@ fn outcome_of(
 /// [m] Pins may be off by so much.
 fn most_gap(trial: &str) -> f64 {
     match trial {
-        "flat" | "reversing" => 1e-4,
-        "drop" => 1e-3,
-        _ => 4e-4,
+        "flat" | "reversing" => 2e-4,
+        "drop" => 1.5e-3,
+        _ => 6e-4,
     }
 }
 

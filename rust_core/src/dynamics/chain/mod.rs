@@ -1,5 +1,6 @@
 //! A chain of shoes on the guide of the chassis: pins, places where shoes rest on the guide, drive.
 
+mod contacts;
 mod pin;
 mod pull;
 mod system;
@@ -7,10 +8,11 @@ mod system;
 use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
-use super::direct::{Damper, Grip};
+use super::direct::Damper;
+use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
-use crate::robot::ChainOfShoes;
+use crate::chain::ChainOfShoes;
 use pin::Pin;
 use pull::{Grasp, Pull, PullImpulses};
 use system::ChainSystem;

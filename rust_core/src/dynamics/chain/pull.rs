@@ -7,10 +7,10 @@
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::chain::ChainOfShoes;
 use crate::dynamics::direct::Damper;
 use crate::dynamics::state::{Shoe, State, Twist};
 use crate::plane::{cross, direction, left_of};
-use crate::robot::ChainOfShoes;
 
 /// Compliance of its damper, in units of its admittance.
 const DAMPING: f64 = 1e-8;

@@ -1,0 +1,130 @@
+//! Chains of shoes of a robot, and what they leave of it to the chassis.
+
+use std::ops::Range;
+
+use rapier2d_f64::math::Vector;
+
+use crate::contact::Running;
+use crate::outline::{Disc, Envelope, ShoeLoop};
+use crate::robot::Model;
+
+/// A closed chain of shoes round a guide of the chassis.
+#[derive(Clone, Debug)]
+pub struct ChainOfShoes {
+    /// Its own number.
+    pub number: usize,
+    /// Numbers of its shoes.
+    pub shoes: Range<usize>,
+    /// Its path along the pins, and how far these are from each other.
+    pub path: ShoeLoop,
+    /// The ends of the guide that the plates slide on, rear first.
+    pub guide: [Disc; 2],
+    /// [m] Thickness of the plates; the pins lie in their middle.
+    pub plate_thickness: f64,
+    /// [kg] Mass of a shoe.
+    pub shoe_mass: f64,
+    /// [kg m^2] Its moment of inertia about the middle of its pins.
+    pub shoe_inertia: f64,
+    /// What holds the front end out.
+    pub tensioner: Tensioner,
+    /// The guide's outline.
+    pub(crate) hull: Envelope,
+}
+
+/// A spring and a damper that push the front end of a guide along the chassis; it weighs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Tensioner {
+    /// [N] Force in the middle of its travel.
+    pub pre_tension: f64,
+    /// [N/m] Stiffness.
+    pub stiffness: f64,
+    /// [N s/m] Damping.
+    pub damping: f64,
+}
+
+impl ChainOfShoes {
+    /// [m] Radius at which the drive pulls: a turn moves the chain by as many pitches as it takes shoes to go
+    /// round.
+    pub(crate) fn drive_radius(&self) -> f64 {
+        let half = 0.5 * self.path.pitch;
+        half / libm::atan(half / (self.guide[0].radius + 0.5 * self.plate_thickness))
+    }
+}
+
+impl Model {
+    /// Leaves to the chassis what the chains do not weigh.
+    pub(crate) fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Self {
+        if chains.is_empty() {
+            return self;
+        }
+        let places = chains.iter().flat_map(|chain| {
+            let body = (chain.shoe_mass, chain.shoe_inertia);
+            let places = chain.path.places(0.0).into_iter();
+            places.map(move |place| (body, place.translation))
+        });
+        let locked = self.locked_inertia();
+        let (total, center) = (self.mass, self.center_of_mass);
+        let (mut mass, mut moment) = (total, center * total);
+        for ((shoe, _), place) in places.clone() {
+            mass -= shoe;
+            moment -= place * shoe;
+        }
+        self.center_of_mass = moment / mass;
+        let about = |point: Vector| (point - center).length_squared();
+        let of_shoes: f64 = places
+            .map(|((shoe, inertia), place)| inertia + shoe * about(place))
+            .sum();
+        self.moment_of_inertia = locked - of_shoes - mass * about(self.center_of_mass);
+        self.mass = mass;
+        self.drive_masses.fill(0.0);
+        self.chains = chains;
+        self
+    }
+
+    /// [kg] Mass of chassis and chains.
+    pub fn total_mass(&self) -> f64 {
+        let of_chain = |chain: &ChainOfShoes| chain.shoe_mass * chain.path.count as f64;
+        self.mass + self.chains.iter().map(of_chain).sum::<f64>()
+    }
+
+    /// The same with all that moves over the chassis fixed to it where it is.
+    pub(crate) fn as_one_body(&self, running: &Running) -> Self {
+        let (mut mass, mut moment) = (self.mass, self.center_of_mass * self.mass);
+        for chain in &self.chains {
+            for place in &running.shoes[chain.shoes.clone()] {
+                mass += chain.shoe_mass;
+                moment += place.translation * chain.shoe_mass;
+            }
+        }
+        Self {
+            mass,
+            center_of_mass: if self.chains.is_empty() {
+                self.center_of_mass
+            } else {
+                moment / mass
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same robot with the mass of its chains at the drives, as where no shoes are simulated.
+    pub(crate) fn with_circulating_mass(&self) -> Self {
+        let start = |chain: &ChainOfShoes| chain.path.places(0.0);
+        let running = Running {
+            shoes: self.chains.iter().flat_map(start).collect(),
+            ..Running::default()
+        };
+        let mut whole = self.as_one_body(&running);
+        let about = |point: Vector| (point - whole.center_of_mass).length_squared();
+        let mut inertia = self.locked_inertia() + self.mass * about(self.center_of_mass);
+        for (k, chain) in self.chains.iter().enumerate() {
+            for place in &running.shoes[chain.shoes.clone()] {
+                inertia += chain.shoe_inertia + chain.shoe_mass * about(place.translation);
+            }
+            whole.drive_masses[k] = chain.shoe_mass * chain.path.count as f64;
+        }
+        whole.moment_of_inertia = inertia - (whole.locked_inertia() - whole.moment_of_inertia);
+        whole.chains.clear();
+        whole
+    }
+}

@@ -1,0 +1,73 @@
+//! Contacts of shoes as the solver sees them: with the ground, and with the guide.
+
+use rapier2d_f64::math::Vector;
+
+use super::{Rest, RestMemory};
+use crate::contact::{Contact, LoadedContact};
+use crate::dynamics::grip::Grip;
+use crate::dynamics::row::{Direction, Link, Row};
+use crate::dynamics::state::State;
+use crate::plane::{cross, right_of};
+use crate::robot::Model;
+
+impl Direction {
+    /// That of a contact of a shoe: `arm` leads there from the shoe's centre, and the track moves along
+    /// `travel`.
+    fn on_shoe(unit: Vector, arm: Vector, travel: Vector, model: &Model) -> Self {
+        Self {
+            unit,
+            lever: cross(arm, unit),
+            drive_lever: -model.drive_radius * unit.dot(travel),
+            back: 0.0,
+        }
+    }
+}
+
+impl Row {
+    /// The row of a shoe's contact that was found at half a step's `time` [s] from now.
+    pub(in crate::dynamics) fn of_shoe(
+        contact: &Contact,
+        last: Option<LoadedContact>,
+        state: &State,
+        model: &Model,
+        (shoe, time): (usize, f64),
+    ) -> Self {
+        let part = &model.parts[contact.part];
+        let then = state.shoes[shoe].after(time);
+        let (arm, travel) = (contact.point - then.center, then.along());
+        let [normal, tangent] = [contact.normal, right_of(contact.normal)]
+            .map(|unit| Direction::on_shoe(unit, arm, travel, model));
+        let mut row = Self::between(normal, tangent, Link::Shoe(shoe));
+        row.drive = part.drive;
+        row.friction = part.friction_limit;
+        row.grip = last.map_or(Grip::Open, |l| l.grip);
+        row.normal_guess = last.map_or(0.0, |l| l.normal_guess);
+        row.friction_guess = last.map_or(0.0, |l| l.friction_guess);
+        row.gap = contact.distance - row.opening_speed(state) * time;
+        row
+    }
+
+    /// The row of a place where a shoe rests on the guide, without friction.
+    pub(in crate::dynamics) fn on_guide(
+        rest: &Rest,
+        last: RestMemory,
+        state: &State,
+        (shoe, chain): (usize, usize),
+        time: f64,
+    ) -> Self {
+        let arm = rest.point - state.shoes[shoe].after(time).center;
+        let back = rest.point - state.moved(time).0;
+        let [normal, tangent] = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
+            unit,
+            lever: cross(arm, unit),
+            drive_lever: -unit.dot(rest.slides),
+            back: cross(back, unit),
+        });
+        let mut row = Self::between(normal, tangent, Link::Guide { shoe, chain });
+        row.grip = last.grip;
+        row.normal_guess = last.force;
+        row.place = rest.place;
+        row.gap = rest.gap - row.opening_speed(state) * time;
+        row
+    }
+}

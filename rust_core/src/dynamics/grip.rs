@@ -1,0 +1,126 @@
+//! What a contact does at given velocities: it is open, holds or slides, and with which impulses.
+
+use serde::{Deserialize, Serialize};
+
+use super::direct::{DAMPING, Damper};
+use super::row::Row;
+use super::state::State;
+
+/// What a contact does in a solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Grip {
+    /// Nothing.
+    #[default]
+    Open,
+    /// It holds.
+    Sticks,
+    /// It slides; friction acts along the tangent.
+    Forwards,
+    /// It slides; friction acts against the tangent.
+    Backwards,
+}
+
+impl Grip {
+    /// The next guess: between the two directions of slip lies none.
+    pub(super) fn towards(self, fitting: Self) -> Self {
+        match (self, fitting) {
+            (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,
+            _ => fitting,
+        }
+    }
+}
+
+impl Row {
+    /// Makes its impulses the ones that it is damped about.
+    pub(super) fn settle(&mut self) {
+        self.center.0 = self.normal_impulse;
+        if self.give == 0.0 {
+            self.center.1 = self.friction_impulse;
+        }
+    }
+
+    /// Takes these back.
+    pub(super) fn unsettle(&mut self) {
+        (self.normal_impulse, self.friction_impulse) = self.center;
+    }
+
+    /// Guesses its grip from its impulses.
+    pub(super) fn guess_grip(&mut self) {
+        let limit = self.friction * self.normal_impulse * (1.0 - 1e-9);
+        self.grip = if self.normal_impulse <= 0.0 {
+            Grip::Open
+        } else if self.friction_impulse >= limit {
+            Grip::Forwards
+        } else if self.friction_impulse <= -limit {
+            Grip::Backwards
+        } else {
+            Grip::Sticks
+        };
+    }
+
+    /// Those of normal and tangent while nothing limits them.
+    pub(super) fn dampers(&self) -> [Damper; 2] {
+        let (normal, friction) = self.center;
+        let damping = DAMPING * self.admittance.normal;
+        let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
+        [
+            Damper::new(stiffness * (damping * normal - self.bias), stiffness),
+            Damper::new(
+                friction,
+                1.0 / ((self.give + DAMPING) * self.admittance.tangent),
+            ),
+        ]
+    }
+
+    /// [m/s] Along normal and tangent.
+    pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
+        let (shoe, spin) = (
+            |i: usize| state.shoes[i].twist,
+            |k: usize| state.drives[k].spin,
+        );
+        let idler = |k: usize| state.idlers[k].rate;
+        let [n, t] = self.count(state.twist(), shoe, spin, idler);
+        [n + self.actions[0].offset, t + self.actions[1].offset]
+    }
+
+    /// [m/s] By how much its grip does not fit these velocities.
+    pub(super) fn misfit(&self, state: &State) -> f64 {
+        let ([approach, slip], [n, t]) = (self.speeds(state), self.dampers());
+        let load = n.at(approach) * self.admittance.normal;
+        match self.grip {
+            _ if self.grip == Grip::Open || load <= 0.0 => load.abs(),
+            Grip::Sticks => (t.at(slip) * self.admittance.tangent).abs() - self.friction * load,
+            _ => slip.abs(),
+        }
+    }
+
+    /// Takes the impulses that belong to the velocities, and the grip that fits them; how far the velocities
+    /// are from what they should be [m/s].
+    pub(super) fn follow_velocities(&mut self, state: &State) -> f64 {
+        let [approach, slip] = self.speeds(state);
+        let [n, t] = self.dampers();
+        let (normal, friction) = (n.at(approach), t.at(slip));
+        let limit = self.friction * normal;
+        let (grip, friction) = if normal <= 0.0 {
+            (Grip::Open, 0.0)
+        } else if friction > limit || limit == 0.0 {
+            // Which way it slides makes no difference without friction.
+            (Grip::Forwards, limit)
+        } else if friction < -limit {
+            (Grip::Backwards, -limit)
+        } else {
+            (Grip::Sticks, friction)
+        };
+        self.fitting = grip;
+        self.normal_impulse = normal.max(0.0);
+        self.friction_impulse = friction;
+        let off_normal = (self.normal_impulse - self.center.0).abs() * self.admittance.normal;
+        let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
+        let off = match grip {
+            Grip::Open => 0.0,
+            Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
+            _ => off_normal,
+        };
+        DAMPING * off
+    }
+}
