@@ -136,7 +136,8 @@ def test_fifteen_seconds_of_a_chain_take_less_than_500_kb() -> None:
 
 @pytest.mark.parametrize("shape", ["rectangle", "trapezoid"])
 def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
-    run = simulated(c2d.SegmentalTrack(shoe_shape=shape), c2d.terrains.step(0.1))
+    # In time a tapering shoe may still work itself free.
+    run = simulated(c2d.SegmentalTrack(shoe_shape=shape), c2d.terrains.step(0.1), duration=8.0)
     assert run.outcome == c2d.Outcome.STALLED
     told = str(run.diagnosis)
     assert "inside the envelope between two shoes, at x" in told
