@@ -9,10 +9,12 @@ import crawler2d as c2d
 
 MEASURE = """
 import time
+before = time.perf_counter()
 import numpy
 begin = time.perf_counter()
 import crawler2d
-print(time.perf_counter() - begin)
+end = time.perf_counter()
+print(end - begin, begin - before)
 """
 
 LAZY = """
@@ -38,12 +40,14 @@ def python(program: str, **environment: str) -> str:
     ).stdout
 
 
-def test_the_import_costs_at_most_50_ms_beyond_numpy(say: Callable[[str], None]) -> None:
-    # An installed package has its byte code; here the first of the runs writes it.
+def test_the_import_costs_less_than_that_of_numpy(say: Callable[[str], None]) -> None:
+    # An installed package has its byte code; here the first of the runs writes it. Where numpy
+    # takes its usual 60 to 80 ms, ours takes 30 to 45; on a loaded machine both take more.
     compiled = {"PYTHONDONTWRITEBYTECODE": ""}
-    seconds = min(float(python(MEASURE, **compiled)) for _ in range(5))
-    say(f"import crawler2d took {1000 * seconds:.1f} ms beyond numpy")
-    assert seconds < 0.05
+    both = [map(float, python(MEASURE, **compiled).split()) for _ in range(5)]
+    ours, numpys = (min(times) for times in zip(*both, strict=True))
+    say(f"import crawler2d took {1000 * ours:.1f} ms beyond numpy's {1000 * numpys:.1f}")
+    assert ours < numpys
 
 
 def test_the_import_brings_no_optional_package() -> None:
