@@ -224,35 +224,18 @@ impl Row {
         let then = state.center + start.arm + start.carried.spoke;
         start.gap -= contact.normal.dot(contact.point - then);
         Self {
-            normal,
-            tangent,
-            link: Link::Chassis,
             drive: part.drive,
             friction: part.friction_limit,
-            actions: [Action::default(); 2],
-            admittance: Admittance::default(),
-            bias: 0.0,
-            compliance: 0.0,
-            give: 0.0,
-            bears: false,
-            normal_impulse: 0.0,
-            friction_impulse: 0.0,
             grip: last.map_or(Grip::Open, |l| l.grip),
-            fitting: Grip::Open,
-            limit: 0.0,
-            frozen: [Damper::default(); 2],
-            center: (0.0, 0.0),
             normal_guess: last.map_or(0.0, |l| l.normal_guess),
             friction_guess: last.map_or(0.0, |l| l.friction_guess),
-            normal_total: 0.0,
-            friction_total: 0.0,
             gap: start.gap,
-            place: 0,
             start,
+            ..Self::between(normal, tangent, Link::Chassis)
         }
     }
 
-    /// One between other bodies, without friction or a past.
+    /// One along these directions, without friction or a past.
     pub(super) fn between(normal: Direction, tangent: Direction, link: Link) -> Self {
         Self {
             normal,

@@ -190,7 +190,7 @@ impl Chain {
         }
     }
 
-    /// The system of shoes, pins and drive; the drive gives `held` [N s] if it does not hold the speed
+    /// The system of shoes, pins and drive; the drive gives `given` [N s] if it does not hold the speed
     /// `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
         self.system.start(self.masses(), &self.free, self.idler);

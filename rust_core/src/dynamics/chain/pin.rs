@@ -28,8 +28,6 @@ pub(super) struct Pin {
     center: Vector,
     /// ... and [N] what the next piece starts from.
     pub force: Vector,
-    /// [N s] In this step.
-    pub total: Vector,
 }
 
 impl Pin {
