@@ -293,9 +293,9 @@ pub(crate) fn geometry<'py>(
                 let corners: Vec<[f64; 2]> = grouser.corners().iter().map(|p| [p.x, p.y]).collect();
                 grousers.append(rows(py, &corners))?;
             }
-            Shape::Polygon { corners } if part.shoe.is_some() => {
+            Shape::Polygon { corners } if part.mount.shoe().is_some() => {
                 let corners: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
-                shoes.append((part.shoe, rows(py, &corners)))?;
+                shoes.append((part.mount.shoe(), rows(py, &corners)))?;
             }
             Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
         }

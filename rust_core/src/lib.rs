@@ -53,7 +53,7 @@ pub use events::{Event, EventKind};
 pub use outcome::Outcome;
 pub use outline::{Disc, Gear, Grouser, ShoeLoop};
 pub use reading::Reading;
-pub use robot::{BodyKind, Model, Part, Shape};
+pub use robot::{BodyKind, Model, Mount, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,

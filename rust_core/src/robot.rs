@@ -56,12 +56,12 @@ pub enum BodyKind {
     Guide = 6,
 }
 
-/// A shape on the chassis or on a shoe that meets the ground.
+/// A shape on a body of the robot that meets the ground.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// What it stands for.
     pub kind: BodyKind,
-    /// Its form in the frame of the chassis, or of its shoe.
+    /// Its form in the frame of its mount.
     pub shape: Shape,
     /// The drive that moves its surface.
     pub drive: Option<usize>,
@@ -69,8 +69,27 @@ pub struct Part {
     pub friction_limit: f64,
     /// Index of the lane of the ground that it meets.
     pub lane: usize,
-    /// The shoe that it is fixed to; else it is on the chassis.
-    pub shoe: Option<usize>,
+    /// The body that it is fixed to.
+    pub mount: Mount,
+}
+
+/// A body of the robot that carries parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The chassis.
+    Chassis,
+    /// The shoe of that number.
+    Shoe(usize),
+}
+
+impl Mount {
+    /// The number of its shoe.
+    pub fn shoe(self) -> Option<usize> {
+        match self {
+            Self::Shoe(shoe) => Some(shoe),
+            Self::Chassis => None,
+        }
+    }
 }
 
 /// Forms in the chassis frame.
@@ -124,7 +143,7 @@ impl Model {
                 drive: None,
                 friction_limit: f64::INFINITY,
                 lane: 0,
-                shoe: None,
+                mount: Mount::Chassis,
             });
         }
         let radius = robot.outline.rear_radius;
@@ -163,7 +182,7 @@ impl Model {
             Some(chain.path.motion_at(running.shoes[shoe].translation))
         };
         let run = part.drive.map_or(0.0, |k| running.drives[k]);
-        let moved = part.shoe.and_then(of_shoe);
+        let moved = part.mount.shoe().and_then(of_shoe);
         moved.unwrap_or_else(|| part.motion(run, 0.0))
     }
 
@@ -174,7 +193,7 @@ impl Model {
         let belt = Envelope::new(&discs);
         // A closed belt shields a belly that lies inside of it.
         let reaches_out = |part: &&Part| match &part.shape {
-            Shape::Polygon { corners } if part.shoe.is_none() => {
+            Shape::Polygon { corners } if part.mount == Mount::Chassis => {
                 corners.iter().any(|c| belt.depth(*c) < 0.0)
             }
             _ => false,
@@ -190,7 +209,7 @@ impl Model {
             drive: Some(lane),
             friction_limit: f64::INFINITY,
             lane,
-            shoe: None,
+            mount: Mount::Chassis,
         });
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
@@ -237,7 +256,7 @@ impl Model {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
             // Never beyond the tips of the hull that it travels round but by a corner.
-            _ if part.shoe.is_some() => 0.0,
+            _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
             // Never beyond the tips of the belt's hull.
             Shape::Grouser(_) => 0.0,
@@ -294,12 +313,9 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
-    /// Its own frame in that of the chassis.
+    /// Its own frame in that of its mount.
     pub(crate) fn place(&self, running: &Running) -> Pose {
         let run = self.drive.map_or(0.0, |k| running.drives[k]);
-        if let Some(shoe) = self.shoe {
-            return running.shoes[shoe];
-        }
         match &self.shape {
             Shape::Disc { center, .. } => Pose::from_translation(*center),
             Shape::Gear { center, gear } => {
@@ -326,6 +342,6 @@ impl Part {
 
     /// Whether its shape moves over the chassis at all.
     pub(crate) fn is_carried(&self) -> bool {
-        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.shoe.is_some()
+        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.mount.shoe().is_some()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
-use crate::robot::{BodyKind, Model, Part};
+use crate::robot::{BodyKind, Model, Mount, Part};
 use crate::scenario::Robot;
 use crate::terrain::Ground;
 
@@ -56,7 +56,10 @@ impl Model {
             let of_track = self.parts.iter().filter(|part| !is_belly(part));
             parts.extend(of_track.map(|part| Part {
                 drive: part.drive.map(|k| of_side(k, lane)),
-                shoe: part.shoe.map(|i| i + lane * shoes),
+                mount: match part.mount {
+                    Mount::Chassis => Mount::Chassis,
+                    Mount::Shoe(i) => Mount::Shoe(i + lane * shoes),
+                },
                 lane,
                 ..part.clone()
             }));

@@ -56,7 +56,7 @@ pub(crate) fn start_position(
                 segments.extend(closed(&corners));
             }
             Shape::Polygon { corners } => {
-                let place = part.shoe.map_or(Pose::IDENTITY, |shoe| shoes[shoe]);
+                let place = part.mount.shoe().map_or(Pose::IDENTITY, |shoe| shoes[shoe]);
                 let corners: Vec<Vector> = corners
                     .iter()
                     .map(|c| turned(place.transform_point(*c)))

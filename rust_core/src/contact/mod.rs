@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::Grip;
 use crate::plane::right_of;
+use crate::robot::Mount;
 pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
@@ -29,6 +30,16 @@ pub(crate) struct Running {
     pub drives: Vec<f64>,
     /// Frames of the shoes in that of the chassis.
     pub shoes: Vec<Pose>,
+}
+
+impl Running {
+    /// Frame of a mount on a robot whose chassis frame is `pose`.
+    pub(crate) fn mounted(&self, mount: Mount, pose: Pose) -> Pose {
+        match mount {
+            Mount::Chassis => pose,
+            Mount::Shoe(shoe) => pose * self.shoes[shoe],
+        }
+    }
 }
 
 /// One place where a part is on the ground or about to be.

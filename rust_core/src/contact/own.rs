@@ -12,14 +12,14 @@ use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
 use super::{Contact, Running, without_redundant};
 use crate::outline::Grouser;
-use crate::robot::{Part, Shape};
+use crate::robot::{Mount, Part, Shape};
 use crate::terrain::Profile;
 
 /// Outlines of one robot and one ground.
 pub(crate) struct OwnContact {
     lanes: Vec<Lane>,
-    /// Each with the index of its lane.
-    outlines: Vec<(usize, Outline)>,
+    /// Each with the index of its lane and its mount.
+    outlines: Vec<(usize, Mount, Outline)>,
 }
 
 /// A part as it meets the ground.
@@ -39,11 +39,6 @@ enum Outline {
         /// In its own frame.
         hull: HullContact,
     },
-    /// A piece of a shoe.
-    Shoe {
-        shoe: usize,
-        hull: HullContact,
-    },
     Hull(HullContact),
 }
 
@@ -51,10 +46,6 @@ impl OwnContact {
     /// The outlines of a robot's parts and of the lanes that they meet.
     pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
         let outline = |i: usize, part: &Part| match (&part.shape, part.drive) {
-            _ if part.shoe.is_some() => Outline::Shoe {
-                shoe: part.shoe.unwrap_or_default(),
-                hull: HullContact::new(i, part),
-            },
             (Shape::Gear { center, gear }, Some(drive)) => Outline::Gear {
                 drive,
                 gear: GearContact::new(i, *center, *gear),
@@ -76,7 +67,7 @@ impl OwnContact {
             outlines: parts
                 .iter()
                 .enumerate()
-                .map(|(i, part)| (part.lane, outline(i, part)))
+                .map(|(i, part)| (part.lane, part.mount, outline(i, part)))
                 .collect(),
         }
     }
@@ -90,8 +81,8 @@ impl OwnContact {
         contacts: &mut Vec<Contact>,
     ) {
         contacts.clear();
-        for (lane, outline) in &self.outlines {
-            let lane = &self.lanes[*lane];
+        for (lane, mount, outline) in &self.outlines {
+            let (lane, pose) = (&self.lanes[*lane], running.mounted(*mount, pose));
             match outline {
                 Outline::Disc {
                     part,
@@ -114,9 +105,6 @@ impl OwnContact {
                 } => {
                     let place = pose * grouser.place(running.drives[*drive]);
                     hull.find(lane, place, prediction, contacts);
-                }
-                Outline::Shoe { shoe, hull } => {
-                    hull.find(lane, pose * running.shoes[*shoe], prediction, contacts);
                 }
                 Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),
             }

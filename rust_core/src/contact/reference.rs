@@ -87,7 +87,7 @@ impl ReferenceContact {
         contacts.clear();
         for i in 0..self.bodies.len() {
             let Body { part, bound, .. } = &self.bodies[i];
-            let place = pose * part.place(running);
+            let place = running.mounted(part.mount, pose) * part.place(running);
             let (center, radius) = (place.transform_point(bound.0), bound.1);
             let ground = &self.lanes[part.lane];
             if ground.profile.is_clear_of(center, radius + prediction) {

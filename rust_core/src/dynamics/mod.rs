@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
-use crate::robot::Model;
+use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
 use chain::{Chain, ChainImpulses};
 pub use chains::ChainReading;
@@ -296,9 +296,9 @@ impl Dynamics {
         };
         for contact in contacts {
             let last = last.take_nearest(contact);
-            let mut row = match self.model.parts[contact.part].shoe {
-                Some(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
-                None => Row::new(contact, last, state, &self.model, (middle, half)),
+            let mut row = match self.model.parts[contact.part].mount {
+                Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
+                Mount::Chassis => Row::new(contact, last, state, &self.model, (middle, half)),
             };
             let lane = self.model.parts[contact.part].lane;
             row.friction = row.friction.min(self.frictions[lane]);

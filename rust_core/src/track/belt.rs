@@ -2,7 +2,7 @@
 
 use super::TrackModel;
 use crate::outline;
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::Robot;
 
 /// One hull round the end discs, its whole surface at one speed.
@@ -34,6 +34,6 @@ pub(super) fn hull(
         drive,
         friction_limit,
         lane: 0,
-        shoe: None,
+        mount: Mount::Chassis,
     }
 }

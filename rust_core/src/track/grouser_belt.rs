@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::TrackModel;
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Envelope, Grouser};
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{GrouserBeltTrack, Robot};
 
 /// The belt, one hull round the end discs to the roots, and its grousers.
@@ -47,7 +47,7 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         drive: Some(0),
         friction_limit: f64::INFINITY,
         lane: 0,
-        shoe: None,
+        mount: Mount::Chassis,
     };
     let surface = Shape::Hull {
         discs,

@@ -7,7 +7,7 @@ use super::TrackModel;
 use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Envelope, ShoeLoop};
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{Robot, SegmentalTrack, ShoeShape};
 use rapier2d_f64::math::Vector;
 
@@ -73,7 +73,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
-            shoe: Some(shoe),
+            mount: Mount::Shoe(shoe),
         }));
     }
     parts.push(Part {
@@ -85,7 +85,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         drive: None,
         friction_limit: f64::INFINITY,
         lane: 0,
-        shoe: None,
+        mount: Mount::Chassis,
     });
     Ok(TrackModel {
         parts,

@@ -6,7 +6,7 @@
 use super::TrackModel;
 use crate::error::ScenarioError;
 use crate::outline::{self, Gear};
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{Robot, TorqueSharing, Wheel};
 
 /// Wheels that the motors turn, together or each by itself.
@@ -56,6 +56,6 @@ fn part(shape: Shape, drive: usize) -> Part {
         drive: Some(drive),
         friction_limit: f64::INFINITY,
         lane: 0,
-        shoe: None,
+        mount: Mount::Chassis,
     }
 }

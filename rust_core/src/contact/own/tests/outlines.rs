@@ -7,7 +7,7 @@ use rapier2d_f64::math::{Pose, Rotation, Vector};
 use super::curve::Curve;
 use crate::draw::Draw;
 use crate::outline::{Disc, Gear};
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 
 pub(super) struct Outline {
     pub part: Part,
@@ -64,7 +64,7 @@ impl Outline {
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
-            shoe: None,
+            mount: Mount::Chassis,
         };
         Self {
             part,

@@ -10,7 +10,7 @@ use super::scene::{Scene, cases};
 use crate::contact::{Contact, Running};
 use crate::draw::Draw;
 use crate::plane::{cross, left_of};
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 
 /// [m] What both may differ by.
 const SAME: f64 = 1e-9;
@@ -257,7 +257,7 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
         drive: None,
         friction_limit: f64::INFINITY,
         lane: 0,
-        shoe: None,
+        mount: Mount::Chassis,
     };
     let contact = OwnContact::new(&[part], &[ground.profile]);
     let mut contacts = Vec::new();

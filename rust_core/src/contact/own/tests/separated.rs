@@ -10,7 +10,7 @@ use super::scene::{Scene, cases};
 use crate::contact::{Contact, Running};
 use crate::draw::Draw;
 use crate::plane::left_of;
-use crate::robot::{BodyKind, Part, Shape};
+use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::terrain::Profile;
 
 /// [m] What both may differ by.
@@ -104,7 +104,7 @@ fn a_rounded_edge_is_a_true_arc() {
             drive: Some(0),
             friction_limit: f64::INFINITY,
             lane: 0,
-            shoe: None,
+            mount: Mount::Chassis,
         };
         let contact = OwnContact::new(&[part], &[profile]);
         let angle = draw.between(0.25, 0.5) * TAU;
