@@ -24,6 +24,8 @@ from crawler2d.errors import (
     ScenarioError,
     SimulationDiverged,
 )
+from crawler2d.flippers import Flippers
+from crawler2d.gaits import Climb, Hold
 from crawler2d.outcome import Outcome
 from crawler2d.rates import rate
 from crawler2d.robot import Drivetrain, Robot, TrackOutline
@@ -48,13 +50,16 @@ __all__ = [
     "BatchInterrupted",
     "BeltTrack",
     "CircumferentialWheels",
+    "Climb",
     "Crawler2dError",
     "Diagnosis",
     "Drive",
     "Drivetrain",
+    "Flippers",
     "ForceTrack",
     "GearWheel",
     "GrouserBeltTrack",
+    "Hold",
     "HybridWheels",
     "InternalError",
     "LimitError",

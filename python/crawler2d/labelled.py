@@ -31,6 +31,8 @@ UNITS = {
     "drive_forces": "N",
     "track_tension": "N",
     "shoe_poses": "m, m, rad",
+    "flipper_angles": "rad",
+    "flipper_torques": "N m",
 }
 """Unit of every array of a run."""
 
@@ -41,6 +43,8 @@ _DIMENSIONS = {
     "drive_positions": ("drive",),
     "drive_forces": ("drive",),
     "shoe_poses": ("shoe", "pose"),
+    "flipper_angles": ("flipper",),
+    "flipper_torques": ("flipper",),
 }
 
 

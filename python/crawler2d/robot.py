@@ -10,6 +10,7 @@ from crawler2d import _core
 from crawler2d._arrays import real_number
 from crawler2d._json import Parameters
 from crawler2d.errors import ScenarioError
+from crawler2d.flippers import Flippers
 from crawler2d.table import Table
 from crawler2d.track import BeltTrack, Track
 
@@ -90,11 +91,11 @@ class Robot(Parameters):
     name : str
         Name for tables and plots.
     mass : float
-        [kg] Of the whole robot, both tracks included.
+        [kg] Of the whole robot, both tracks and all flippers included.
     center_of_mass : array_like, shape (2,)
         [m] In the chassis frame: origin midway between the end axles, x forward, y up.
     moment_of_inertia : float
-        [kg m^2] Of the whole robot about its centre of mass.
+        [kg m^2] Of the whole robot about its centre of mass, flippers at angle 0.
     track_mass : float
         [kg] Of both tracks together, all of it moving at track speed.
     outline : TrackOutline
@@ -105,8 +106,8 @@ class Robot(Parameters):
         Motors and limits.
     belly : array_like, shape (n, 2), optional
         [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
-    flippers : None
-        Pivoting arms; only None for now.
+    flippers : Flippers, optional
+        Pivoting arms.
     track : Track
         The model of the track.
     """
@@ -121,7 +122,7 @@ class Robot(Parameters):
     track_mass: float
     outline: TrackOutline
     belly: tuple[tuple[float, float], ...] | None = None
-    flippers: None = None
+    flippers: Flippers | None = None
     gauge: float
     drivetrain: Drivetrain
     track: Track = BeltTrack()

@@ -225,6 +225,16 @@ class Run:
         return self._recorded("shoe_poses")
 
     @property
+    def flipper_angles(self) -> NDArray[np.float64]:
+        """[rad] Of the flippers at each of k ends, the front first, upwards > 0, shape (n, k)."""
+        return self._recorded("flipper_angles")
+
+    @property
+    def flipper_torques(self) -> NDArray[np.float64]:
+        """[N m] Of their motors, both sides together, upwards > 0, of the last step; (n, k)."""
+        return self._recorded("flipper_torques")
+
+    @property
     def contacts(self) -> Table:
         """Contacts of robot and ground, one row a contact and sample; forces are interval means."""
         self._recorded("time")

@@ -12,6 +12,7 @@ from crawler2d import _core
 from crawler2d._json import Parameters, from_plain, to_plain
 from crawler2d._paths import replace_path
 from crawler2d.errors import ScenarioError
+from crawler2d.gaits import Gait
 from crawler2d.robot import Robot
 from crawler2d.terrain import Terrain
 
@@ -20,17 +21,30 @@ __all__ = ["Drive", "Scenario", "SeizureCriteria", "Solver", "Start"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive(Parameters):
-    """The command given to the drivetrain.
+    """What a driver commands: the speed of the tracks, and how the flippers move.
 
     Parameters
     ----------
     speed : float
         [m/s] Track speed; above 0 drives towards +x.
+    schedule : array_like, shape (n, 2), optional
+        [s], [m/s] Times from which other speeds hold, rising.
+    gait : Hold or Climb, optional
+        How the flippers move; None holds them where they start.
+
+    Examples
+    --------
+    Back after five seconds:
+
+    >>> Drive(speed=0.4, schedule=[(5.0, -0.4)]).schedule
+    ((5.0, -0.4),)
     """
 
     place: ClassVar[str] = "drive"
 
     speed: float = 0.4
+    schedule: tuple[tuple[float, float], ...] | None = None
+    gait: Gait | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

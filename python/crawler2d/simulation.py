@@ -38,6 +38,8 @@ class State:
         [m/s] Surface speed, the mean of the drives.
     track_position : float
         [m] How far the surface has run, the mean of the drives.
+    flipper_angles : ndarray, shape (k,)
+        [rad] Of the flippers at each of k ends, the front first, over the chassis, upwards > 0.
     contacts : Table
         Contacts of this instant, forces of the last time step.
     outcome : Outcome or None
@@ -52,6 +54,7 @@ class State:
     commanded_speed: float
     track_speed: float
     track_position: float
+    flipper_angles: NDArray[np.float64]
     contacts: Table
     outcome: Outcome | None
 
@@ -111,13 +114,24 @@ class Simulation:
         """
         self._core.advance(real_number(duration, "duration"))
 
-    def command(self, *, speed: float | None = None, push: float | None = None) -> None:
-        """Give the drivetrain a new command, which it follows within its limits, or push the robot.
+    def command(
+        self,
+        *,
+        speed: float | None = None,
+        flipper_angle: float | None = None,
+        rear_flipper_angle: float | None = None,
+        push: float | None = None,
+    ) -> None:
+        """Give new commands, which the motors follow within their limits, or push the robot.
 
         Parameters
         ----------
         speed : float, optional
-            [m/s] Track speed; above 0 drives towards +x. None leaves it as it is.
+            [m/s] Track speed; above 0 drives towards +x, until the schedule has its next. None
+            leaves it as it is.
+        flipper_angle, rear_flipper_angle : float, optional
+            [rad] Of the flippers at the front and at the rear, over the chassis, upwards > 0; from
+            now on, whatever the gait. None leaves them as they are.
         push : float, optional
             [N] Horizontal force of the surroundings at the centre of mass, from now on; above 0
             pushes towards +x. None leaves it as it is.
@@ -125,11 +139,18 @@ class Simulation:
         Raises
         ------
         ScenarioError
-            If `speed` is no number or beyond the drivetrain's, or `push` no number or beyond 1e6 N.
+            If `speed` is no number or beyond the drivetrain's, an angle no number, beyond a full turn
+            or of an end without flippers, or `push` no number or beyond 1e6 N. Then nothing is
+            commanded.
         """
+        given = {
+            "drive.speed": speed,
+            "flipper_angle": flipper_angle,
+            "rear_flipper_angle": rear_flipper_angle,
+            "push": push,
+        }
         self._core.command(
-            None if speed is None else real_number(speed, "drive.speed"),
-            None if push is None else real_number(push, "push"),
+            *(None if value is None else real_number(value, name) for name, value in given.items())
         )
 
     def snapshot(self) -> bytes:

@@ -1,8 +1,8 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    BodyKind, ContactTable, Edge, Event, Ground, Intrusion, Model, Part, Record, Run, Scenario,
-    Shape, SimulationError, Trace, WheelBody,
+    ContactTable, Edge, Event, Ground, Intrusion, Model, Mount, Part, Record, Run, Scenario, Shape,
+    SimulationError, Trace, Vector, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -78,7 +78,10 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let why = run.diagnosis.as_ref();
     result.set_item("diagnosis", why.map(|d| diagnosis::of(py, d)).transpose()?)?;
     result.set_item("metrics", metrics)?;
-    result.set_item("trace", trace(py, run.trace, (run.drives, run.shoes))?)?;
+    result.set_item(
+        "trace",
+        trace(py, run.trace, (run.drives, run.shoes, run.flippers))?,
+    )?;
     result.set_item("contacts", contacts(py, run.contacts)?)?;
     result.set_item("edges", edges(py, &run.edges)?)?;
     result.set_item("events", events(py, &run.events)?)?;
@@ -170,7 +173,7 @@ pub(crate) fn failure<'py>(
 fn trace(
     py: Python<'_>,
     trace: Trace,
-    (drives, shoes): (usize, usize),
+    (drives, shoes, flippers): (usize, usize, usize),
 ) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
     let n = trace.time.len();
@@ -208,6 +211,12 @@ fn trace(
         "shoe_poses",
         trace.shoe_poses.into_pyarray(py).reshape([n, shoes, 3])?,
     )?;
+    for (name, values) in [
+        ("flipper_angles", trace.flipper_angles),
+        ("flipper_torques", trace.flipper_torques),
+    ] {
+        columns.set_item(name, values.into_pyarray(py).reshape([n, flippers])?)?;
+    }
     Ok(columns)
 }
 
@@ -252,21 +261,61 @@ pub(crate) fn geometry<'py>(
     model: &Model,
     ground: &Ground,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let near = ground.tracks - 1;
+    let result = track(py, model, (Mount::Chassis, near))?;
+    let (shoes, belly) = (PyList::empty(py), PyList::empty(py));
+    for part in &model.parts {
+        let Shape::Polygon { corners } = &part.shape else {
+            continue;
+        };
+        match part.mount {
+            Mount::Shoe(shoe) if part.lane == near => shoes.append((shoe, points(py, corners)))?,
+            Mount::Chassis => belly.append(points(py, corners))?,
+            _ => {}
+        }
+    }
+    let flippers = PyList::empty(py);
+    for (k, flipper) in model.flippers.iter().enumerate() {
+        let drawn = track(py, model, (Mount::Flipper(k), near))?;
+        drawn.set_item("pivot", (flipper.pivot.x, flipper.pivot.y))?;
+        drawn.set_item("arm", (flipper.arm.x, flipper.arm.y))?;
+        drawn.set_item("sign", flipper.sign)?;
+        flippers.append(drawn)?;
+    }
+    let lanes = PyList::empty(py);
+    for lane in &ground.lanes {
+        lanes.append((lane.side as i64, points(py, &lane.points)))?;
+    }
+    result.set_item("lanes", lanes)?;
+    result.set_item("edges", edges(py, &ground.edges())?)?;
+    result.set_item("shoes", shoes)?;
+    result.set_item("wheels", wheels(py, model)?)?;
+    let none = || points(py, &[]).into_any();
+    result.set_item("belly", belly.get_item(0).unwrap_or_else(|_| none()))?;
+    result.set_item("flippers", flippers)?;
+    result.set_item("drive_radius", model.drive_radius)?;
+    result.set_item("goal", ground.goal_of(scenario))?;
+    Ok(result)
+}
+
+/// What runs round the chassis or a flipper on a lane, in the frame of what carries it.
+fn track<'py>(
+    py: Python<'py>,
+    model: &Model,
+    (mount, lane): (Mount, usize),
+) -> PyResult<Bound<'py, PyDict>> {
     /// Points of one root arc between two grousers.
     const ARC_POINTS: usize = 12;
     /// [rad] Turn between two points of a belt.
     const BELT_TURN: f64 = 0.05;
 
-    let near = ground.tracks - 1;
     let mut circles: Vec<[f64; 3]> = Vec::new();
     let mut drives: Vec<usize> = Vec::new();
     let mut bodies: Vec<usize> = Vec::new();
-    let mut belly: Vec<[f64; 2]> = Vec::new();
     let mut hull = false;
     let gears = PyList::empty(py);
     let grousers = PyList::empty(py);
-    let shoes = PyList::empty(py);
-    let shown = |part: &&Part| part.lane == near || part.kind == BodyKind::Belly;
+    let shown = |part: &Part| part.lane == lane && part.mount == mount;
     for (body, part) in model.parts.iter().enumerate().filter(|(_, p)| shown(p)) {
         let before = circles.len();
         match &part.shape {
@@ -277,57 +326,37 @@ pub(crate) fn geometry<'py>(
             }
             Shape::Gear { center, gear } => {
                 circles.push([center.x, center.y, gear.radius]);
-                let outline: Vec<[f64; 2]> = gear
-                    .outline(ARC_POINTS)
-                    .iter()
-                    .map(|p| [p.x, p.y])
-                    .collect();
                 let drawn = PyDict::new(py);
                 drawn.set_item("center", (center.x, center.y))?;
                 drawn.set_item("radius", gear.radius)?;
                 drawn.set_item("drive", part.drive)?;
-                drawn.set_item("outline", rows(py, &outline))?;
+                drawn.set_item("outline", points(py, &gear.outline(ARC_POINTS)))?;
                 gears.append(drawn)?;
             }
-            Shape::Grouser(grouser) => {
-                let corners: Vec<[f64; 2]> = grouser.corners().iter().map(|p| [p.x, p.y]).collect();
-                grousers.append(rows(py, &corners))?;
-            }
-            Shape::Polygon { corners } if part.mount.shoe().is_some() => {
-                let corners: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
-                shoes.append((part.mount.shoe(), rows(py, &corners)))?;
-            }
-            Shape::Polygon { corners } => belly.extend(corners.iter().map(|c| [c.x, c.y])),
+            Shape::Grouser(grouser) => grousers.append(points(py, grouser.corners()))?,
+            Shape::Polygon { .. } => {}
         }
         // What no drive moves follows the first.
         drives.resize(circles.len(), part.drive.unwrap_or(0));
         bodies.resize(bodies.len() + circles.len() - before, body);
     }
-    let lanes = PyList::empty(py);
-    for lane in &ground.lanes {
-        let points: Vec<[f64; 2]> = lane.points.iter().map(|p| [p.x, p.y]).collect();
-        lanes.append((lane.side as i64, rows(py, &points)))?;
-    }
-    let result = PyDict::new(py);
-    result.set_item("lanes", lanes)?;
-    result.set_item("edges", edges(py, &ground.edges())?)?;
-    result.set_item("circles", rows(py, &circles))?;
-    result.set_item("drives", drives.into_pyarray(py))?;
-    result.set_item("bodies", bodies.into_pyarray(py))?;
-    result.set_item("hull", hull)?;
-    result.set_item("gears", gears)?;
-    result.set_item("grousers", grousers)?;
-    result.set_item("shoes", shoes)?;
-    result.set_item("wheels", wheels(py, model)?)?;
-    result.set_item("belly", rows(py, &belly))?;
-    let [envelope, root_envelope] = model.envelopes(BELT_TURN).map(|points| {
-        let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
-        rows(py, &points)
-    });
-    result.set_item("envelope", envelope)?;
-    result.set_item("root_envelope", root_envelope)?;
-    result.set_item("goal", ground.goal_of(scenario))?;
-    Ok(result)
+    let drawn = PyDict::new(py);
+    drawn.set_item("circles", rows(py, &circles))?;
+    drawn.set_item("drives", drives.into_pyarray(py))?;
+    drawn.set_item("bodies", bodies.into_pyarray(py))?;
+    drawn.set_item("hull", hull)?;
+    drawn.set_item("gears", gears)?;
+    drawn.set_item("grousers", grousers)?;
+    let [envelope, root_envelope] = model.envelopes(mount, BELT_TURN);
+    drawn.set_item("envelope", points(py, &envelope))?;
+    drawn.set_item("root_envelope", points(py, &root_envelope))?;
+    Ok(drawn)
+}
+
+/// Points as rows.
+fn points<'py>(py: Python<'py>, points: &[Vector]) -> Bound<'py, PyArray2<f64>> {
+    let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+    rows(py, &points)
 }
 
 /// Wheels of both sides together, as an engine of bodies and joints would hold them.

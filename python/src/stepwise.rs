@@ -2,7 +2,8 @@
 
 use std::sync::Mutex;
 
-use crawler2d_core::{Error, Scenario};
+use crawler2d_core::{End, Error, Scenario};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -78,25 +79,30 @@ impl Simulation {
         Ok(())
     }
 
-    /// Gives the drivetrain a new command, or the robot a push.
-    #[pyo3(signature = (speed = None, push = None))]
-    fn command(&self, py: Python<'_>, speed: Option<f64>, push: Option<f64>) -> PyResult<()> {
+    /// Gives the drivetrain a new command, turns the flippers, or pushes the robot.
+    #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
+    fn command(
+        &self,
+        py: Python<'_>,
+        speed: Option<f64>,
+        flipper_angle: Option<f64>,
+        rear_flipper_angle: Option<f64>,
+        push: Option<f64>,
+    ) -> PyResult<()> {
         self.with(py, |simulation| {
-            // Both or none: a refused speed takes the push back.
-            let before = simulation.push();
-            push.map_or(Ok(()), |push| simulation.set_push(push))?;
-            let commanded = speed.map_or(Ok(()), |speed| simulation.set_speed(speed));
-            commanded.or_else(|error| simulation.set_push(before).and(Err(error)))
+            let ends = [(End::Front, flipper_angle), (End::Rear, rear_flipper_angle)];
+            simulation.command_all(speed, ends, push)
         })
     }
 
     /// The state of this instant.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (reading, contacts, outcome) = self.with(py, |simulation| {
+        let (reading, contacts, outcome, flippers) = self.with(py, |simulation| {
             Ok((
                 simulation.reading(),
                 simulation.contact_table(),
                 simulation.outcome(),
+                simulation.flipper_angles().collect::<Vec<_>>(),
             ))
         })?;
         let state = PyDict::new(py);
@@ -114,6 +120,7 @@ impl Simulation {
         state.set_item("commanded_speed", reading.commanded_speed)?;
         state.set_item("track_speed", reading.track_speed)?;
         state.set_item("track_position", reading.track_position)?;
+        state.set_item("flipper_angles", flippers.into_pyarray(py))?;
         state.set_item("contacts", convert::contacts(py, contacts)?)?;
         state.set_item("outcome", outcome.map(crawler2d_core::Outcome::name))?;
         Ok(state)

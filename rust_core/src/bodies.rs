@@ -2,7 +2,7 @@
 
 use rapier2d_f64::math::Vector;
 
-use crate::robot::{Model, Shape};
+use crate::robot::{Model, Mount, Shape};
 
 /// A wheel; both sides together, unless these meet lanes of their own.
 #[derive(Clone, Debug)]
@@ -33,7 +33,8 @@ pub struct ChassisBody {
 }
 
 impl Model {
-    /// The robot as an engine of bodies and joints would hold it: chassis and wheels.
+    /// The robot as an engine of bodies and joints would hold it: chassis and wheels, those of flippers
+    /// apart.
     ///
     /// Together they have the robot's mass, centre of mass and moment of inertia, and the wheels turn
     /// with the inertia of its track.
@@ -42,6 +43,7 @@ impl Model {
             .parts
             .iter()
             .enumerate()
+            .filter(|(_, part)| part.mount == Mount::Chassis)
             .filter_map(|(i, part)| match &part.shape {
                 Shape::Disc { center, radius } => {
                     let area = std::f64::consts::PI * radius * radius;

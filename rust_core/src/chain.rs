@@ -81,10 +81,17 @@ impl Model {
         self
     }
 
-    /// [kg] Mass of chassis and chains.
+    /// [kg] Mass of chassis, chains and flippers.
     pub fn total_mass(&self) -> f64 {
         let of_chain = |chain: &ChainOfShoes| chain.shoe_mass * chain.path.count as f64;
-        self.mass + self.chains.iter().map(of_chain).sum::<f64>()
+        let of_chains: f64 = self.chains.iter().map(of_chain).sum();
+        let of_flippers: f64 = self.flippers.iter().map(|flipper| flipper.mass).sum();
+        self.mass + of_chains + of_flippers
+    }
+
+    /// Whether nothing but drives moves over the chassis.
+    pub(crate) fn is_one_body(&self) -> bool {
+        self.chains.is_empty() && self.flippers.is_empty()
     }
 
     /// The same with all that moves over the chassis fixed to it where it is.
@@ -96,9 +103,13 @@ impl Model {
                 moment += place.translation * chain.shoe_mass;
             }
         }
+        for (flipper, mounted) in self.flippers.iter().zip(&running.flippers) {
+            mass += flipper.mass;
+            moment += mounted.pose.translation * flipper.mass;
+        }
         Self {
             mass,
-            center_of_mass: if self.chains.is_empty() {
+            center_of_mass: if self.is_one_body() {
                 self.center_of_mass
             } else {
                 moment / mass

@@ -38,9 +38,14 @@ impl Scenario {
     /// Rules that join several branches of the tree.
     fn check(&self) -> Result<(), ScenarioError> {
         let limit = self.robot.drivetrain.max_speed;
-        if self.drive.speed.abs() > limit {
+        let (path, speed) = self.drive.fastest();
+        if speed.abs() > limit {
             let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
-            return Err(ScenarioError::new("drive.speed", self.drive.speed, rule));
+            return Err(ScenarioError::new(path, speed, rule));
+        }
+        if self.drive.gait.is_some() && self.robot.flippers.is_none() {
+            let rule = "must be null: the robot has no flippers";
+            return Err(ScenarioError::new("drive.gait", "a gait", rule));
         }
         let model = Model::new(&self.robot)?;
         let (tip, root) = model.parts.iter().flat_map(Part::discs).fold(

@@ -26,6 +26,8 @@ mod drive;
 mod dynamics;
 mod error;
 mod events;
+mod flipper;
+mod gait;
 mod monitor;
 mod outcome;
 mod outline;
@@ -50,16 +52,18 @@ pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContac
 pub use dynamics::ChainReading;
 pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
+pub use flipper::Flipper;
 pub use outcome::Outcome;
 pub use outline::{Disc, Gear, Grouser, ShoeLoop};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Mount, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
-    BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,
-    ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA,
-    Scenario, SegmentalTrack, SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain,
-    TorqueSharing, Track, TrackOutline, Wheel,
+    BeltTrack, CircumferentialWheels, Climb, ContactMethod, Drive, Drivetrain, End, Ends,
+    FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold,
+    HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SegmentalTrack,
+    SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing, Track,
+    TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

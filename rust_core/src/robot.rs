@@ -5,6 +5,7 @@ use rapier2d_f64::math::{Pose, Rotation, Vector};
 use crate::chain::ChainOfShoes;
 use crate::contact::Running;
 use crate::error::ScenarioError;
+use crate::flipper::Flipper;
 use crate::outline::{Disc, Envelope, Gear, Grouser, Motion};
 use crate::scenario::Robot;
 use crate::track;
@@ -35,6 +36,8 @@ pub struct Model {
     /// Chains of shoes, each with the drive of its number; then `mass`, `center_of_mass` and
     /// `moment_of_inertia` are those of the chassis without them.
     pub chains: Vec<ChainOfShoes>,
+    /// Arms that pivot on it; these, too, are then not in the figures of the chassis.
+    pub flippers: Vec<Flipper>,
 }
 
 /// What a part of the robot stands for; the code is the `body_kind` of the contact table.
@@ -80,6 +83,8 @@ pub enum Mount {
     Chassis,
     /// The shoe of that number.
     Shoe(usize),
+    /// The arms at one end, of that number.
+    Flipper(usize),
 }
 
 impl Mount {
@@ -87,7 +92,7 @@ impl Mount {
     pub fn shoe(self) -> Option<usize> {
         match self {
             Self::Shoe(shoe) => Some(shoe),
-            Self::Chassis => None,
+            Self::Chassis | Self::Flipper(_) => None,
         }
     }
 }
@@ -159,7 +164,9 @@ impl Model {
             drive_force: robot.drivetrain.max_force(&robot.outline) / track.motors as f64,
             pushes_chassis: track.pushes_chassis,
             chains: Vec::new(),
+            flippers: Vec::new(),
         }
+        .with_flippers(Flipper::of(robot))?
         .with_chains(track.chains))
     }
 
@@ -181,16 +188,19 @@ impl Model {
             let chain = self.chains.iter().find(|c| c.shoes.contains(&shoe))?;
             Some(chain.path.motion_at(running.shoes[shoe].translation))
         };
-        let run = part.drive.map_or(0.0, |k| running.drives[k]);
-        let moved = part.mount.shoe().and_then(of_shoe);
-        moved.unwrap_or_else(|| part.motion(run, 0.0))
+        let over_mount = part.motion(part.run(running), 0.0);
+        match part.mount {
+            Mount::Chassis => over_mount,
+            Mount::Shoe(shoe) => of_shoe(shoe).unwrap_or(over_mount),
+            Mount::Flipper(k) => over_mount.seen_from(running.flippers[k].pose),
+        }
     }
 
     /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed
     /// circles, all their motors' force, their mass.
     pub(crate) fn closed(&self) -> Self {
-        let discs: Vec<Disc> = self.discs_of_track(0).map(|(tip, _)| tip).collect();
-        let belt = Envelope::new(&discs);
+        let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
+        let belt = Envelope::new(&round(Mount::Chassis));
         // A closed belt shields a belly that lies inside of it.
         let reaches_out = |part: &&Part| match &part.shape {
             Shape::Polygon { corners } if part.mount == Mount::Chassis => {
@@ -200,16 +210,18 @@ impl Model {
         };
         let belly = self.parts.iter().filter(reaches_out).cloned();
         let tracks = self.tracks();
-        let belts = (0..tracks).map(|lane| Part {
-            kind: BodyKind::Belt,
-            shape: Shape::Hull {
-                discs: discs.clone(),
-                grouser_height: 0.0,
-            },
-            drive: Some(lane),
-            friction_limit: f64::INFINITY,
-            lane,
-            mount: Mount::Chassis,
+        let belts = (0..tracks).flat_map(|lane| {
+            self.mounts_of_tracks().map(move |mount| Part {
+                kind: BodyKind::Belt,
+                shape: Shape::Hull {
+                    discs: round(mount),
+                    grouser_height: 0.0,
+                },
+                drive: Some(lane),
+                friction_limit: f64::INFINITY,
+                lane,
+                mount,
+            })
         });
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
@@ -234,16 +246,23 @@ impl Model {
         of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
     }
 
-    /// Circumscribed and root circles of the bodies of the track on a lane.
-    fn discs_of_track(&self, lane: usize) -> impl Iterator<Item = (Disc, Disc)> + '_ {
-        let on_lane = self.parts.iter().filter(move |part| part.lane == lane);
-        on_lane.flat_map(|part| part.discs().collect::<Vec<_>>())
+    /// What carries a closed belt: the chassis and the flippers.
+    pub fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + use<> {
+        let flippers = (0..self.flippers.len()).map(Mount::Flipper);
+        std::iter::once(Mount::Chassis).chain(flippers)
     }
 
-    /// The taut belts round the circumscribed and the root circles of the track's bodies, as points
-    /// of the chassis frame, counter-clockwise; an arc is cut every `turn` [rad].
-    pub fn envelopes(&self, turn: f64) -> [Vec<Vector>; 2] {
-        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0).unzip();
+    /// Circumscribed and root circles of the bodies of the track on a lane that this carries.
+    fn discs_of_track(&self, lane: usize, on: Mount) -> impl Iterator<Item = (Disc, Disc)> + '_ {
+        let is_of_track = move |part: &&Part| part.lane == lane && part.mount == on;
+        let of_track = self.parts.iter().filter(is_of_track);
+        of_track.flat_map(|part| part.discs().collect::<Vec<_>>())
+    }
+
+    /// The taut belts round the circumscribed and the root circles of the bodies of a track, as points of
+    /// the frame of what carries it, counter-clockwise; an arc is cut every `turn` [rad].
+    pub fn envelopes(&self, on: Mount, turn: f64) -> [Vec<Vector>; 2] {
+        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0, on).unzip();
         [tips, roots].map(|discs| {
             let mut points = Envelope::new(&discs).polyline(turn);
             points.reverse();
@@ -265,7 +284,10 @@ impl Model {
                 .map(|(tip, _)| from_center(&tip.center) + tip.radius)
                 .fold(0.0, f64::max),
         };
-        self.parts.iter().map(of_part).fold(0.0, f64::max)
+        let of_flipper = |flipper: &Flipper| from_center(&flipper.pivot) + flipper.reach;
+        let parts = self.parts.iter().map(of_part);
+        let flippers = self.flippers.iter().map(of_flipper);
+        parts.chain(flippers).fold(0.0, f64::max)
     }
 }
 
@@ -313,9 +335,14 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
+    /// [m] How far its surface has run over its mount.
+    pub(crate) fn run(&self, running: &Running) -> f64 {
+        self.drive.map_or(0.0, |k| running.run(self.mount, k))
+    }
+
     /// Its own frame in that of its mount.
     pub(crate) fn place(&self, running: &Running) -> Pose {
-        let run = self.drive.map_or(0.0, |k| running.drives[k]);
+        let run = self.run(running);
         match &self.shape {
             Shape::Disc { center, .. } => Pose::from_translation(*center),
             Shape::Gear { center, gear } => {

@@ -33,6 +33,8 @@ pub struct Run {
     pub drives: usize,
     /// Number of shoes of all chains.
     pub shoes: usize,
+    /// Number of ends with flippers.
+    pub flippers: usize,
     /// [s] Computing time; kept apart from the metrics, which repeat bit by bit.
     pub wall_time: f64,
 }
@@ -270,6 +272,7 @@ fn advance(
         events,
         drives: simulation.drives(),
         shoes: simulation.shoes().len(),
+        flippers: simulation.flipper_angles().count(),
         wall_time: begin.elapsed().as_secs_f64(),
     })
 }

@@ -57,7 +57,7 @@ impl Model {
             parts.extend(of_track.map(|part| Part {
                 drive: part.drive.map(|k| of_side(k, lane)),
                 mount: match part.mount {
-                    Mount::Chassis => Mount::Chassis,
+                    Mount::Chassis | Mount::Flipper(_) => part.mount,
                     Mount::Shoe(i) => Mount::Shoe(i + lane * shoes),
                 },
                 lane,

@@ -2,9 +2,10 @@
 
 use rapier2d_f64::math::{Pose, Vector};
 
+use crate::contact::Running;
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc};
-use crate::robot::{BodyKind, Model, Part, Shape};
+use crate::robot::{BodyKind, Model, Shape};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Profile};
 
@@ -20,19 +21,23 @@ pub(crate) fn start_position(
         center: turned(d.center),
         ..d
     };
+    let running = Running::at_start(model, scenario.start.track_phase);
     // What touches each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
-    let shoes = model
-        .chains
-        .iter()
-        .flat_map(|chain| chain.path.places(scenario.start.track_phase));
-    let shoes: Vec<Pose> = shoes.collect();
     for part in &model.parts {
         let Touching { discs, segments } = &mut touching[part.lane];
         if part.kind == BodyKind::Guide {
             continue; // inside of its chain
         }
-        discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
+        let (mount, run) = (
+            running.mounted(part.mount, Pose::IDENTITY),
+            part.run(&running),
+        );
+        let placed = |p: Vector| turned(mount.transform_point(p));
+        discs.extend(part.discs().map(|(_, root)| Disc {
+            center: placed(root.center),
+            ..root
+        }));
         match &part.shape {
             Shape::Disc { .. } => {}
             Shape::Hull { discs: round, .. } => {
@@ -44,30 +49,32 @@ pub(crate) fn start_position(
                 );
             }
             Shape::Gear { center, gear } => {
-                let start = -scenario.start.track_phase / gear.radius;
+                let start = -run / gear.radius;
                 for direction in gear.directions() {
                     let corners = gear.corners(direction + start);
-                    segments.extend(closed(&corners.map(|c| turned(*center + c))));
+                    segments.extend(closed(&corners.map(|c| placed(*center + c))));
                 }
             }
             Shape::Grouser(grouser) => {
-                let place = grouser.place(scenario.start.track_phase);
-                let corners = grouser.corners().map(|c| turned(place.transform_point(c)));
+                let place = grouser.place(run);
+                let corners = grouser.corners().map(|c| placed(place.transform_point(c)));
                 segments.extend(closed(&corners));
             }
             Shape::Polygon { corners } => {
-                let place = part.mount.shoe().map_or(Pose::IDENTITY, |shoe| shoes[shoe]);
-                let corners: Vec<Vector> = corners
-                    .iter()
-                    .map(|c| turned(place.transform_point(*c)))
-                    .collect();
+                let corners: Vec<Vector> = corners.iter().map(|c| placed(*c)).collect();
                 segments.extend(closed(&corners));
             }
         }
     }
     // The built outline sets where the robot begins, too, although it need not touch the ground.
     let outline = outline::end_discs(&scenario.robot.outline).into_iter();
-    let tips = model.parts.iter().flat_map(Part::discs).map(|(tip, _)| tip);
+    let tips = model.parts.iter().flat_map(|part| {
+        let mount = running.mounted(part.mount, Pose::IDENTITY);
+        part.discs().map(move |(tip, _)| Disc {
+            center: mount.transform_point(tip.center),
+            ..tip
+        })
+    });
     let of_discs = outline
         .chain(tips)
         .map(turned_disc)

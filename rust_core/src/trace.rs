@@ -69,6 +69,10 @@ pub struct Trace {
     pub track_tension: Vec<f64>,
     /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
     pub shoe_poses: Vec<f64>,
+    /// [rad] Angle of the flippers at each end over the chassis, upwards > 0.
+    pub flipper_angles: Vec<f64>,
+    /// [N m] Torque of their motors, mean over the last step.
+    pub flipper_torques: Vec<f64>,
 }
 
 /// Contacts of all samples.
@@ -213,6 +217,8 @@ impl Recorder {
             t.shoe_poses
                 .extend([shoe.center.x, shoe.center.y, shoe.angle]);
         }
+        t.flipper_angles.extend(simulation.flipper_angles());
+        t.flipper_torques.extend(simulation.flipper_torques());
         self.traction = 0.0;
         self.contacts.append(simulation, &mut self.readings);
     }

@@ -10,7 +10,7 @@ use super::Contact;
 use crate::outline::cut::{self, Piece};
 use crate::outline::search::maximise;
 use crate::outline::{Disc, Envelope};
-use crate::robot::Part;
+use crate::robot::{Mount, Part};
 use crate::terrain::{Profile, Side};
 
 /// [m] A contact this close to a piece of the ground bears on it.
@@ -19,11 +19,13 @@ const BEARS: f64 = 5e-4;
 /// [m] Of edges that lie so equally deep the left one counts, whatever rounding says.
 const SAME_DEPTH: f64 = 1e-6;
 
-/// The taut belts round a track's bodies, in the chassis frame.
+/// The taut belts round a track's bodies, in the frame of what carries it.
 #[derive(Clone, Debug)]
 pub(crate) struct TrackEnvelope {
     /// Lane that the track meets.
-    lane: usize,
+    pub lane: usize,
+    /// The chassis or a flipper.
+    pub mount: Mount,
     /// Circumscribed circles.
     discs: Vec<Disc>,
     /// Part that each disc belongs to.
@@ -58,6 +60,8 @@ pub struct Intrusion {
     pub side: Side,
     /// Index of that lane.
     pub(crate) lane: usize,
+    /// What carries the track.
+    pub(crate) mount: Mount,
     /// Edges inside the envelope, from the left.
     pub edges: Vec<i32>,
     /// Of those that stand out, the one that reaches deepest, or -1.
@@ -81,15 +85,15 @@ pub struct Intrusion {
 }
 
 impl TrackEnvelope {
-    /// The envelope of the parts that belong to the track on a lane.
+    /// The envelope of the parts that belong to the track on a lane that `mount` carries.
     ///
     /// Wheels sink into the ground by micrometres, and a belt that ran along their lowest points would
     /// join all the ground under the robot to one piece: `margin` [m] keeps it inside of that.
-    pub(crate) fn new(parts: &[Part], lane: usize, margin: f64) -> Self {
+    pub(crate) fn new(parts: &[Part], (lane, mount): (usize, Mount), margin: f64) -> Self {
         let of_track: Vec<(usize, Disc, Disc)> = parts
             .iter()
             .enumerate()
-            .filter(|(_, part)| part.lane == lane)
+            .filter(|(_, part)| part.lane == lane && part.mount == mount)
             .flat_map(|(i, part)| part.discs().map(move |(tip, root)| (i, tip, root)))
             .collect();
         let within = |disc: &Disc| Disc {
@@ -100,6 +104,7 @@ impl TrackEnvelope {
         let roots: Vec<Disc> = of_track.iter().map(|(_, _, root)| within(root)).collect();
         Self {
             lane,
+            mount,
             parts: of_track.iter().map(|(part, ..)| *part).collect(),
             tips: Belt::new(&discs),
             roots: Belt::new(&roots),
@@ -242,6 +247,7 @@ impl TrackEnvelope {
         Intrusion {
             side,
             lane: self.lane,
+            mount: self.mount,
             edges: Vec::new(),
             edge: -1,
             bodies: hull

@@ -14,9 +14,11 @@ mod reference;
 use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
+use crate::chain::ChainOfShoes;
 use crate::dynamics::Grip;
+use crate::flipper::{Flipper, Mounted};
 use crate::plane::right_of;
-use crate::robot::Mount;
+use crate::robot::{Model, Mount};
 pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
@@ -30,14 +32,37 @@ pub(crate) struct Running {
     pub drives: Vec<f64>,
     /// Frames of the shoes in that of the chassis.
     pub shoes: Vec<Pose>,
+    /// Places of the flippers.
+    pub flippers: Vec<Mounted>,
 }
 
 impl Running {
+    /// All of a robot at time 0, when its tracks have run by `track_phase` [m].
+    pub(crate) fn at_start(model: &Model, track_phase: f64) -> Self {
+        let places = |chain: &ChainOfShoes| chain.path.places(track_phase);
+        let mounted = |arm: &Flipper| arm.mounted(arm.sign * arm.start_angle, model.drive_radius);
+        Self {
+            drives: vec![track_phase; model.drives],
+            shoes: model.chains.iter().flat_map(places).collect(),
+            flippers: model.flippers.iter().map(mounted).collect(),
+        }
+    }
+
     /// Frame of a mount on a robot whose chassis frame is `pose`.
     pub(crate) fn mounted(&self, mount: Mount, pose: Pose) -> Pose {
         match mount {
             Mount::Chassis => pose,
             Mount::Shoe(shoe) => pose * self.shoes[shoe],
+            Mount::Flipper(k) => pose * self.flippers[k].pose,
+        }
+    }
+
+    /// [m] How far the surface of a drive has run over a mount.
+    pub(crate) fn run(&self, mount: Mount, drive: usize) -> f64 {
+        let over_chassis = self.drives[drive];
+        match mount {
+            Mount::Flipper(k) => over_chassis + self.flippers[k].run,
+            Mount::Chassis | Mount::Shoe(_) => over_chassis,
         }
     }
 }

@@ -96,14 +96,20 @@ impl OwnContact {
                     });
                 }
                 Outline::Gear { drive, gear } => {
-                    gear.find(lane, pose, running.drives[*drive], prediction, contacts);
+                    gear.find(
+                        lane,
+                        pose,
+                        running.run(*mount, *drive),
+                        prediction,
+                        contacts,
+                    );
                 }
                 Outline::Grouser {
                     drive,
                     grouser,
                     hull,
                 } => {
-                    let place = pose * grouser.place(running.drives[*drive]);
+                    let place = pose * grouser.place(running.run(*mount, *drive));
                     hull.find(lane, place, prediction, contacts);
                 }
                 Outline::Hull(hull) => hull.find(lane, pose, prediction, contacts),

@@ -7,7 +7,7 @@ use super::signals::{Bearing, DriveMean, Stance};
 use super::statics::{Condition, Role, Statics, Support};
 use super::{LoadedIntrusion, StopContact};
 use crate::contact::{Contact, Intrusion, Running, TrackEnvelope};
-use crate::dynamics::{Direction, Levers};
+use crate::dynamics::{Carrier, Direction, Levers};
 use crate::plane::{left_of, right_of};
 use crate::robot::{BodyKind, Model};
 use crate::scenario::{ContactMethod, SeizureCriteria};
@@ -42,8 +42,10 @@ impl Scene<'_> {
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
         let pose = Pose::new(stance.position, stance.angle);
         let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
-        let tracks = self.envelopes.iter().zip(self.lanes);
-        let found = tracks.flat_map(|(envelope, lane)| envelope.intrusions(lane, pose));
+        let found = self.envelopes.iter().flat_map(|envelope| {
+            let pose = self.running.mounted(envelope.mount, pose);
+            envelope.intrusions(&self.lanes[envelope.lane], pose)
+        });
         let with_force = found.filter(|i| i.edge >= 0).map(|place| {
             let on_it = stance
                 .bearings
@@ -152,10 +154,19 @@ impl Scene<'_> {
     }
 
     fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
-        let pose = Pose::new(stance.position, stance.angle);
-        let center = pose.transform_point(self.model.center_of_mass);
+        self.levers_at(Pose::new(stance.position, stance.angle), contact)
+    }
+
+    /// Those of a contact of the robot, all of it one body, in a pose.
+    fn levers_at(&self, pose: Pose, contact: &Contact) -> Levers {
+        let origin = self.model.center_of_mass;
+        let body = Carrier {
+            center: pose.transform_point(origin),
+            origin,
+            angle: pose.rotation.angle(),
+        };
         let motion = self.model.motion(contact.part, &self.running);
-        Levers::new(contact, (center, stance.angle), motion, self.model)
+        Levers::new(contact, &body, motion, self.model)
     }
 
     /// The conditions that this stop has at all.
@@ -233,10 +244,7 @@ impl Scene<'_> {
         slides: f64,
         role: Role,
     ) -> Support {
-        let center = pose.transform_point(self.model.center_of_mass);
-        let at = (center, pose.rotation.angle());
-        let motion = self.model.motion(contact.part, &self.running);
-        let levers = Levers::new(contact, at, motion, self.model);
+        let levers = self.levers_at(pose, contact);
         let drive = self.model.parts[contact.part].drive;
         Support::new(&levers, drive, (self.friction(contact.part), slides), role)
     }
@@ -262,8 +270,12 @@ impl Scene<'_> {
     fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
         let edge = &self.lanes[place.lane].edges[place.edge as usize];
         let point = Vector::new(edge.x, edge.y);
-        let within = pose.inverse_transform_point(point);
-        let normal = -(pose.rotation * self.envelopes[place.lane].outward_at(place, within));
+        let track = self.running.mounted(place.mount, pose);
+        let within = track.inverse_transform_point(point);
+        let of_track = |e: &&TrackEnvelope| e.lane == place.lane && e.mount == place.mount;
+        let envelope = self.envelopes.iter().find(of_track);
+        let outward = envelope.map_or(Vector::Y, |e| e.outward_at(place, within));
+        let normal = -(track.rotation * outward);
         let arm = point - pose.transform_point(self.model.center_of_mass);
         let speed = |k: usize| stance.drives[k].speed;
         let drives = place.bodies.map(|body| self.model.parts[body].drive);

@@ -40,7 +40,7 @@ impl Dynamics {
         reading
     }
 
-    /// [N s] Momentum of chassis and shoes.
+    /// [N s] Momentum of chassis, shoes and flippers.
     pub(crate) fn momentum(&self, state: &State) -> Vector {
         let of_chain = |chain: &Chain| {
             let shoes = &state.shoes[chain.rule.shoes.clone()];
@@ -48,7 +48,7 @@ impl Dynamics {
             velocities.sum::<Vector>() * chain.rule.shoe_mass
         };
         let of_shoes: Vector = self.chains.iter().map(of_chain).sum();
-        state.velocity * self.model.mass + of_shoes
+        state.velocity * self.model.mass + of_shoes + self.momentum_of_flippers(state)
     }
 
     /// Adds a row for each place where a shoe rests on the guide, or nearly, in the middle of the step.
@@ -82,14 +82,8 @@ impl Dynamics {
         }
     }
 
-    /// Advances by a piece of `h` [s]; the step began at `start`.
-    pub(super) fn substep_of_chains(
-        &mut self,
-        state: &mut State,
-        start: (Vector, f64),
-        set_point: f64,
-        h: f64,
-    ) {
+    /// Advances by a piece of `h` [s].
+    pub(super) fn substep_of_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         let soft = self.softness(h);
         let phase = self.start_phase(state, set_point, h);
         self.start_chains(state, h);
@@ -98,7 +92,7 @@ impl Dynamics {
         }
         self.guess(h);
         self.solve(state, &phase);
-        self.move_on(state, start, h);
+        self.move_on(state, h);
         self.move_chains(state, set_point, h);
         self.end_phase(state, phase);
     }
@@ -149,8 +143,12 @@ impl Dynamics {
     /// Velocity and angular velocity of the chassis, with the chains; none if the constraints contradict
     /// each other.
     pub(super) fn solve_system(&mut self) -> Option<(Vector, f64)> {
-        for chain in &mut self.chains {
-            chain.eliminate(&mut self.system.rows)?;
+        if !self.chains.is_empty() {
+            let mut rows = self.system.of_chassis();
+            for chain in &mut self.chains {
+                chain.eliminate(&mut rows)?;
+            }
+            self.system.set_of_chassis(rows);
         }
         let (velocity, turn) = self.system.solve()?;
         for chain in &mut self.chains {

@@ -37,11 +37,11 @@ impl Dynamics {
         if self.limit_motors(state, phase) {
             self.set_actions(state, phase);
         }
-        // What chains take and give is not summed up: to give way is always right.
-        if self.chains.is_empty() {
+        // What chains and flippers take and give is not summed up: to give way is always right.
+        if self.model.is_one_body() {
             self.balance(state, phase);
         }
-        if !self.chains.is_empty() || self.energy_of_contacts(state) > 0.0 {
+        if !self.model.is_one_body() || self.energy_of_contacts(state) > 0.0 {
             self.give_way(state, phase);
             while self.limit_motors(state, phase) {
                 self.set_actions(state, phase);
@@ -100,6 +100,7 @@ impl Dynamics {
             };
             let change = Twist { velocity, turn }.less(state.twist());
             self.change_shoes(state);
+            self.change_flippers(state, &change);
             for (k, spin) in self.system.spins.iter_mut().enumerate() {
                 let is_free = self.motors[k].share().is_some();
                 spin.change = if is_free {
@@ -112,6 +113,7 @@ impl Dynamics {
             state.velocity += change.velocity * share;
             state.angular_velocity += change.turn * share;
             self.move_shoes(state, share);
+            self.move_flippers(state, share);
             for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
                 drive.spin += spin.change * share;
             }
@@ -136,6 +138,8 @@ impl Dynamics {
     fn largest(&self, change: &Twist) -> f64 {
         let spins = self.system.spins.iter();
         let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
+        let of_flippers = self.system.changes.iter().map(|change| change.abs());
+        let of_spins = of_spins.chain(of_flippers);
         let of_spins = of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max);
         let shoes = self.chains.iter().flat_map(|chain| &chain.solved);
         let of_shoes = shoes.map(|change| change.velocity.length() + change.turn.abs());
@@ -201,7 +205,8 @@ impl Dynamics {
     fn changes_of(&self, row: &Row, change: &Twist) -> [f64; 2] {
         let shoe = |i: usize| self.chains[i / self.shoes_a_chain].solved[i % self.shoes_a_chain];
         let idler = |k: usize| self.chains[k].idler_rate;
-        row.count(*change, shoe, |k| self.system.spins[k].change, idler)
+        let spin = |k: usize| self.system.spins[k].change;
+        row.count(*change, shoe, spin, idler, |k| self.system.changes[k])
     }
 
     /// The slope of the potential along a change, a share of it further on.
@@ -231,7 +236,9 @@ impl Dynamics {
             let of_push = push.action.change(change.velocity, change.turn, spin);
             slope -= push.damper().at(push.slip(state) + of_push * share) * of_push;
         }
-        slope + self.slope_of_chains(state, change, phase, share)
+        slope
+            + self.slope_of_chains(state, change, phase, share)
+            + self.slope_of_flippers(state, change, phase, share)
     }
 }
 

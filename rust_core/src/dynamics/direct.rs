@@ -23,6 +23,12 @@ pub(super) const DAMPING: f64 = 1e-6;
 const AT_ONCE: u32 = 4;
 /// The same of a chain, whose many contacts are then mended one by one, the worst first.
 const MENDINGS: u32 = 12;
+/// Flippers at most: one at either end.
+const FLIPPERS: usize = 2;
+/// Columns of the chassis, of the flippers, and the right-hand side.
+const CHASSIS: usize = 3;
+const UNKNOWNS: usize = CHASSIS + FLIPPERS;
+const RIGHT: usize = UNKNOWNS;
 /// A pivot smaller than this share of the largest entry is none.
 const SINGULAR: f64 = 1e-12;
 
@@ -66,8 +72,21 @@ impl Damper {
 
 /// The linear system, and what the drives with a spin of their own add to it.
 pub(super) struct System {
-    pub(super) rows: [[f64; 4]; 3],
+    /// Of the chassis and of the flippers that turn by themselves.
+    rows: [[f64; UNKNOWNS + 1]; UNKNOWNS],
+    flippers: usize,
     pub(super) spins: Vec<Spin>,
+    /// [rad/s] Turns of the flippers as they were solved, ...
+    pub(super) turns: [f64; FLIPPERS],
+    /// ... and what a step of the descent changes them by.
+    pub(super) changes: [f64; FLIPPERS],
+}
+
+/// What an impulse acts on besides the chassis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Acts {
+    pub drive: Option<usize>,
+    pub flipper: Option<usize>,
 }
 
 /// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the velocity's
@@ -76,8 +95,8 @@ pub(super) struct System {
 pub(super) struct Spin {
     inertia: f64,
     moment: f64,
-    columns: [f64; 3],
-    rows: [f64; 3],
+    columns: [f64; UNKNOWNS],
+    rows: [f64; UNKNOWNS],
     /// Whether a constraint acts on it.
     acts: bool,
     /// [rad/s] As it was solved.
@@ -87,61 +106,133 @@ pub(super) struct Spin {
 }
 
 impl System {
-    /// Of a robot with so many drives.
-    pub(super) fn new(drives: usize) -> Self {
+    /// Of a robot with so many drives and flippers.
+    pub(super) fn new(drives: usize, flippers: usize) -> Self {
         Self {
-            rows: [[0.0; 4]; 3],
+            rows: [[0.0; UNKNOWNS + 1]; UNKNOWNS],
+            flippers,
             spins: vec![Spin::default(); drives],
+            turns: [0.0; FLIPPERS],
+            changes: [0.0; FLIPPERS],
+        }
+    }
+
+    /// A chassis that nothing acts on.
+    pub(super) fn start(&mut self, mass: f64, inertia: f64, velocity: Vector, moment: f64) {
+        self.rows = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
+        let momentum = [mass * velocity.x, mass * velocity.y, moment];
+        for (i, mass) in [mass, mass, inertia].into_iter().enumerate() {
+            self.rows[i][i] = mass;
+            self.rows[i][RIGHT] = momentum[i];
+        }
+    }
+
+    /// Gives a flipper that turns with the chassis a row of its own.
+    pub(super) fn hold(&mut self, flipper: usize) {
+        self.rows[CHASSIS + flipper][CHASSIS + flipper] = 1.0;
+    }
+
+    /// The rows of the chassis alone: three columns and the right-hand side.
+    pub(super) fn of_chassis(&self) -> [[f64; 4]; 3] {
+        let row = |i: usize| {
+            let [a, b, c, ..] = self.rows[i];
+            [a, b, c, self.rows[i][RIGHT]]
+        };
+        [row(0), row(1), row(2)]
+    }
+
+    pub(super) fn set_of_chassis(&mut self, rows: [[f64; 4]; 3]) {
+        for (own, [a, b, c, right]) in self.rows.iter_mut().zip(rows) {
+            own[..CHASSIS].copy_from_slice(&[a, b, c]);
+            own[RIGHT] = right;
         }
     }
 
     /// Adds a constraint whose impulse along `force` is that of a damper along `action`.
-    pub(super) fn add(
-        &mut self,
-        force: &Action,
-        action: &Action,
-        spin: Option<usize>,
-        damper: Damper,
-    ) {
+    pub(super) fn add(&mut self, force: &Action, action: &Action, acts: Acts, damper: Damper) {
         let (f, d) = (force.body(), action.body());
         let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
         for (row, f) in self.rows.iter_mut().zip(f) {
             for (entry, d) in row.iter_mut().zip(d) {
                 *entry += stiffness * f * d;
             }
-            row[3] += f * impulse;
+            row[RIGHT] += f * impulse;
         }
-        let Some(k) = spin.filter(|_| action.spin_lever != 0.0 || force.spin_lever != 0.0) else {
+        if let Some(k) = acts.flipper {
+            let own = CHASSIS + k;
+            for i in 0..CHASSIS {
+                self.rows[i][own] += stiffness * f[i] * action.flipper_lever;
+                self.rows[own][i] += stiffness * force.flipper_lever * d[i];
+            }
+            self.rows[own][own] += stiffness * force.flipper_lever * action.flipper_lever;
+            self.rows[own][RIGHT] += force.flipper_lever * impulse;
+        }
+        let Some(k) = acts
+            .drive
+            .filter(|_| action.spin_lever != 0.0 || force.spin_lever != 0.0)
+        else {
             return;
         };
         let spin = &mut self.spins[k];
         spin.acts = true;
         spin.inertia += stiffness * force.spin_lever * action.spin_lever;
         spin.moment += force.spin_lever * impulse;
-        for i in 0..3 {
+        for i in 0..CHASSIS {
             spin.rows[i] += stiffness * f[i] * action.spin_lever;
             spin.columns[i] += stiffness * force.spin_lever * d[i];
+        }
+        if let Some(k) = acts.flipper {
+            let own = CHASSIS + k;
+            spin.rows[own] += stiffness * force.flipper_lever * action.spin_lever;
+            spin.columns[own] += stiffness * force.spin_lever * action.flipper_lever;
         }
     }
 
     /// Velocity and angular velocity; none if the constraints contradict each other.
     pub(super) fn solve(&mut self) -> Option<(Vector, f64)> {
+        let count = CHASSIS + self.flippers;
         for spin in self.spins.iter().filter(|spin| spin.acts) {
-            for i in 0..3 {
+            for i in 0..count {
                 let share = spin.rows[i] / spin.inertia;
-                for j in 0..3 {
+                for j in 0..count {
                     self.rows[i][j] -= share * spin.columns[j];
                 }
-                self.rows[i][3] -= share * spin.moment;
+                self.rows[i][RIGHT] -= share * spin.moment;
             }
         }
-        let body = eliminate(self.rows)?;
+        for own in (CHASSIS..count).rev() {
+            self.eliminate_flipper(own)?;
+        }
+        let body = eliminate(self.of_chassis())?;
+        let mut known = [0.0; UNKNOWNS];
+        known[..CHASSIS].copy_from_slice(&body);
+        for own in CHASSIS..count {
+            let row = &self.rows[own];
+            let of_known: f64 = (0..own).map(|j| row[j] * known[j]).sum();
+            known[own] = (row[RIGHT] - of_known) / row[own];
+            self.turns[own - CHASSIS] = known[own];
+        }
         for spin in &mut self.spins {
-            let of_body: f64 = (0..3).map(|i| spin.columns[i] * body[i]).sum();
+            let of_body: f64 = (0..count).map(|i| spin.columns[i] * known[i]).sum();
             spin.value = (spin.moment - of_body) / spin.inertia;
         }
         let [x, y, turn] = body;
         Some((Vector::new(x, y), turn))
+    }
+
+    /// Takes the turn of a flipper out of the rows before its own; none if it has no inertia.
+    fn eliminate_flipper(&mut self, own: usize) -> Option<()> {
+        let pivot = self.rows[own];
+        if pivot[own] <= 0.0 || !pivot[own].is_finite() {
+            return None;
+        }
+        for row in &mut self.rows[..own] {
+            let share = row[own] / pivot[own];
+            for j in (0..own).chain([RIGHT]) {
+                row[j] -= share * pivot[j];
+            }
+        }
+        Some(())
     }
 }
 
@@ -190,6 +281,7 @@ impl Dynamics {
                 drive.spin = spin.value;
             }
             self.take_shoes(state);
+            self.take_flippers(state);
             let mut change = self.rows_follow_velocities(state);
             let fits = self.mend(state, mendings > AT_ONCE);
             if let Some(push) = &mut self.push {
@@ -257,11 +349,7 @@ impl Dynamics {
         let m = &self.model;
         let moment = self.free_moment(phase);
         let system = &mut self.system;
-        system.rows = [
-            [m.mass, 0.0, 0.0, m.mass * phase.velocity.x],
-            [0.0, m.mass, 0.0, m.mass * phase.velocity.y],
-            [0.0, 0.0, self.inertia, moment],
-        ];
+        system.start(m.mass, self.inertia, phase.velocity, moment);
         for (k, motor) in self.motors.iter().enumerate() {
             let share = motor.share().unwrap_or_default();
             let of_motor = phase.motor_turn(share, m);
@@ -278,6 +366,7 @@ impl Dynamics {
             };
         }
         self.assemble_chains(phase);
+        self.assemble_flippers(phase);
     }
 
     /// The system of the constraints as they are guessed.
@@ -314,7 +403,13 @@ impl Dynamics {
         let row = &self.rows[row];
         let on_body = [force.body(), action.body()];
         match row.link {
-            Link::Chassis => self.system.add(force, action, row.drive, damper),
+            Link::Chassis | Link::Flipper(_) => {
+                let acts = Acts {
+                    drive: row.drive,
+                    flipper: row.flipper(),
+                };
+                self.system.add(force, action, acts, damper);
+            }
             Link::Shoe(i) => {
                 let (chain, i) = (i / self.shoes_a_chain, i % self.shoes_a_chain);
                 self.chains[chain].add(i, on_body, damper);
@@ -330,7 +425,11 @@ impl Dynamics {
     pub(super) fn add_push(&mut self) {
         if let Some(push) = &self.push {
             let along = &push.action;
-            self.system.add(along, along, Some(0), push.damper());
+            let acts = Acts {
+                drive: Some(0),
+                ..Acts::default()
+            };
+            self.system.add(along, along, acts, push.damper());
         }
     }
 }

@@ -79,7 +79,8 @@ impl Row {
             |k: usize| state.drives[k].spin,
         );
         let idler = |k: usize| state.idlers[k].rate;
-        let [n, t] = self.count(state.twist(), shoe, spin, idler);
+        let flipper = |k: usize| state.flippers[k].rate;
+        let [n, t] = self.count(state.twist(), shoe, spin, idler, flipper);
         [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 

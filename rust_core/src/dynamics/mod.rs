@@ -10,6 +10,7 @@ mod chain;
 mod chains;
 mod descent;
 mod direct;
+mod flippers;
 mod grip;
 mod motors;
 mod row;
@@ -28,13 +29,16 @@ use crate::scenario::Solver;
 use chain::{Chain, ChainImpulses};
 pub use chains::ChainReading;
 use direct::System;
+use flippers::Arm;
 pub(crate) use grip::Grip;
 use motors::Motor;
 pub(crate) use motors::push_axis;
 use row::Row;
 pub(crate) use row::{Direction, Levers};
 use solve::{Phase, Push, Softness};
-pub(crate) use state::{DriveState, Shoe, State, idlers_at_rest, shoes_at_rest};
+pub(crate) use state::{
+    Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
+};
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.
@@ -69,6 +73,7 @@ pub(crate) struct Dynamics {
     system: System,
     /// Where the potential of a descent has kinks along a step.
     kinks: Vec<f64>,
+    flippers: Vec<Arm>,
     chains: Vec<Chain>,
     shoes_a_chain: usize,
     phase: Phase,
@@ -84,6 +89,7 @@ pub(crate) struct Impulses {
     motors: Vec<Motor>,
     contacts: Vec<LoadedContact>,
     chains: Vec<ChainImpulses>,
+    flippers: Vec<Motor>,
 }
 
 impl Dynamics {
@@ -100,9 +106,10 @@ impl Dynamics {
             motors: (0..model.drives).map(motor).collect(),
             torques: vec![0.0; model.drives],
             inertia: model.moment_of_inertia,
-            system: System::new(model.drives),
+            system: System::new(model.drives, model.flippers.len()),
             kinks: Vec::new(),
             shoes_a_chain: model.chains.first().map_or(1, |chain| chain.path.count),
+            flippers: model.flippers.iter().cloned().map(Arm::new).collect(),
             chains: model.chains.iter().cloned().map(Chain::new).collect(),
             phase: Phase::default(),
             push: model.pushes_chassis.then(Push::default),
@@ -123,6 +130,7 @@ impl Dynamics {
             motors: self.motors.clone(),
             contacts: self.loaded.clone(),
             chains: self.chains.iter().map(Chain::impulses).collect(),
+            flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
         }
     }
 
@@ -135,6 +143,9 @@ impl Dynamics {
         self.loaded = impulses.contacts;
         for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
             chain.start_from(impulses);
+        }
+        for (arm, motor) in self.flippers.iter_mut().zip(impulses.flippers) {
+            arm.motor = motor;
         }
     }
 
@@ -162,7 +173,9 @@ impl Dynamics {
         for drive in &mut state.drives {
             (drive.force, drive.traction) = (0.0, 0.0);
         }
-        let start = (state.center, state.angle);
+        for flipper in &mut state.flippers {
+            flipper.torque = 0.0;
+        }
         let substep = dt / f64::from(self.solver.substeps);
         for _ in 0..self.solver.substeps {
             let (mut left, mut pieces) = (substep, 0);
@@ -173,7 +186,7 @@ impl Dynamics {
                 } else {
                     (left, false)
                 };
-                self.substep(state, start, set_point, h);
+                self.substep(state, set_point, h);
                 if !strikes {
                     self.remember(h);
                 }
@@ -222,10 +235,10 @@ impl Dynamics {
         }
     }
 
-    /// Advances by a piece of `h` [s]; the step began at `start`.
-    fn substep(&mut self, state: &mut State, start: (Vector, f64), set_point: f64, h: f64) {
+    /// Advances by a piece of `h` [s].
+    fn substep(&mut self, state: &mut State, set_point: f64, h: f64) {
         if !self.chains.is_empty() {
-            self.substep_of_chains(state, start, set_point, h);
+            self.substep_of_chains(state, set_point, h);
             return;
         }
         let (soft, half) = (self.softness(h), 0.5 * h);
@@ -235,8 +248,9 @@ impl Dynamics {
         }
         self.guess(half);
         self.solve(state, &phase);
-        self.move_on(state, start, h);
+        self.move_on(state, h);
         phase.velocity += self.kick(half);
+        self.pull_flippers(half);
         phase.elapsed = h;
         self.guess_more(half);
         self.solve(state, &phase);
@@ -264,18 +278,22 @@ impl Dynamics {
         phase.spins.clear();
         phase.spins.extend(state.drives.iter().map(|d| d.spin));
         (phase.set_point, phase.elapsed) = (set_point, time);
+        self.start_flippers(state, time);
         phase
     }
 
-    /// Moves body, drives and gaps by `h` [s] at the velocities that they have.
-    fn move_on(&mut self, state: &mut State, start: (Vector, f64), h: f64) {
+    /// Moves chassis, drives, flippers and gaps by `h` [s] at the velocities that they have.
+    fn move_on(&mut self, state: &mut State, h: f64) {
         state.center += state.velocity * h;
         state.angle += state.angular_velocity * h;
         for k in 0..state.drives.len() {
             state.drives[k].position += state.track_speed(&self.model, k) * h;
         }
+        for flipper in &mut state.flippers {
+            flipper.angle += flipper.rate * h;
+        }
         for row in &mut self.rows {
-            row.follow(state, start, h);
+            row.follow(state, &self.model, h);
         }
     }
 
@@ -287,7 +305,6 @@ impl Dynamics {
     /// Turns contacts into rows, each with the impulses of the last step's nearest one.
     fn prepare(&mut self, state: &State, contacts: &[Contact]) {
         let half = 0.5 * self.solver.time_step;
-        let middle = state.moved(half);
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
         self.rows.clear();
         let mut last = Last {
@@ -298,7 +315,9 @@ impl Dynamics {
             let last = last.take_nearest(contact);
             let mut row = match self.model.parts[contact.part].mount {
                 Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
-                Mount::Chassis => Row::new(contact, last, state, &self.model, (middle, half)),
+                Mount::Chassis | Mount::Flipper(_) => {
+                    Row::new(contact, last, state, &self.model, half)
+                }
             };
             let lane = self.model.parts[contact.part].lane;
             row.friction = row.friction.min(self.frictions[lane]);
@@ -306,6 +325,7 @@ impl Dynamics {
             self.rows.push(row);
         }
         self.rest_on_guides(state, half);
+        self.place_flippers(state, half);
     }
 
     fn report(&mut self, state: &State, contacts: &[Contact], dt: f64) {

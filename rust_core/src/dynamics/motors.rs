@@ -28,9 +28,9 @@ pub(super) enum Motor {
 }
 
 /// Of the limit: less beyond it is rounding.
-const AT_LIMIT: f64 = 1e-12;
+pub(super) const AT_LIMIT: f64 = 1e-12;
 /// [m/s] A motor at its limit takes hold again when its surface is past the set-point by this.
-const PAST: f64 = 1e-9;
+pub(super) const PAST: f64 = 1e-9;
 
 impl Motor {
     /// Share of the limit with which it pushes; none if it holds.
@@ -42,12 +42,23 @@ impl Motor {
             Self::Free => Some(0.0),
         }
     }
+
+    /// One that holds with an impulse, if that is within its limit.
+    pub(super) fn within(impulse: f64, limit: f64) -> Self {
+        if impulse > limit {
+            Self::Pushes
+        } else if impulse < -limit {
+            Self::Brakes
+        } else {
+            Self::Holds
+        }
+    }
 }
 
 impl Dynamics {
     /// Lets motors beyond their limit go, and those past the set-point take hold; whether any did.
     pub(super) fn switch_motors(&mut self, state: &State, phase: &Phase) -> bool {
-        let mut switched = false;
+        let mut switched = self.switch_flippers(state, phase, true);
         for k in 0..self.motors.len() {
             let next = match self.motors[k] {
                 Motor::Free => Motor::Free,
@@ -66,7 +77,7 @@ impl Dynamics {
 
     /// Lets motors beyond their limit go; whether any did.
     pub(super) fn limit_motors(&mut self, state: &State, phase: &Phase) -> bool {
-        let mut switched = false;
+        let mut switched = self.switch_flippers(state, phase, false);
         for k in 0..self.motors.len() {
             if self.motors[k] == Motor::Holds {
                 self.motors[k] = self.at_limit(state, phase, k);
@@ -87,14 +98,7 @@ impl Dynamics {
     /// What a motor that holds has to do.
     fn at_limit(&self, state: &State, phase: &Phase, k: usize) -> Motor {
         let limit = self.model.drive_force * phase.elapsed * (1.0 + AT_LIMIT);
-        let impulse = self.motor_impulse(state, phase, k);
-        if impulse > limit {
-            Motor::Pushes
-        } else if impulse < -limit {
-            Motor::Brakes
-        } else {
-            Motor::Holds
-        }
+        Motor::within(self.motor_impulse(state, phase, k), limit)
     }
 
     /// [N s] What a motor has given so far.
@@ -122,5 +126,6 @@ pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
         lever: cross(arm, axis),
         drive_lever: model.drive_radius,
         back: 0.0,
+        flipper_lever: 0.0,
     }
 }

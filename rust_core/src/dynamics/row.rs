@@ -5,11 +5,11 @@ use rapier2d_f64::math::{Rotation, Vector};
 use super::direct::Damper;
 use super::grip::Grip;
 use super::solve::{Action, Admittance, Softness};
-use super::state::{State, Twist};
+use super::state::{Carrier, State, Twist};
 use crate::contact::{Contact, LoadedContact};
 use crate::outline::Motion;
 use crate::plane::{cross, left_of, right_of};
-use crate::robot::Model;
+use crate::robot::{Model, Mount};
 
 /// Compliance of the contacts of shoes in units of what goes with the contact frequency: shoes are light, but
 /// the robot stands on them. Harder ones meet hardly any deeper, and jam harder.
@@ -25,6 +25,8 @@ pub(super) enum Link {
     Shoe(usize),
     /// A shoe to the guide: the chassis takes the reaction.
     Guide { shoe: usize, chain: usize },
+    /// A flipper, or what a drive carries over it, to the ground.
+    Flipper(usize),
 }
 
 /// One contact's constraint in one step.
@@ -82,6 +84,8 @@ pub(crate) struct Direction {
     pub drive_lever: f64,
     /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
     pub back: f64,
+    /// [m] Lever of a flipper's turn; that of the chassis is then its pivot's.
+    pub flipper_lever: f64,
 }
 
 /// The touching point of the robot at the start of the step.
@@ -89,7 +93,9 @@ pub(crate) struct Direction {
 struct Place {
     /// [m] Gap.
     gap: f64,
-    /// [m] From the centre of mass to the contact, or to the axle that it turns about.
+    /// What carries it.
+    carrier: Carrier,
+    /// [m] From the carrier's centre to the contact, or to the axle that it turns about.
     arm: Vector,
     /// From there on.
     carried: Carried,
@@ -122,8 +128,8 @@ impl Carried {
 }
 
 impl Direction {
-    /// `arm` leads from the centre of mass to the contact; `motion` is the velocity of the surface over
-    /// the chassis for a surface speed of 1.
+    /// `arm` leads from the carrier's centre to the contact; `motion` is the velocity of the surface over
+    /// the carrier for a surface speed of 1.
     pub(crate) fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
         // The surface speed is the drive radius times the spin over the chassis, clockwise.
         let drive_lever = -model.drive_radius * unit.dot(motion);
@@ -132,6 +138,16 @@ impl Direction {
             lever: cross(arm, unit) - drive_lever,
             drive_lever,
             back: 0.0,
+            flipper_lever: 0.0,
+        }
+    }
+
+    /// The same of a contact of a flipper whose pivot lies so far from the chassis' centre of mass [m].
+    fn on_flipper(self, pivot: Vector) -> Self {
+        Self {
+            lever: cross(pivot, self.unit),
+            flipper_lever: self.lever,
+            ..self
         }
     }
 }
@@ -140,12 +156,12 @@ impl Direction {
 pub(crate) struct Levers {
     pub normal: Direction,
     pub tangent: Direction,
-    /// [m] From the centre of mass to the contact.
+    /// [m] From the carrier's centre to the contact.
     arm: Vector,
     carried: Carried,
 }
 
-/// How the touching point moves over the chassis for each metre of its drive.
+/// How the touching point moves over its carrier for each metre of its drive.
 #[derive(Clone, Copy, Debug, Default)]
 struct Carried {
     /// [m] To it from the axle that it turns about, or from where it began.
@@ -157,22 +173,21 @@ struct Carried {
 }
 
 impl Levers {
-    /// Those of a contact of a robot whose centre of mass and angle are `center` and `angle`, of a part that
-    /// its drive moves so over the chassis.
+    /// Those of a contact of a part that its drive moves so over what carries it.
     pub(crate) fn new(
         contact: &Contact,
-        (center, angle): (Vector, f64),
-        over_chassis: Motion,
+        carrier: &Carrier,
+        over_carrier: Motion,
         model: &Model,
     ) -> Self {
         let part = &model.parts[contact.part];
-        let arm = contact.point - center;
+        let arm = contact.point - carrier.center;
         let mut carried = Carried::default();
         let motion = if part.is_carried() {
-            let (motion, rotation) = (over_chassis, Rotation::new(angle));
+            let (motion, rotation) = (over_carrier, Rotation::new(carrier.angle));
             (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
             if motion.turn != 0.0 {
-                carried.spoke = arm - rotation * (motion.center - model.center_of_mass);
+                carried.spoke = arm - rotation * (motion.center - carrier.origin);
             }
             right_of(carried.spoke) * motion.turn + carried.along
         } else if part.drive.is_some() {
@@ -190,18 +205,20 @@ impl Levers {
 }
 
 impl Row {
-    /// The row of a contact that was found at `middle`, the centre of mass and angle of the middle of
-    /// the step; `last` is the same contact of the last step.
+    /// The row of a contact that was found in the middle of the step, which is half its `time` [s] from
+    /// now; `last` is the same contact of the last step.
     pub(super) fn new(
         contact: &Contact,
         last: Option<LoadedContact>,
         state: &State,
         model: &Model,
-        (middle, time): ((Vector, f64), f64),
+        time: f64,
     ) -> Self {
         let part = &model.parts[contact.part];
-        let drive_position = part.drive.map_or(0.0, |k| state.drives[k].position);
-        let advance = part.drive.map_or(0.0, |k| state.track_speed(model, k)) * time;
+        let [now, middle] = [0.0, time].map(|time| state.carrier(part.mount, time, model));
+        let of_drive = |of: &dyn Fn(usize) -> f64| part.drive.map_or(0.0, of);
+        let drive_position = of_drive(&|k| state.run_over(part.mount, k, model));
+        let advance = of_drive(&|k| state.speed_over(part.mount, k, model)) * time;
         let Levers {
             normal,
             tangent,
@@ -209,19 +226,20 @@ impl Row {
             carried,
         } = Levers::new(
             contact,
-            middle,
+            &middle,
             part.motion(drive_position + advance, advance.abs()),
             model,
         );
-        let turned = Rotation::new(middle.1 - state.angle);
+        let turned = Rotation::new(middle.angle - now.angle);
         let mut start = Place {
             gap: contact.distance,
+            carrier: now,
             arm: turned.inverse() * (arm - carried.spoke),
             carried: carried.before(turned, advance),
             drive_position,
         };
         // The gap was found in the middle of the step; the touching point was here at its start.
-        let then = state.center + start.arm + start.carried.spoke;
+        let then = now.center + start.arm + start.carried.spoke;
         start.gap -= contact.normal.dot(contact.point - then);
         Self {
             drive: part.drive,
@@ -231,7 +249,14 @@ impl Row {
             friction_guess: last.map_or(0.0, |l| l.friction_guess),
             gap: start.gap,
             start,
-            ..Self::between(normal, tangent, Link::Chassis)
+            ..match part.mount {
+                Mount::Flipper(k) => {
+                    let pivot = middle.center - state.moved(time).0;
+                    let [normal, tangent] = [normal, tangent].map(|d| d.on_flipper(pivot));
+                    Self::between(normal, tangent, Link::Flipper(k))
+                }
+                Mount::Chassis | Mount::Shoe(_) => Self::between(normal, tangent, Link::Chassis),
+            }
         }
     }
 
@@ -268,7 +293,16 @@ impl Row {
 
     /// The drive whose spin it acts on.
     pub(super) fn spin(&self) -> Option<usize> {
-        self.drive.filter(|_| matches!(self.link, Link::Chassis))
+        self.drive
+            .filter(|_| matches!(self.link, Link::Chassis | Link::Flipper(_)))
+    }
+
+    /// The flipper that it acts on.
+    pub(super) fn flipper(&self) -> Option<usize> {
+        match self.link {
+            Link::Flipper(k) => Some(k),
+            _ => None,
+        }
     }
 
     /// [m/s] Speed at which the gap opens.
@@ -283,10 +317,12 @@ impl Row {
 
     fn speed_along(&self, state: &State, along: &Direction) -> f64 {
         let of = |twist: Twist, lever: f64| along.unit.dot(twist.velocity) + lever * twist.turn;
+        let spin = || self.drive.map_or(0.0, |k| state.drives[k].spin);
         match self.link {
-            Link::Chassis => {
-                let spin = self.drive.map_or(0.0, |k| state.drives[k].spin);
-                of(state.twist(), along.lever) + along.drive_lever * spin
+            Link::Chassis => of(state.twist(), along.lever) + along.drive_lever * spin(),
+            Link::Flipper(k) => {
+                let chassis = of(state.twist(), along.lever);
+                chassis + along.flipper_lever * state.flippers[k].rate + along.drive_lever * spin()
             }
             Link::Shoe(i) => of(state.shoes[i].twist, along.lever),
             Link::Guide { shoe, chain } => {
@@ -296,13 +332,14 @@ impl Row {
         }
     }
 
-    /// [m/s] What velocities of the chassis, the shoes and the drives count along normal and tangent.
+    /// [m/s] What velocities of chassis, shoes, drives, idlers and flippers count along normal and tangent.
     pub(super) fn count(
         &self,
         chassis: Twist,
         shoe: impl Fn(usize) -> Twist,
         spin: impl Fn(usize) -> f64,
         idler: impl Fn(usize) -> f64,
+        flipper: impl Fn(usize) -> f64,
     ) -> [f64; 2] {
         let [n, t] = &self.actions;
         let along = |twist: Twist, spin: f64| {
@@ -310,6 +347,11 @@ impl Row {
         };
         match self.link {
             Link::Chassis => along(chassis, self.drive.map_or(0.0, spin)),
+            Link::Flipper(k) => {
+                let [of_n, of_t] = along(chassis, self.drive.map_or(0.0, spin));
+                let rate = flipper(k);
+                [of_n + n.flipper_lever * rate, of_t + t.flipper_lever * rate]
+            }
             Link::Shoe(i) => along(shoe(i), 0.0),
             Link::Guide { shoe: i, chain } => {
                 let [of_n, of_t] = along(shoe(i), idler(chain));
@@ -319,18 +361,23 @@ impl Row {
         }
     }
 
-    /// Updates the gap for the motion in a piece of `h` [s]; the step began at `center` and `angle`.
-    pub(super) fn follow(&mut self, state: &State, (center, angle): (Vector, f64), h: f64) {
-        if !matches!(self.link, Link::Chassis) {
-            // Its directions stay, and so does its speed through the piece.
-            self.gap += self.opening_speed(state) * h;
-            return;
-        }
+    /// Updates the gap for the motion in a piece of `h` [s].
+    pub(super) fn follow(&mut self, state: &State, model: &Model, h: f64) {
+        let mount = match self.link {
+            Link::Chassis => Mount::Chassis,
+            Link::Flipper(k) => Mount::Flipper(k),
+            Link::Shoe(_) | Link::Guide { .. } => {
+                // Its directions stay, and so does its speed through the piece.
+                self.gap += self.opening_speed(state) * h;
+                return;
+            }
+        };
         let s = &self.start;
-        let run = self.drive.map_or(0.0, |k| state.drives[k].position) - s.drive_position;
-        let turned = Rotation::new(state.angle - angle);
-        let offset = s.carried.offset(turned, run);
-        let moved = state.center - center + turned * s.arm + offset - s.arm - s.carried.spoke;
+        let (now, then) = (state.carrier(mount, 0.0, model), &s.carrier);
+        let position = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
+        let turned = Rotation::new(now.angle - then.angle);
+        let offset = s.carried.offset(turned, position - s.drive_position);
+        let moved = now.center - then.center + turned * s.arm + offset - s.arm - s.carried.spoke;
         self.gap = s.gap + self.normal.unit.dot(moved);
     }
 

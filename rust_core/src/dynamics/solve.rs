@@ -55,6 +55,8 @@ pub(super) struct Action {
     pub offset: f64,
     /// [m] Lever of the reaction on the chassis, if that takes it.
     pub back: f64,
+    /// [m] Lever of the turn of a flipper that turns by itself.
+    pub flipper_lever: f64,
 }
 
 impl Action {
@@ -66,6 +68,7 @@ impl Action {
                 spin_lever: 0.0,
                 offset: -along.drive_lever * spin_of_set_point,
                 back: along.back,
+                flipper_lever: along.flipper_lever,
             }
         } else {
             Self {
@@ -74,7 +77,21 @@ impl Action {
                 spin_lever: along.drive_lever,
                 offset: 0.0,
                 back: along.back,
+                flipper_lever: along.flipper_lever,
             }
+        }
+    }
+
+    /// The same where the flipper that it acts on turns over the chassis at a rate [rad/s], if it does.
+    pub(super) fn of_flipper(self, held: Option<f64>) -> Self {
+        match held {
+            Some(rate) => Self {
+                lever: self.lever + self.flipper_lever,
+                offset: self.offset + self.flipper_lever * rate,
+                flipper_lever: 0.0,
+                ..self
+            },
+            None => self,
         }
     }
 
@@ -106,6 +123,7 @@ impl Action {
             spin_lever: self.spin_lever + other.spin_lever * share,
             offset: self.offset + other.offset * share,
             back: self.back + other.back * share,
+            flipper_lever: self.flipper_lever + other.flipper_lever * share,
         }
     }
 
@@ -175,8 +193,8 @@ impl Dynamics {
         if !(0..rounds).any(agree) {
             self.end_search(state, phase);
         }
-        if self.chains.is_empty() {
-            // From the impulses, so that momentum is kept to the last digit; in a chain pins come first.
+        if self.model.is_one_body() {
+            // From the impulses, so that momentum is kept to the last digit; elsewhere pins come first.
             self.balance(state, phase);
         }
     }
@@ -193,6 +211,8 @@ impl Dynamics {
             let held = row.spin().is_some_and(|k| motors[k].share().is_none());
             let [n, t] = [&row.normal, &row.tangent].map(|along| match row.link {
                 Link::Chassis => Action::new(along, held, spin_of_set_point),
+                Link::Flipper(k) => Action::new(along, held, spin_of_set_point)
+                    .of_flipper(self.flippers[k].held_rate()),
                 Link::Shoe(_) => Action::of_shoe(along, 0.0),
                 Link::Guide { .. } => Action::of_shoe(along, along.drive_lever),
             });
@@ -285,6 +305,13 @@ impl Dynamics {
         let of_body = |mass: f64, inertia: f64, lever: f64| {
             action.unit.length_squared() / mass + lever * lever / inertia
         };
+        let of_flipper = match link {
+            Link::Flipper(k) => {
+                let lever = action.flipper_lever;
+                lever * lever / self.flippers[k].inertia_about_pivot()
+            }
+            _ => 0.0,
+        };
         if let Link::Shoe(shoe) | Link::Guide { shoe, .. } = link {
             let rule = &self.chains[shoe / self.shoes_a_chain].rule;
             let of_shoe = of_body(rule.shoe_mass, rule.shoe_inertia, action.lever);
@@ -296,7 +323,7 @@ impl Dynamics {
         let of_spin = drive.map_or(0.0, |k| {
             action.spin_lever * action.spin_lever / self.model.drive_inertia(k)
         });
-        of_body(self.model.mass, self.inertia, action.lever) + of_spin
+        of_body(self.model.mass, self.inertia, action.lever) + of_spin + of_flipper
     }
 
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
@@ -308,6 +335,7 @@ impl Dynamics {
                 drive.spin = state.angular_velocity - back;
             }
         }
+        self.turn_flippers_with_chassis(state);
         self.torques.fill(0.0);
         for row in &self.rows {
             if let Some(k) = row.drive {
@@ -371,5 +399,6 @@ impl Dynamics {
             state.drives[k].force += impulse / dt;
             state.drives[k].traction += self.torques[k] / (self.model.drive_radius * dt);
         }
+        self.collect_flippers(state, phase, dt);
     }
 }

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::chain::ChainOfShoes;
 use crate::contact::Running;
+use crate::flipper::Flipper;
 use crate::plane::{direction, left_of};
-use crate::robot::Model;
+use crate::robot::{Model, Mount};
 
 /// The moving state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -25,6 +26,30 @@ pub(crate) struct State {
     pub shoes: Vec<Shoe>,
     /// ... and their idlers.
     pub idlers: Vec<Idler>,
+    /// Its flippers.
+    pub flippers: Vec<Turn>,
+}
+
+/// How a flipper is turned over ground.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Turn {
+    /// [rad] It counts full turns.
+    pub angle: f64,
+    /// [rad/s] Its rate.
+    pub rate: f64,
+    /// [N m] Mean torque of its motor over the last step, counter-clockwise.
+    pub torque: f64,
+}
+
+/// Where a body that carries parts is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Carrier {
+    /// [m] The centre of mass of the chassis, the pivot of a flipper; ...
+    pub center: Vector,
+    /// [m] ... and the same in the body's own frame.
+    pub origin: Vector,
+    /// [rad]
+    pub angle: f64,
 }
 
 /// State of the idler of a chain.
@@ -146,6 +171,7 @@ impl State {
             drives: vec![drive; model.drives],
             shoes: shoes_at_rest(model, Pose::new(position, angle), track_phase),
             idlers: idlers_at_rest(model, track_phase),
+            flippers: flippers_at_rest(model, angle),
         }
     }
 
@@ -182,6 +208,64 @@ impl State {
             let places = self.shoes.iter().map(|shoe| back * shoe.after(time).pose());
             running.shoes.extend(places);
         }
+        let mounted = |(k, arm): (usize, &Flipper)| {
+            let rate = self.flippers[k].rate - self.angular_velocity;
+            arm.mounted(self.over_chassis(k) + rate * time, model.drive_radius)
+        };
+        let flippers = model.flippers.iter().enumerate().map(mounted);
+        running.flippers.clear();
+        running.flippers.extend(flippers);
+    }
+
+    /// [rad] Angle of a flipper over the chassis, counter-clockwise.
+    pub(crate) fn over_chassis(&self, flipper: usize) -> f64 {
+        self.flippers[flipper].angle - self.angle
+    }
+
+    /// What carries a part, after a time [s] if nothing changes the velocity.
+    pub(super) fn carrier(&self, mount: Mount, time: f64, model: &Model) -> Carrier {
+        let (center, angle) = self.moved(time);
+        match mount {
+            Mount::Flipper(k) => {
+                let arm = &model.flippers[k];
+                let pivot = arm.pivot - model.center_of_mass;
+                Carrier {
+                    center: center + Rotation::new(angle) * pivot,
+                    origin: -arm.arm,
+                    angle: self.flippers[k].angle + self.flippers[k].rate * time,
+                }
+            }
+            Mount::Chassis | Mount::Shoe(_) => Carrier {
+                center,
+                origin: model.center_of_mass,
+                angle,
+            },
+        }
+    }
+
+    /// [m] How far the surface of a drive has run over a mount, ...
+    pub(super) fn run_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
+        let run = self.drives[drive].position;
+        match mount {
+            Mount::Flipper(k) => run + model.drive_radius * self.over_chassis(k),
+            Mount::Chassis | Mount::Shoe(_) => run,
+        }
+    }
+
+    /// [m/s] ... and its rate.
+    pub(super) fn speed_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
+        let turn = match mount {
+            Mount::Flipper(k) => self.flippers[k].rate,
+            Mount::Chassis | Mount::Shoe(_) => self.angular_velocity,
+        };
+        (turn - self.drives[drive].spin) * model.drive_radius
+    }
+
+    /// [m/s] Speed of the fastest point of the robot, at most; `reach` is the farthest from its centre.
+    pub(crate) fn fastest(&self, reach: f64) -> f64 {
+        let turns = self.flippers.iter().map(|flipper| flipper.rate.abs());
+        let turn = turns.fold(self.angular_velocity.abs(), f64::max);
+        self.velocity.length() + turn * reach
     }
 
     /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
@@ -212,6 +296,10 @@ impl State {
                 .all(|d| d.spin.is_finite() && d.position.is_finite())
             && self.shoes.iter().all(Shoe::is_finite)
             && self.idlers.iter().all(|i| i.travel.is_finite())
+            && self
+                .flippers
+                .iter()
+                .all(|f| f.angle.is_finite() && f.rate.is_finite())
     }
 }
 
@@ -237,6 +325,15 @@ pub(crate) fn idlers_at_rest(model: &Model, track_phase: f64) -> Vec<Idler> {
         rate: 0.0,
     };
     model.chains.iter().map(idler).collect()
+}
+
+/// The flippers of a robot at rest at an angle [rad].
+pub(crate) fn flippers_at_rest(model: &Model, angle: f64) -> Vec<Turn> {
+    let turned = |arm: &Flipper| Turn {
+        angle: angle + arm.sign * arm.start_angle,
+        ..Turn::default()
+    };
+    model.flippers.iter().map(turned).collect()
 }
 
 fn pose_at(center: Vector, angle: f64, model: &Model) -> Pose {

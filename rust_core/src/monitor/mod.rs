@@ -5,7 +5,7 @@ mod progress;
 use rapier2d_f64::math::Pose;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{LoadedContact, TrackEnvelope};
+use crate::contact::{LoadedContact, Running, TrackEnvelope};
 use crate::diagnosis::{Signals, Stance};
 use crate::dynamics::{ChainReading, DriveState};
 use crate::events::{Event, IntrusionWatch};
@@ -14,7 +14,7 @@ use crate::reading::Reading;
 use crate::robot::{Model, Part};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::shaking::Shaking;
-use crate::terrain::{Ground, Profile};
+use crate::terrain::Ground;
 use progress::Progress;
 
 /// [s] Time between two looks at the progress; far below any stop window.
@@ -34,6 +34,8 @@ pub(crate) struct Monitor {
     parts: Vec<Part>,
     /// Of each track, with its lane.
     envelopes: Vec<TrackEnvelope>,
+    /// A driver may do something later that changes everything.
+    may_change: bool,
     /// A turning grouser changes what is there although the pose does not.
     has_grousers: bool,
     /// What it has seen.
@@ -123,23 +125,27 @@ impl Monitor {
             rear_radius: outline.rear_radius,
             grouser_pitch: outline.grouser_pitch,
             envelopes: (0..ground.tracks)
-                .map(|lane| {
-                    TrackEnvelope::new(&model.parts, lane, scenario.criteria.intrusion_depth)
+                .flat_map(|lane| model.mounts_of_tracks().map(move |mount| (lane, mount)))
+                .map(|track| {
+                    TrackEnvelope::new(&model.parts, track, scenario.criteria.intrusion_depth)
                 })
                 .collect(),
+            may_change: scenario.drive.schedule.is_some() || scenario.drive.gait.is_some(),
             parts: model.parts.clone(),
             has_grousers: model.parts.iter().any(Part::is_carried),
             seen: Seen::from(0.0),
         }
     }
 
-    /// Takes in one step: what the robot did, the contacts' forces, the drives with their speeds.
+    /// Takes in one step: what the robot did, the contacts' forces, the drives with their speeds, and where
+    /// the flippers are.
     pub(crate) fn observe(
         &mut self,
         now: &Reading,
         command: f64,
         loaded: &[LoadedContact],
         drives: impl Iterator<Item = (DriveState, f64)> + Clone,
+        running: &Running,
     ) {
         let seen = &mut self.seen;
         let dt = now.time - seen.last_time;
@@ -167,9 +173,9 @@ impl Monitor {
         if now.time >= self.seen.looks as f64 * LOOK {
             self.seen.looks += 1;
             self.seen.shaking.look(now);
-            self.look_inside(now, loaded);
+            self.look_inside(now, loaded, running);
             self.look(now, command, window);
-            if !self.has_grousers {
+            if !self.has_grousers && !self.may_change {
                 self.watch_stationary(now, window, loaded);
             }
         }
@@ -214,17 +220,17 @@ impl Monitor {
     }
 
     /// Follows what is inside the track.
-    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact]) {
+    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact], running: &Running) {
         let pose = Pose::new(now.position, now.chassis_angle);
         let lanes = &self.ground.lanes;
-        let holds_edge =
-            |(envelope, profile): &(&TrackEnvelope, &Profile)| envelope.holds_edge(profile, pose);
-        let inside = self
-            .envelopes
-            .iter()
-            .zip(lanes)
-            .filter(holds_edge)
-            .flat_map(|(envelope, profile)| envelope.intrusions(profile, pose));
+        let inside = self.envelopes.iter().flat_map(|envelope| {
+            let (profile, pose) = (&lanes[envelope.lane], running.mounted(envelope.mount, pose));
+            if envelope.holds_edge(profile, pose) {
+                envelope.intrusions(profile, pose)
+            } else {
+                Vec::new()
+            }
+        });
         let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
             let bears = |l: &&LoadedContact| i.bears(lanes, &self.parts, &l.contact);
             let force = loaded.iter().filter(bears).map(|l| l.normal_force).sum();

@@ -1,6 +1,6 @@
 //! What a belt along an envelope carries: where it is, and how it moves.
 
-use rapier2d_f64::math::Vector;
+use rapier2d_f64::math::{Pose, Vector};
 
 use super::envelope::Envelope;
 use super::stretch::{Form, Stretch};
@@ -17,6 +17,15 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
+    /// The same in a frame in which its own is `pose`.
+    pub(crate) fn seen_from(self, pose: Pose) -> Self {
+        Self {
+            center: pose.transform_point(self.center),
+            turn: self.turn,
+            along: pose.rotation * self.along,
+        }
+    }
+
     /// A share of another motion in this one; one of them turns at most.
     fn mixed(self, other: Self, share: f64) -> Self {
         Self {

@@ -1,6 +1,8 @@
 //! What is simulated: plain data with one set of rules, read from JSON and written back without losing a bit.
 
+mod drive;
 mod fields;
+mod flippers;
 mod robot;
 mod settings;
 mod terrain;
@@ -11,8 +13,10 @@ use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+pub use drive::{Climb, Drive, Gait, Hold};
+pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
-pub use settings::{ContactMethod, Drive, SeizureCriteria, Solver, Start};
+pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub use track::{
     BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack, HybridWheels,

@@ -3,14 +3,15 @@
 use serde::Serialize;
 
 use super::fields::{Fields, Range};
+use super::flippers::Flippers;
 use super::track::Track;
 use crate::error::ScenarioError;
 
 /// [m] Sizes a crawler can have; a micrometre or a kilometre is a unit mistake.
-const LENGTH: Range = Range::between(1e-3, 100.0, "m");
+pub(super) const LENGTH: Range = Range::between(1e-3, 100.0, "m");
 const LENGTH_OR_ZERO: Range = Range::between(0.0, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
-const MASS: Range = Range::between(1e-3, 1e6, "kg");
+pub(super) const MASS: Range = Range::between(1e-3, 1e6, "kg");
 
 /// A tracked robot with both its tracks, arms at angle 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,8 +30,8 @@ pub struct Robot {
     pub outline: TrackOutline,
     /// [m] Convex polygon in the chassis frame, counter-clockwise; none if the body never touches.
     pub belly: Option<Vec<[f64; 2]>>,
-    /// Pivoting arms; none are simulated yet.
-    pub flippers: Option<()>,
+    /// Pivoting arms.
+    pub flippers: Option<Flippers>,
     /// [m] Lateral distance of the tracks.
     pub gauge: f64,
     /// Motors and their limits.
@@ -106,15 +107,10 @@ impl Robot {
             track_mass: f.number("track_mass", MASS)?,
             outline: TrackOutline::read(f.child("outline")?)?,
             belly: read_belly(&mut f)?,
-            flippers: match f.value("flippers")? {
-                serde_json::Value::Null => None,
-                other => {
-                    return Err(f.error(
-                        "flippers",
-                        other,
-                        "must be null: flippers are not simulated yet",
-                    ));
-                }
+            flippers: if f.value("flippers")?.is_null() {
+                None
+            } else {
+                Some(Flippers::read(f.child("flippers")?)?)
             },
             gauge: f.number("gauge", LENGTH)?,
             drivetrain: Drivetrain::read(f.child("drivetrain")?)?,
@@ -122,6 +118,9 @@ impl Robot {
         };
         robot.check(&f)?;
         robot.track.check(&robot)?;
+        if let Some(flippers) = &robot.flippers {
+            flippers.check(&robot)?;
+        }
         f.finish()?;
         Ok(robot)
     }

@@ -1,16 +1,9 @@
-//! Command, start, solver and criteria: the scenario's small parts.
+//! Start, solver and criteria: the scenario's small parts.
 
 use serde::Serialize;
 
 use super::fields::{Fields, Range};
 use crate::error::ScenarioError;
-
-/// The command given to the drivetrain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Drive {
-    /// [m/s] Track speed; positive drives towards +x.
-    pub speed: f64,
-}
 
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,16 +90,6 @@ pub struct SeizureCriteria {
     pub escape_distance: f64,
     /// [s] Time that a closed belt is given to get away from a stop.
     pub escape_time: f64,
-}
-
-impl Drive {
-    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let drive = Self {
-            speed: f.number("speed", Range::between(-100.0, 100.0, "m/s"))?,
-        };
-        f.finish()?;
-        Ok(drive)
-    }
 }
 
 impl Start {

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::contact::Dents;
-use crate::dynamics::{DriveState, State, idlers_at_rest, shoes_at_rest};
+use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
 use crate::error::Error;
 use crate::monitor::Seen;
 use crate::outcome::Outcome;
@@ -97,10 +97,16 @@ impl Simulation {
             drives: vec![drive; model.drives],
             shoes: shoes_at_rest(&model, now_pose, now.track_position),
             idlers: idlers_at_rest(&model, now.track_position),
+            flippers: if model.flippers.len() == self.state.flippers.len() {
+                self.state.flippers.clone()
+            } else {
+                flippers_at_rest(&model, now.chassis_angle)
+            },
         };
         let mut branch = Self::of(scenario, ground, model, state);
         branch.step = (self.time() / branch.time_step()).round() as u64;
         branch.command = self.command;
+        branch.driver = self.driver;
         branch.set_point = self.set_point;
         branch.dynamics.outer_force = self.dynamics.outer_force;
         branch.monitor.seen = Seen::from(branch.time());

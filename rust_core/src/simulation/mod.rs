@@ -7,17 +7,21 @@ use rapier2d_f64::math::Vector;
 
 pub use branch::Counterfactual;
 
-use crate::contact::{Contact, ContactFinder, Dents, Intrusion, LoadedContact, Running};
+use crate::contact::{
+    Contact, ContactFinder, Dents, Intrusion, LoadedContact, Running, TrackEnvelope,
+};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::drive;
 use crate::dynamics::{ChainReading, DriveState, Dynamics, Shoe, State};
 use crate::error::{Error, ScenarioError, SimulationError};
 use crate::events::Event;
+use crate::gait::{Driver, Sight};
 use crate::monitor::Monitor;
 use crate::outcome::Outcome;
+use crate::plane::direction;
 use crate::reading::Reading;
-use crate::robot::{BodyKind, Model};
-use crate::scenario::Scenario;
+use crate::robot::{BodyKind, Model, Mount};
+use crate::scenario::{End, Flippers, Scenario};
 use crate::start::start_position;
 use crate::terrain::{Ground, Side};
 
@@ -31,6 +35,7 @@ pub struct Simulation {
     state: State,
     step: u64,
     command: f64,
+    driver: Driver,
     set_point: f64,
     dents: Dents,
     contacts: Vec<Contact>,
@@ -83,6 +88,7 @@ impl Simulation {
         );
         Self {
             command: scenario.drive.speed,
+            driver: Driver::default(),
             scenario: scenario.clone(),
             ground,
             contact,
@@ -112,13 +118,42 @@ impl Simulation {
     }
 
     fn command(&mut self) {
+        let (drive, time) = (&self.scenario.drive, self.step as f64 * self.time_step());
+        if let Some(speed) = self.driver.speed(drive, time) {
+            self.command = speed;
+        }
+        if let Some(flippers) = &self.scenario.robot.flippers {
+            let sight = Sight {
+                time,
+                chassis_angle: self.state.angle,
+                touches: self.front_flipper_touches(),
+            };
+            let angles = self.driver.angles(drive, flippers.angle, sight);
+            self.dynamics.command_flippers(&self.state, angles);
+        }
         let limits = &self.scenario.robot.drivetrain;
         self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
     }
 
+    /// Whether a flipper at the front bears on something beyond its root.
+    fn front_flipper_touches(&self) -> bool {
+        let flippers = &self.dynamics.model().flippers;
+        let Some(front) = flippers.iter().position(|flipper| flipper.sign > 0.0) else {
+            return false;
+        };
+        let pose = self.state.pose(self.dynamics.model());
+        let pivot = pose.transform_point(flippers[front].pivot);
+        let along = direction(self.state.flippers[front].angle);
+        self.loaded().iter().any(|l| {
+            let beyond = (l.contact.point - pivot).dot(along) > flippers[front].root_radius;
+            let mount = self.dynamics.model().parts[l.contact.part].mount;
+            beyond && l.normal_force > 0.0 && mount == Mount::Flipper(front)
+        })
+    }
+
     fn find_contacts(&mut self) {
         // A fast body sees a contact one step before it closes.
-        let speed = self.state.velocity.length() + self.state.angular_velocity.abs() * self.reach;
+        let speed = self.state.fastest(self.reach);
         let prediction = self
             .scenario
             .solver
@@ -162,10 +197,18 @@ impl Simulation {
     fn observe(&mut self) {
         let reading = self.reading();
         let model = self.dynamics.model();
+        if !model.flippers.is_empty() {
+            self.state.running_after(0.0, model, &mut self.then);
+        }
         let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
         let drives = self.state.drives.iter().copied().zip(speeds);
-        self.monitor
-            .observe(&reading, self.command, self.dynamics.loaded(), drives);
+        self.monitor.observe(
+            &reading,
+            self.command,
+            self.dynamics.loaded(),
+            drives,
+            &self.then,
+        );
         if !model.chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
@@ -181,6 +224,67 @@ impl Simulation {
         next.validate()?;
         self.command = speed;
         Ok(())
+    }
+
+    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on; they
+    /// follow within their limits, whatever the gait.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if there are none there, or the angle is not finite or beyond a full turn.
+    pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
+        let path = match end {
+            End::Front => "flipper_angle",
+            End::Rear => "rear_flipper_angle",
+        };
+        let mut ends = self.scenario.robot.flippers.iter().flat_map(Flippers::ends);
+        if !ends.any(|has| has == end) {
+            let rule = "must not be given: the robot has no flippers there";
+            return Err(ScenarioError::new(path, angle, rule).into());
+        }
+        if !(-6.3..=6.3).contains(&angle) {
+            let rule = "must be >= -6.3 rad and <= 6.3 rad";
+            return Err(ScenarioError::new(path, angle, rule).into());
+        }
+        self.driver.hold(usize::from(end == End::Rear), angle);
+        Ok(())
+    }
+
+    /// [rad] Angles of the flippers over the chassis, the front first, upwards > 0.
+    pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
+        let flippers = self.dynamics.model().flippers.iter().enumerate();
+        flippers.map(|(k, flipper)| flipper.sign * self.state.over_chassis(k))
+    }
+
+    /// [N m] Torques of their motors, the means over the last step, upwards > 0.
+    pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
+        let flippers = self.dynamics.model().flippers.iter();
+        let turns = flippers.zip(&self.state.flippers);
+        turns.map(|(flipper, turn)| flipper.sign * turn.torque)
+    }
+
+    /// Gives commands of all kinds at once: all or, if one is refused, none.
+    ///
+    /// # Errors
+    /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
+    pub fn command_all(
+        &mut self,
+        speed: Option<f64>,
+        flipper_angles: [(End, Option<f64>); 2],
+        push: Option<f64>,
+    ) -> Result<(), Error> {
+        let before = (self.command, self.driver, self.dynamics.outer_force);
+        let mut give = || {
+            push.map_or(Ok(()), |push| self.set_push(push))?;
+            for (end, angle) in flipper_angles {
+                angle.map_or(Ok(()), |angle| self.set_flipper_angle(end, angle))?;
+            }
+            speed.map_or(Ok(()), |speed| self.set_speed(speed))
+        };
+        let given = give();
+        if given.is_err() {
+            (self.command, self.driver, self.dynamics.outer_force) = before;
+        }
+        given
     }
 
     /// [N] The push at the centre of mass, along x.
@@ -292,10 +396,12 @@ impl Simulation {
     /// What of the ground is inside the envelope of each track now, from the left.
     pub fn intrusions(&self) -> Vec<Intrusion> {
         let pose = self.state.pose(self.dynamics.model());
-        let tracks = self.monitor.envelopes().iter().zip(&self.ground.lanes);
-        tracks
-            .flat_map(|(envelope, lane)| envelope.intrusions(lane, pose))
-            .collect()
+        let running = self.running();
+        let of_track = |envelope: &TrackEnvelope| {
+            let pose = running.mounted(envelope.mount, pose);
+            envelope.intrusions(&self.ground.lanes[envelope.lane], pose)
+        };
+        self.monitor.envelopes().iter().flat_map(of_track).collect()
     }
 
     /// Stops and intrusions so far.

@@ -8,6 +8,7 @@ use crate::BUILD_ID;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::{Error, ScenarioError};
+use crate::gait::Driver;
 use crate::monitor::Seen;
 use crate::scenario::Scenario;
 
@@ -30,6 +31,7 @@ struct Moment {
     scenario: String,
     step: u64,
     command: f64,
+    driver: Driver,
     set_point: f64,
     push: f64,
     state: State,
@@ -45,6 +47,7 @@ impl Simulation {
             scenario: self.scenario.to_json(),
             step: self.step,
             command: self.command,
+            driver: self.driver,
             set_point: self.set_point,
             push: self.push(),
             state: self.state.clone(),
@@ -90,6 +93,7 @@ impl Simulation {
         let mut simulation = Self::new(&scenario)?;
         simulation.step = moment.step;
         simulation.command = moment.command;
+        simulation.driver = moment.driver;
         simulation.set_point = moment.set_point;
         simulation.set_push(moment.push)?;
         simulation.state = moment.state;

@@ -1,6 +1,7 @@
 //! Track models: which shapes meet the ground, and which drive turns each of them.
 
 mod belt;
+mod flipper;
 mod force;
 mod grouser_belt;
 mod segmental;
@@ -25,12 +26,12 @@ pub(crate) struct TrackModel {
     pub chains: Vec<ChainOfShoes>,
 }
 
-/// Builds the model of a robot's track.
+/// Builds the model of a robot's track, those of its flippers included.
 ///
 /// # Errors
 /// Wheels that do not fit the robot.
 pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
-    match &robot.track {
+    let mut track = match &robot.track {
         Track::Line(LineOfWheels { wheel, .. })
         | Track::Circumferential(CircumferentialWheels { wheel, .. })
         | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
@@ -38,5 +39,9 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
         Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
         Track::Segmental(track) => segmental::build(robot, track),
         Track::Force(force) => force::build(robot, force),
+    }?;
+    if let Some(flippers) = &robot.flippers {
+        flipper::add(robot, flippers, &mut track)?;
     }
+    Ok(track)
 }

@@ -192,7 +192,7 @@ fn contact_forces_sum_to_weight_and_inertia_on_flat_and_ramp() {
             scenario.robot.track = track.clone();
             scenario.terrain = slope(angle, 0.9);
             scenario.start.angle = angle;
-            scenario.drive = Drive { speed: 0.4 };
+            scenario.drive.speed = 0.4;
             check_balance(&scenario, &format!("{name} at {angle} rad"));
         }
     }

@@ -13,7 +13,7 @@ use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::*;
 use crate::draw::Draw;
-use crate::robot::Model;
+use crate::robot::{Model, Mount};
 use crate::scenario::{
     CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Terrain, Track, Wheel,
 };
@@ -141,7 +141,7 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
     let placements = vec![[-0.186, 0.0, 0.08], [0.0, 0.0, 0.08], [0.186, 0.0, 0.08]];
     let wheel = Wheel::Round;
     let model = model(Track::Hybrid(HybridWheels { placements, wheel }));
-    let envelope = TrackEnvelope::new(&model.parts, 0, 0.0);
+    let envelope = TrackEnvelope::new(&model.parts, (0, Mount::Chassis), 0.0);
     let terrain = Terrain::Barrier {
         height: 0.03,
         thickness: 0.02,
@@ -296,7 +296,8 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
             middles: middles[number % models.len()]
                 .map(|(depth, place)| (depth, pose.transform_point(place))),
         };
-        let found = TrackEnvelope::new(&model.parts, 0, 0.0).intrusions(&ground.lanes[0], pose);
+        let found = TrackEnvelope::new(&model.parts, (0, Mount::Chassis), 0.0)
+            .intrusions(&ground.lanes[0], pose);
         let expected = ranges(&case.tips, &ground.lanes[0]);
         if case.is_unclear(&found, &expected) {
             continue;

@@ -11,6 +11,7 @@ fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Supp
         lever,
         drive_lever: 0.0,
         back: 0.0,
+        flipper_lever: 0.0,
     };
     Support {
         normal: direction(normal, lever),

@@ -19,6 +19,7 @@ impl Direction {
             lever: cross(arm, unit),
             drive_lever: -model.drive_radius * unit.dot(travel),
             back: 0.0,
+            flipper_lever: 0.0,
         }
     }
 }
@@ -62,6 +63,7 @@ impl Row {
             lever: cross(arm, unit),
             drive_lever: -unit.dot(rest.slides),
             back: cross(back, unit),
+            flipper_lever: 0.0,
         });
         let mut row = Self::between(normal, tangent, Link::Guide { shoe, chain });
         row.grip = last.grip;

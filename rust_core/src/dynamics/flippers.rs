@@ -1,0 +1,289 @@
+//! What the flippers add to the equations of motion.
+//!
+//! An arm is a body that hangs on the chassis by its pivot, so it adds one unknown, its turn, and none
+//! while its motor holds the commanded rate: it is then inertia of the chassis. Its mass enters as a
+//! damper about the velocity that its centre of mass would have by itself: the impulse of that damper is
+//! what the pivot takes.
+
+use rapier2d_f64::math::{Rotation, Vector};
+
+use super::Dynamics;
+use super::direct::{Acts, Damper};
+use super::motors::{AT_LIMIT, Motor, PAST};
+use super::solve::{Action, Phase};
+use super::state::{State, Twist};
+use crate::flipper::Flipper;
+use crate::plane::left_of;
+
+/// The arms at one end in the equations of motion.
+pub(super) struct Arm {
+    rule: Flipper,
+    pub motor: Motor,
+    /// [rad/s] Turn over the chassis that is commanded in this step.
+    rate: f64,
+    /// [m] From the chassis' centre of mass to the pivot, ...
+    pivot: Vector,
+    /// [m] ... and from there to its own, in the middle of the step.
+    arm: Vector,
+    /// Its velocity in this piece as it would be without the pivot.
+    free: Twist,
+    /// [m/s^2] What changes that.
+    pull: Vector,
+}
+
+impl Arm {
+    pub(super) fn new(rule: Flipper) -> Self {
+        let has_motor = rule.torque_limit > 0.0;
+        Self {
+            rule,
+            motor: if has_motor { Motor::Holds } else { Motor::Free },
+            rate: 0.0,
+            pivot: Vector::ZERO,
+            arm: Vector::ZERO,
+            free: Twist::default(),
+            pull: Vector::ZERO,
+        }
+    }
+
+    /// [rad/s] Its turn over the chassis, if its motor holds it.
+    pub(super) fn held_rate(&self) -> Option<f64> {
+        self.motor.share().is_none().then_some(self.rate)
+    }
+
+    /// [kg m^2]
+    pub(super) fn inertia_about_pivot(&self) -> f64 {
+        self.rule.moment_of_inertia + self.rule.mass * self.rule.arm.length_squared()
+    }
+
+    /// [m/s] Velocity of its centre of mass.
+    fn velocity(&self, chassis: Twist, rate: f64) -> Vector {
+        chassis.at(self.pivot) + rate * left_of(self.arm)
+    }
+
+    /// [N m s] What its motor has given at a share of its limit.
+    fn given(&self, share: f64, phase: &Phase) -> f64 {
+        share * self.rule.torque_limit * phase.elapsed
+    }
+
+    /// Its inertia along x, along y and in turn, and its motor: how velocities count, and the impulses
+    /// that belong to them.
+    fn dampers(&self, phase: &Phase) -> [(Action, Damper); 4] {
+        let [pivot, arm] = [self.pivot, self.arm].map(left_of);
+        let Flipper {
+            mass,
+            moment_of_inertia: inertia,
+            ..
+        } = self.rule;
+        let action = |unit: Vector, lever: f64, flipper_lever: f64| {
+            let action = Action {
+                unit,
+                lever,
+                flipper_lever,
+                ..Action::default()
+            };
+            action.of_flipper(self.held_rate())
+        };
+        let free = self.free.velocity;
+        let share = self.motor.share().unwrap_or_default();
+        [
+            (
+                action(Vector::X, pivot.x, arm.x),
+                Damper::new(mass * free.x, mass),
+            ),
+            (
+                action(Vector::Y, pivot.y, arm.y),
+                Damper::new(mass * free.y, mass),
+            ),
+            (
+                action(Vector::ZERO, 0.0, 1.0),
+                Damper::new(inertia * self.free.turn, inertia),
+            ),
+            (
+                action(Vector::ZERO, -1.0, 1.0),
+                Damper::constant(self.given(share, phase)),
+            ),
+        ]
+    }
+}
+
+impl Dynamics {
+    /// Commands the angles of the flippers [rad], upwards > 0, which they approach as fast as they may.
+    pub(crate) fn command_flippers(&mut self, state: &State, angles: [f64; 2]) {
+        let dt = self.solver.time_step;
+        for (k, arm) in self.flippers.iter_mut().enumerate() {
+            let target = if arm.rule.sign > 0.0 {
+                angles[0]
+            } else {
+                angles[1]
+            };
+            let way = arm.rule.sign * target - state.over_chassis(k);
+            arm.rate = (way / dt).clamp(-arm.rule.rate_limit, arm.rule.rate_limit);
+        }
+    }
+
+    /// Brings the arms to where they are in the middle of a step, half its time [s] from now.
+    pub(super) fn place_flippers(&mut self, state: &State, half: f64) {
+        let (_, angle) = state.moved(half);
+        let to_pivot = Rotation::new(angle);
+        for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
+            let along = Rotation::new(turn.angle + turn.rate * half);
+            arm.pivot = to_pivot * (arm.rule.pivot - self.model.center_of_mass);
+            arm.arm = along * arm.rule.arm;
+        }
+    }
+
+    /// Starts a piece: the arms' velocities after a time [s] in which the weight alone acts.
+    pub(super) fn start_flippers(&mut self, state: &State, time: f64) {
+        let chassis = state.twist();
+        for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
+            arm.free = Twist {
+                velocity: arm.velocity(chassis, turn.rate),
+                turn: turn.rate,
+            };
+            // The pivot goes round with the chassis, the arm round the pivot: what pulls them inwards takes
+            // no part in what changes their turns.
+            let inwards = arm.pivot * chassis.turn * chassis.turn + arm.arm * turn.rate * turn.rate;
+            arm.pull = Vector::new(0.0, -self.gravity) + inwards;
+        }
+        self.pull_flippers(time);
+    }
+
+    /// Goes on for a time [s].
+    pub(super) fn pull_flippers(&mut self, time: f64) {
+        for arm in &mut self.flippers {
+            arm.free.velocity += arm.pull * time;
+        }
+    }
+
+    pub(super) fn assemble_flippers(&mut self, phase: &Phase) {
+        for (k, arm) in self.flippers.iter().enumerate() {
+            if arm.held_rate().is_some() {
+                self.system.hold(k);
+            }
+            let acts = Acts {
+                drive: None,
+                flipper: Some(k),
+            };
+            for (action, damper) in arm.dampers(phase) {
+                self.system.add(&action, &action, acts, damper);
+            }
+        }
+    }
+
+    /// Gives the flippers the turns of the last solve.
+    pub(super) fn take_flippers(&self, state: &mut State) {
+        for (turn, solved) in state.flippers.iter_mut().zip(self.system.turns) {
+            turn.rate = solved;
+        }
+        self.turn_flippers_with_chassis(state);
+    }
+
+    /// Turns those that their motors hold with the chassis.
+    pub(super) fn turn_flippers_with_chassis(&self, state: &mut State) {
+        for (turn, arm) in state.flippers.iter_mut().zip(&self.flippers) {
+            if let Some(rate) = arm.held_rate() {
+                turn.rate = state.angular_velocity + rate;
+            }
+        }
+    }
+
+    /// Turns the solved turns into changes, that of the chassis given.
+    pub(super) fn change_flippers(&mut self, state: &State, chassis: &Twist) {
+        for (k, arm) in self.flippers.iter().enumerate() {
+            self.system.changes[k] = match arm.held_rate() {
+                Some(_) => chassis.turn,
+                None => self.system.turns[k] - state.flippers[k].rate,
+            };
+        }
+    }
+
+    /// Moves their turns by a share of the changes.
+    pub(super) fn move_flippers(&self, state: &mut State, share: f64) {
+        for (turn, change) in state.flippers.iter_mut().zip(self.system.changes) {
+            turn.rate += change * share;
+        }
+    }
+
+    /// What the flippers add to the slope of the potential along a change, a share of it further on.
+    pub(super) fn slope_of_flippers(
+        &self,
+        state: &State,
+        change: &Twist,
+        phase: &Phase,
+        share: f64,
+    ) -> f64 {
+        let mut slope = 0.0;
+        for (k, arm) in self.flippers.iter().enumerate() {
+            let (rate, of_rate) = (state.flippers[k].rate, self.system.changes[k]);
+            for (action, damper) in arm.dampers(phase) {
+                let lever = action.flipper_lever;
+                let speed =
+                    action.speed(state.velocity, state.angular_velocity, 0.0) + lever * rate;
+                let of_change = action.change(change.velocity, change.turn, 0.0) + lever * of_rate;
+                slope -= damper.at(speed + of_change * share) * of_change;
+            }
+        }
+        slope
+    }
+
+    /// [N m s] What the motor of a flipper has given so far, upwards at the front.
+    pub(super) fn flipper_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
+        let (arm, rate) = (&self.flippers[k], state.flippers[k].rate);
+        if let Some(share) = arm.motor.share() {
+            return arm.given(share, phase);
+        }
+        // What the contacts have not, the motor has changed of its moment of momentum about the pivot.
+        let gained = arm.velocity(state.twist(), rate) - arm.free.velocity;
+        let of_arm = arm.rule.mass * left_of(arm.arm).dot(gained)
+            + arm.rule.moment_of_inertia * (rate - arm.free.turn);
+        let on_it = self.rows.iter().filter(|row| row.flipper() == Some(k));
+        let of_contacts = on_it.map(|row| {
+            row.normal.flipper_lever * row.normal_impulse
+                + row.tangent.flipper_lever * row.friction_impulse
+        });
+        of_arm - of_contacts.sum::<f64>()
+    }
+
+    /// Lets motors of flippers beyond their limit go, and, if `both`, those past their rate take hold;
+    /// whether any did.
+    pub(super) fn switch_flippers(&mut self, state: &State, phase: &Phase, both: bool) -> bool {
+        let mut switched = false;
+        for k in 0..self.flippers.len() {
+            let arm = &self.flippers[k];
+            let next = match arm.motor {
+                Motor::Free => Motor::Free,
+                Motor::Holds => {
+                    let limit = arm.given(1.0, phase) * (1.0 + AT_LIMIT);
+                    Motor::within(self.flipper_impulse(state, phase, k), limit)
+                }
+                at_limit => {
+                    let ahead = state.flippers[k].rate - state.angular_velocity - arm.rate;
+                    let past = ahead * at_limit.share().unwrap_or_default();
+                    if both && past > PAST {
+                        Motor::Holds
+                    } else {
+                        at_limit
+                    }
+                }
+            };
+            switched |= next != arm.motor;
+            self.flippers[k].motor = next;
+        }
+        switched
+    }
+
+    /// Adds what a piece applied to the means of a step of `dt` [s].
+    pub(super) fn collect_flippers(&self, state: &mut State, phase: &Phase, dt: f64) {
+        for k in 0..self.flippers.len() {
+            state.flippers[k].torque += self.flipper_impulse(state, phase, k) / dt;
+        }
+    }
+
+    /// [N s] Momentum of the flippers.
+    pub(super) fn momentum_of_flippers(&self, state: &State) -> Vector {
+        let of = |(arm, turn): (&Arm, &super::state::Turn)| {
+            arm.velocity(state.twist(), turn.rate) * arm.rule.mass
+        };
+        self.flippers.iter().zip(&state.flippers).map(of).sum()
+    }
+}

@@ -1,0 +1,115 @@
+//! Flippers of a robot: arms that pivot on its end axles, and what they leave of it to the chassis.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use crate::error::ScenarioError;
+use crate::robot::Model;
+use crate::scenario::{End, Robot};
+
+/// The arms at one end of a robot, those of both sides together.
+#[derive(Clone, Debug)]
+pub struct Flipper {
+    /// [m] The pivot in the chassis frame.
+    pub pivot: Vector,
+    /// [m] From the pivot to its centre of mass, midway between its axles: the origin of its own frame.
+    pub arm: Vector,
+    /// [kg] Mass.
+    pub mass: f64,
+    /// [kg m^2] Moment of inertia about its centre of mass.
+    pub moment_of_inertia: f64,
+    /// [m] From the pivot to the farthest point.
+    pub reach: f64,
+    /// [m] Radius about the pivot.
+    pub root_radius: f64,
+    /// [rad/s] Fastest turn over the chassis that it is commanded to make.
+    pub rate_limit: f64,
+    /// [N m] Largest torque of its motor.
+    pub torque_limit: f64,
+    /// [rad] At time 0, upwards > 0.
+    pub start_angle: f64,
+    /// 1 at the front, -1 at the rear, where upwards is clockwise.
+    pub sign: f64,
+}
+
+/// Where a flipper is on the chassis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mounted {
+    /// Its frame in that of the chassis.
+    pub pose: Pose,
+    /// [m] How far a belt has run along it because it has turned about its sprocket.
+    pub run: f64,
+}
+
+impl Flipper {
+    /// The arms of a robot, the front first.
+    pub(crate) fn of(robot: &Robot) -> Vec<Self> {
+        let Some(flippers) = &robot.flippers else {
+            return Vec::new();
+        };
+        let arm = |end: End| {
+            let (sign, mass) = (end.sign(), 2.0 * flippers.mass);
+            Self {
+                pivot: Vector::new(0.5 * sign * robot.outline.axle_distance, 0.0),
+                arm: Vector::new(0.5 * sign * flippers.length, 0.0),
+                mass,
+                moment_of_inertia: mass * flippers.length * flippers.length / 12.0,
+                reach: flippers
+                    .root_radius
+                    .max(flippers.length + flippers.tip_radius),
+                root_radius: flippers.root_radius,
+                rate_limit: flippers.rate_limit,
+                torque_limit: 2.0 * flippers.torque_limit,
+                start_angle: flippers.angle,
+                sign,
+            }
+        };
+        flippers.ends().map(arm).collect()
+    }
+
+    /// Where it is when turned by `angle` [rad] over the chassis, counter-clockwise.
+    pub(crate) fn mounted(&self, angle: f64, drive_radius: f64) -> Mounted {
+        Mounted {
+            pose: Pose::new(self.pivot, angle) * Pose::from_translation(self.arm),
+            // The sprocket turns with the chassis: over the arm it turns back.
+            run: drive_radius * angle,
+        }
+    }
+}
+
+impl Model {
+    /// Leaves to the chassis what the arms do not weigh.
+    ///
+    /// # Errors
+    /// Arms that leave no chassis.
+    pub(crate) fn with_flippers(mut self, arms: Vec<Flipper>) -> Result<Self, ScenarioError> {
+        if arms.is_empty() {
+            return Ok(self);
+        }
+        let (total, center) = (self.mass, self.center_of_mass);
+        let place = |arm: &Flipper| arm.pivot + arm.arm;
+        let of_arms: f64 = arms.iter().map(|arm| arm.mass).sum();
+        let moment: Vector = arms.iter().map(|arm| place(arm) * arm.mass).sum();
+        self.mass = total - of_arms;
+        self.center_of_mass = (center * total - moment) / self.mass;
+        let about = |point: Vector| (point - center).length_squared();
+        let inertia: f64 = arms
+            .iter()
+            .map(|arm| arm.moment_of_inertia + arm.mass * about(place(arm)))
+            .sum();
+        self.moment_of_inertia -= inertia + self.mass * about(self.center_of_mass);
+        if self.moment_of_inertia <= 0.0 {
+            let rule = format!(
+                "must exceed that of the arms: the chassis would have {} kg m^2",
+                self.moment_of_inertia
+            );
+            let path = "robot.moment_of_inertia";
+            return Err(ScenarioError::new(
+                path,
+                self.moment_of_inertia + inertia,
+                rule,
+            ));
+        }
+        self.flippers = arms;
+        Ok(self)
+    }
+}

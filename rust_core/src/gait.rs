@@ -1,0 +1,90 @@
+//! How a driver moves the flippers: by the clock, or by what it sees of its own robot.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::{Climb, Drive, Gait, Hold};
+
+/// What a driver knows of its robot: pose and touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    /// [s]
+    pub time: f64,
+    /// [rad] Nose up > 0.
+    pub chassis_angle: f64,
+    /// The front flippers bear on something beyond their roots.
+    pub touches: bool,
+}
+
+/// What a driver remembers.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Driver {
+    /// Entries of the schedule of speeds that are past.
+    entries: usize,
+    phase: Phase,
+    /// [rad] Angles given by hand in place of the gait's, front and rear.
+    by_hand: [Option<f64>; 2],
+}
+
+/// Phases of a climb.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    /// The flippers reach up and forwards.
+    #[default]
+    Reach,
+    /// They sweep down on what they have met.
+    Sweep,
+    /// The same, and the chassis has risen.
+    Lift,
+}
+
+impl Driver {
+    /// [m/s] The next speed of the schedule, if its time has come.
+    pub(crate) fn speed(&mut self, drive: &Drive, time: f64) -> Option<f64> {
+        let entries = drive.schedule.as_deref().unwrap_or_default();
+        let past = entries.partition_point(|[from, _]| *from <= time);
+        let speed = (past > self.entries).then(|| entries[past - 1][1]);
+        self.entries = past;
+        speed
+    }
+
+    /// Takes the flippers out of the gait's hands.
+    pub(crate) fn hold(&mut self, end: usize, angle: f64) {
+        self.by_hand[end] = Some(angle);
+    }
+
+    /// [rad] Where the flippers at the front and at the rear are to be, upwards > 0; `start` is where they
+    /// were at time 0.
+    pub(crate) fn angles(&mut self, drive: &Drive, start: f64, sight: Sight) -> [f64; 2] {
+        let of_gait = match &drive.gait {
+            None => [start; 2],
+            Some(Gait::Hold(hold)) => [hold.angle_at(sight.time); 2],
+            Some(Gait::Climb(climb)) => [self.climb(climb, sight), start],
+        };
+        std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
+    }
+
+    /// [rad] Where a climb has the front flippers.
+    fn climb(&mut self, climb: &Climb, sight: Sight) -> f64 {
+        let raised = sight.chassis_angle > climb.level_angle;
+        self.phase = match self.phase {
+            Phase::Reach if sight.touches => Phase::Sweep,
+            Phase::Sweep if raised => Phase::Lift,
+            Phase::Sweep if !sight.touches => Phase::Reach,
+            Phase::Lift if !raised => Phase::Reach,
+            same => same,
+        };
+        match self.phase {
+            Phase::Reach => climb.reach_angle,
+            Phase::Sweep | Phase::Lift => climb.sweep_angle - sight.chassis_angle,
+        }
+    }
+}
+
+impl Hold {
+    fn angle_at(&self, time: f64) -> f64 {
+        let entries = self.schedule.as_deref().unwrap_or_default();
+        let past = entries.partition_point(|[from, _]| *from <= time);
+        past.checked_sub(1)
+            .map_or(self.angle, |last| entries[last][1])
+    }
+}

@@ -1,0 +1,124 @@
+//! What a driver commands: the speed of the tracks, and how the flippers move.
+
+use serde::Serialize;
+
+use super::fields::{Fields, Range, one_of};
+use crate::error::ScenarioError;
+
+const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
+const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
+/// Entries of a schedule at most.
+const MOST: usize = 10_000;
+
+/// The commands of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drive {
+    /// [m/s] Track speed; positive drives towards +x.
+    pub speed: f64,
+    /// [s], [m/s] Times from which other speeds hold, in their order; none keeps the speed.
+    pub schedule: Option<Vec<[f64; 2]>>,
+    /// How the flippers move; none holds them where they start.
+    pub gait: Option<Gait>,
+}
+
+/// A rule by which a driver moves the flippers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Gait {
+    /// Angles by the clock.
+    Hold(Hold),
+    /// Up to meet an obstacle, down to lift the chassis over it.
+    Climb(Climb),
+}
+
+/// Holds the flippers at an angle, at others from given times on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hold {
+    /// [rad] Upwards > 0.
+    pub angle: f64,
+    /// [s], [rad] Times from which other angles hold, in their order; none keeps the angle.
+    pub schedule: Option<Vec<[f64; 2]>>,
+}
+
+/// Angles of the front flippers in the phases of a climb; those at the rear stay where they start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Climb {
+    /// [rad] Until they touch something that lies higher than what the robot stands on.
+    pub reach_angle: f64,
+    /// [rad] From then on, measured from level ground, until the chassis has come over.
+    pub sweep_angle: f64,
+    /// [rad] The chassis has come over when its angle falls below this.
+    pub level_angle: f64,
+}
+
+impl Drive {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let drive = Self {
+            speed: f.number("speed", SPEED)?,
+            schedule: read_schedule(&mut f, ("speed", SPEED))?,
+            gait: if f.value("gait")?.is_null() {
+                None
+            } else {
+                Some(Gait::read(f.child("gait")?)?)
+            },
+        };
+        f.finish()?;
+        Ok(drive)
+    }
+
+    /// [m/s] The fastest speed that is commanded, in magnitude, with the path of its field.
+    pub(crate) fn fastest(&self) -> (String, f64) {
+        let later = self.schedule.iter().flatten().enumerate();
+        let later = later.map(|(i, [_, speed])| (format!("drive.schedule[{i}][1]"), *speed));
+        let first = ("drive.speed".to_owned(), self.speed);
+        later.fold(first, |most, next| {
+            if next.1.abs() > most.1.abs() {
+                next
+            } else {
+                most
+            }
+        })
+    }
+}
+
+impl Gait {
+    fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        const KINDS: [&str; 2] = ["hold", "climb"];
+        let gait = match f.text("kind")? {
+            "hold" => Self::Hold(Hold {
+                angle: f.number("angle", ANGLE)?,
+                schedule: read_schedule(&mut f, ("angle", ANGLE))?,
+            }),
+            "climb" => Self::Climb(Climb {
+                reach_angle: f.number("reach_angle", ANGLE)?,
+                sweep_angle: f.number("sweep_angle", ANGLE)?,
+                level_angle: f.number("level_angle", Range::above(0.0, 1.5, "rad"))?,
+            }),
+            other => return Err(f.error("kind", other, one_of(Some(other), &KINDS))),
+        };
+        f.finish()?;
+        Ok(gait)
+    }
+}
+
+/// Rows of a time [s] and a value, the times rising.
+fn read_schedule(
+    f: &mut Fields,
+    value: (&str, Range),
+) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
+    if f.value("schedule")?.is_null() {
+        return Ok(None);
+    }
+    let time = Range::between(0.0, 1e5, "s");
+    let rows = f.rows("schedule", [("time", time), value], MOST)?;
+    for i in 1..rows.len() {
+        if rows[i][0] <= rows[i - 1][0] {
+            let rule = format!(
+                "must be later than the entry before it, {} s",
+                rows[i - 1][0]
+            );
+            return Err(f.error(&format!("schedule[{i}][0]"), rows[i][0], rule));
+        }
+    }
+    Ok(Some(rows))
+}

@@ -1,0 +1,172 @@
+//! Arms that pivot on the end axles of the robot, each with a track of its own.
+
+use serde::Serialize;
+
+use super::fields::{Fields, Range};
+use super::robot::{LENGTH, MASS, Robot, TrackOutline};
+use super::track::Track;
+use crate::error::ScenarioError;
+
+const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
+
+/// Arms of one form at one end of the robot or at both; one on either side of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Flippers {
+    /// [m] From the pivot to the axle at the tip.
+    pub length: f64,
+    /// [m] Radius about the pivot, to the grouser tips.
+    pub root_radius: f64,
+    /// [m] Radius about the axle at the tip, to the grouser tips.
+    pub tip_radius: f64,
+    /// [kg] Mass of one arm, spread evenly from the pivot to the axle at the tip.
+    pub mass: f64,
+    /// Where they are.
+    pub ends: Ends,
+    /// [rad] Angle of the arms at time 0: 0 points away from the robot, upwards > 0.
+    pub angle: f64,
+    /// [rad/s] Fastest turn over the chassis.
+    pub rate_limit: f64,
+    /// [N m] Largest torque of the motor of one arm.
+    pub torque_limit: f64,
+    /// How their tracks are modelled; none takes the robot's model.
+    pub track: Option<Track>,
+}
+
+/// Ends of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ends {
+    /// The front.
+    Front,
+    /// The rear.
+    Rear,
+    /// Both of them.
+    Both,
+}
+
+/// One end of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The front.
+    Front,
+    /// The rear.
+    Rear,
+}
+
+impl End {
+    /// 1 at the front, -1 at the rear.
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            Self::Front => 1.0,
+            Self::Rear => -1.0,
+        }
+    }
+}
+
+impl Flippers {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let ends = [
+            ("front", Ends::Front),
+            ("rear", Ends::Rear),
+            ("both", Ends::Both),
+        ];
+        let flippers = Self {
+            length: f.number("length", LENGTH)?,
+            root_radius: f.number("root_radius", LENGTH)?,
+            tip_radius: f.number("tip_radius", LENGTH)?,
+            mass: f.number("mass", MASS)?,
+            ends: f.choice("ends", &ends)?,
+            angle: f.number("angle", ANGLE)?,
+            rate_limit: f.number("rate_limit", Range::above(0.0, 100.0, "rad/s"))?,
+            torque_limit: f.number("torque_limit", Range::between(0.0, 1e6, "N m"))?,
+            track: if f.value("track")?.is_null() {
+                None
+            } else {
+                Some(Track::read(f.child("track")?)?)
+            },
+        };
+        if (flippers.root_radius - flippers.tip_radius).abs() >= flippers.length {
+            let rule = "must differ from root_radius by less than the length: one end would swallow the other";
+            return Err(f.error("tip_radius", flippers.tip_radius, rule));
+        }
+        f.finish()?;
+        Ok(flippers)
+    }
+
+    /// Rules that join them with the robot.
+    pub(super) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
+        let error = |field: &str, value: f64, rule: String| {
+            let path = format!("robot.flippers.{field}");
+            Err(ScenarioError::new(path, value, rule))
+        };
+        let height = robot.outline.grouser_height;
+        let smallest = self.root_radius.min(self.tip_radius);
+        if smallest <= height {
+            let rule = format!("must exceed robot.outline.grouser_height = {height} m");
+            return error("tip_radius", smallest, rule);
+        }
+        let of_arms = 2.0 * self.mass * self.ends().count() as f64;
+        if of_arms + robot.track_mass >= robot.mass {
+            let rule = format!(
+                "must leave a chassis: {of_arms} kg of arms and robot.track_mass exceed robot.mass = {} kg",
+                robot.mass
+            );
+            return error("mass", self.mass, rule);
+        }
+        let refused = |rule: &str| {
+            Err(ScenarioError::new(
+                "robot.flippers.track",
+                "this model",
+                rule,
+            ))
+        };
+        let is_force = |track: &Track| matches!(track, Track::Force(_));
+        match &self.track {
+            None if matches!(robot.track, Track::Hybrid(_)) => {
+                refused("must be given: the robot's own has its wheels placed by hand")
+            }
+            Some(Track::Segmental(_)) => refused(
+                "must not be segmental: chains run round the chassis only; grouser_belt comes nearest",
+            ),
+            Some(track) if is_force(track) != is_force(&robot.track) => {
+                refused("must be a force track where robot.track is one, and only there")
+            }
+            Some(track) => track.check(robot),
+            None => Ok(()),
+        }
+    }
+
+    /// The ends that have them, the front first.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = End> + Clone {
+        let ends: &[End] = match self.ends {
+            Ends::Front => &[End::Front],
+            Ends::Rear => &[End::Rear],
+            Ends::Both => &[End::Front, End::Rear],
+        };
+        ends.iter().copied()
+    }
+
+    /// The side view of the track of an arm at an end, its outline's frame midway between its axles.
+    pub(crate) fn outline(&self, end: End, robot: &TrackOutline) -> TrackOutline {
+        let (rear_radius, front_radius) = match end {
+            End::Front => (self.root_radius, self.tip_radius),
+            End::Rear => (self.tip_radius, self.root_radius),
+        };
+        TrackOutline {
+            axle_distance: self.length,
+            front_radius,
+            rear_radius,
+            ..robot.clone()
+        }
+    }
+
+    /// How the track of an arm is modelled.
+    pub(crate) fn track_model(&self, robot: &Track) -> Track {
+        self.track.clone().unwrap_or_else(|| match robot {
+            Track::Segmental(_) => Track::GrouserBelt(super::GrouserBeltTrack {
+                grouser_count: None,
+            }),
+            other => other.clone(),
+        })
+    }
+}

@@ -1,0 +1,52 @@
+//! Tracks of the flippers: any model that suits a tapering outline, on an arm that pivots.
+
+use super::{TrackModel, build};
+use crate::error::ScenarioError;
+use crate::robot::{Mount, Part};
+use crate::scenario::{End, Flippers, Robot, TorqueSharing};
+
+/// Adds the tracks of the arms to the track of a robot, whose motors drive them.
+pub(super) fn add(
+    robot: &Robot,
+    flippers: &Flippers,
+    track: &mut TrackModel,
+) -> Result<(), ScenarioError> {
+    for (number, end) in flippers.ends().enumerate() {
+        let arm = arm_as_robot(robot, flippers, end);
+        let own = build(&arm).map_err(|error| ScenarioError {
+            path: error
+                .path
+                .replacen("robot.track", "robot.flippers.track", 1),
+            ..error
+        })?;
+        let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
+        // One motor a track drives its flippers, too; wheels that turn freely do so each by itself.
+        let shared = if with_own_motors { 0 } else { own.motors };
+        let first = track.drives;
+        let of_robot = |drive: usize| {
+            if drive < shared {
+                drive
+            } else {
+                first + drive - shared
+            }
+        };
+        track.parts.extend(own.parts.into_iter().map(|part| Part {
+            drive: part.drive.map(of_robot),
+            mount: Mount::Flipper(number),
+            ..part
+        }));
+        track.drives += own.drives - shared;
+        track.motors += own.motors - shared;
+    }
+    Ok(())
+}
+
+/// An arm as if it were a robot, to build its track.
+fn arm_as_robot(robot: &Robot, flippers: &Flippers, end: End) -> Robot {
+    Robot {
+        outline: flippers.outline(end, &robot.outline),
+        track: flippers.track_model(&robot.track),
+        flippers: None,
+        ..robot.clone()
+    }
+}
