@@ -37,19 +37,21 @@ class Hold(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb(Parameters):
-    """Reach up with the front flippers to meet an obstacle, sweep down to lift the chassis over it.
+    """Reach up with the flippers to meet an obstacle, sweep down to lift the chassis over it.
 
-    The driver knows what one at a distance could know: the angle of the chassis, and whether the
-    front flippers bear on something beyond their roots. They are held at `reach_angle` until they
-    do; then they sweep down to `sweep_angle`, until the chassis, once it has risen, has come down
-    to less than `level_angle`. Then they reach up again. The speed of the tracks is that of the
-    `Drive`, nothing is rocked to and fro, and flippers at the rear stay where they start.
+    The driver knows what one at a distance could know: the angle of the chassis, and whether
+    flippers bear on something beyond their roots. Those at the front are held at `reach_angle`
+    until they do; then they sweep down to `sweep_angle`. As soon as the chassis is raised, by more
+    than `level_angle`, those at the rear push down to `push_angle` and lift it from behind. When it
+    is level again and nothing bears on those at the rear, all go back: the front ones reach up,
+    the rear ones to where they start. The speed of the tracks is that of the `Drive`, and nothing
+    is rocked to and fro.
 
     Parameters
     ----------
     reach_angle : float
         [rad] Over the chassis, upwards > 0.
-    sweep_angle : float
+    sweep_angle, push_angle : float
         [rad] Over level ground, upwards > 0.
     level_angle : float
         [rad] Of the chassis.
@@ -59,7 +61,8 @@ class Climb(Parameters):
     place: ClassVar[str] = "drive.gait"
 
     reach_angle: float = 0.8
-    sweep_angle: float = -0.4
+    sweep_angle: float = 0.0
+    push_angle: float = -0.8
     level_angle: float = 0.1
 
 

@@ -11,8 +11,8 @@ pub(crate) struct Sight {
     pub time: f64,
     /// [rad] Nose up > 0.
     pub chassis_angle: f64,
-    /// The front flippers bear on something beyond their roots.
-    pub touches: bool,
+    /// The flippers at the front and at the rear bear on something beyond their roots.
+    pub touches: [bool; 2],
 }
 
 /// What a driver remembers.
@@ -28,12 +28,12 @@ pub(crate) struct Driver {
 /// Phases of a climb.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 enum Phase {
-    /// The flippers reach up and forwards.
+    /// The front flippers reach up and forwards.
     #[default]
     Reach,
-    /// They sweep down on what they have met.
+    /// They have met something and sweep down on it.
     Sweep,
-    /// The same, and the chassis has risen.
+    /// The chassis has risen: those at the rear lift it from behind.
     Lift,
 }
 
@@ -58,24 +58,29 @@ impl Driver {
         let of_gait = match &drive.gait {
             None => [start; 2],
             Some(Gait::Hold(hold)) => [hold.angle_at(sight.time); 2],
-            Some(Gait::Climb(climb)) => [self.climb(climb, sight), start],
+            Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
         };
         std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
     }
 
-    /// [rad] Where a climb has the front flippers.
-    fn climb(&mut self, climb: &Climb, sight: Sight) -> f64 {
+    /// [rad] Where a climb has the flippers.
+    fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [f64; 2] {
+        let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
         self.phase = match self.phase {
-            Phase::Reach if sight.touches => Phase::Sweep,
-            Phase::Sweep if raised => Phase::Lift,
-            Phase::Sweep if !sight.touches => Phase::Reach,
-            Phase::Lift if !raised => Phase::Reach,
+            Phase::Reach | Phase::Sweep if raised => Phase::Lift,
+            Phase::Reach if front => Phase::Sweep,
+            Phase::Sweep if !front => Phase::Reach,
+            // What they stand on would drop the robot.
+            Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
+        let swept = climb.sweep_angle - sight.chassis_angle;
+        let pushed = climb.push_angle + sight.chassis_angle;
         match self.phase {
-            Phase::Reach => climb.reach_angle,
-            Phase::Sweep | Phase::Lift => climb.sweep_angle - sight.chassis_angle,
+            Phase::Reach => [climb.reach_angle, start],
+            Phase::Sweep => [swept, start],
+            Phase::Lift => [swept, pushed],
         }
     }
 }

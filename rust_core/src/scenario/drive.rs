@@ -40,14 +40,16 @@ pub struct Hold {
     pub schedule: Option<Vec<[f64; 2]>>,
 }
 
-/// Angles of the front flippers in the phases of a climb; those at the rear stay where they start.
+/// Angles of the flippers in the phases of a climb.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Climb {
-    /// [rad] Until they touch something that lies higher than what the robot stands on.
+    /// [rad] Of those at the front over the chassis, until they bear on something.
     pub reach_angle: f64,
-    /// [rad] From then on, measured from level ground, until the chassis has come over.
+    /// [rad] Of the same over level ground, from then on until the chassis has come over.
     pub sweep_angle: f64,
-    /// [rad] The chassis has come over when its angle falls below this.
+    /// [rad] Of those at the rear over level ground, as long as the chassis is raised.
+    pub push_angle: f64,
+    /// [rad] The chassis is raised beyond this angle.
     pub level_angle: f64,
 }
 
@@ -92,6 +94,7 @@ impl Gait {
             "climb" => Self::Climb(Climb {
                 reach_angle: f.number("reach_angle", ANGLE)?,
                 sweep_angle: f.number("sweep_angle", ANGLE)?,
+                push_angle: f.number("push_angle", ANGLE)?,
                 level_angle: f.number("level_angle", Range::above(0.0, 1.5, "rad"))?,
             }),
             other => return Err(f.error("kind", other, one_of(Some(other), &KINDS))),

@@ -126,7 +126,7 @@ impl Simulation {
             let sight = Sight {
                 time,
                 chassis_angle: self.state.angle,
-                touches: self.front_flipper_touches(),
+                touches: [1.0, -1.0].map(|sign| self.flipper_touches(sign)),
             };
             let angles = self.driver.angles(drive, flippers.angle, sight);
             self.dynamics.command_flippers(&self.state, angles);
@@ -135,19 +135,19 @@ impl Simulation {
         self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
     }
 
-    /// Whether a flipper at the front bears on something beyond its root.
-    fn front_flipper_touches(&self) -> bool {
-        let flippers = &self.dynamics.model().flippers;
-        let Some(front) = flippers.iter().position(|flipper| flipper.sign > 0.0) else {
+    /// Whether a flipper at the front, 1, or at the rear, -1, bears on something beyond its root.
+    fn flipper_touches(&self, sign: f64) -> bool {
+        let model = self.dynamics.model();
+        let Some(k) = model.flippers.iter().position(|f| f.sign == sign) else {
             return false;
         };
-        let pose = self.state.pose(self.dynamics.model());
-        let pivot = pose.transform_point(flippers[front].pivot);
-        let along = direction(self.state.flippers[front].angle);
+        let flipper = &model.flippers[k];
+        let pivot = self.state.pose(model).transform_point(flipper.pivot);
+        let along = sign * direction(self.state.flippers[k].angle);
         self.loaded().iter().any(|l| {
-            let beyond = (l.contact.point - pivot).dot(along) > flippers[front].root_radius;
-            let mount = self.dynamics.model().parts[l.contact.part].mount;
-            beyond && l.normal_force > 0.0 && mount == Mount::Flipper(front)
+            let beyond = (l.contact.point - pivot).dot(along) > flipper.root_radius;
+            let mount = model.parts[l.contact.part].mount;
+            beyond && l.normal_force > 0.0 && mount == Mount::Flipper(k)
         })
     }
 
