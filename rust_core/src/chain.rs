@@ -76,7 +76,10 @@ impl Model {
             .sum();
         self.moment_of_inertia = locked - of_shoes - mass * about(self.center_of_mass);
         self.mass = mass;
-        self.drive_masses.fill(0.0);
+        // The first drives are those of the chains; the others keep what turns with them.
+        self.drive_masses[..chains.len()].fill(0.0);
+        let of_drives: f64 = (0..self.drives).map(|k| self.drive_inertia(k)).sum();
+        self.moment_of_inertia -= of_drives;
         self.chains = chains;
         self
     }

@@ -1,6 +1,6 @@
 //! Flippers of a robot: arms that pivot on its end axles, and what they leave of it to the chassis.
 
-use rapier2d_f64::math::{Pose, Vector};
+use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use crate::error::ScenarioError;
 use crate::robot::Model;
@@ -64,6 +64,20 @@ impl Flipper {
             }
         };
         flippers.ends().map(arm).collect()
+    }
+
+    /// [kg] What moves at the speed of its track where that has a drive of its own: a tenth, our assumption.
+    pub(crate) fn mass_of_track(&self) -> f64 {
+        0.1 * self.mass
+    }
+
+    /// [m] From the chassis' centre of mass, which is there in its frame, to the pivot, and from there to its
+    /// own, when these are turned so far over ground [rad].
+    pub(crate) fn spokes(&self, center_of_mass: Vector, [chassis, arm]: [f64; 2]) -> [Vector; 2] {
+        [
+            Rotation::new(chassis) * (self.pivot - center_of_mass),
+            Rotation::new(arm) * self.arm,
+        ]
     }
 
     /// Where it is when turned by `angle` [rad] over the chassis, counter-clockwise.

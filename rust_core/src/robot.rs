@@ -152,21 +152,33 @@ impl Model {
             });
         }
         let radius = robot.outline.rear_radius;
+        let flippers = Flipper::of(robot);
+        // A chain is all of the track's mass and has all of its force; beside it, only flippers have drives.
+        let (sharers, mut drive_masses) = if track.chains.is_empty() {
+            let share = robot.track_mass / track.drives as f64;
+            (track.motors, vec![share; track.drives])
+        } else {
+            (1, vec![robot.track_mass])
+        };
+        let beside = flippers.iter().map(Flipper::mass_of_track);
+        drive_masses.extend(beside.take(track.drives - drive_masses.len()));
+        let of_others: f64 = drive_masses[sharers..].iter().sum();
+        let circulating = (robot.track_mass + of_others) * radius * radius;
         Ok(Self {
             mass: robot.mass,
             center_of_mass: Vector::from(robot.center_of_mass),
-            moment_of_inertia: robot.moment_of_inertia - robot.track_mass * radius * radius,
+            moment_of_inertia: robot.moment_of_inertia - circulating,
             parts,
             drives: track.drives,
             motors: track.motors,
-            drive_masses: vec![robot.track_mass / track.drives as f64; track.drives],
+            drive_masses,
             drive_radius: radius,
-            drive_force: robot.drivetrain.max_force(&robot.outline) / track.motors as f64,
+            drive_force: robot.drivetrain.max_force(&robot.outline) / sharers as f64,
             pushes_chassis: track.pushes_chassis,
             chains: Vec::new(),
             flippers: Vec::new(),
         }
-        .with_flippers(Flipper::of(robot))?
+        .with_flippers(flippers)?
         .with_chains(track.chains))
     }
 

@@ -37,7 +37,9 @@ impl Model {
         let shared = usize::from(self.pushes_chassis);
         let (motors, free) = (self.motors - shared, self.drives - self.motors);
         let of_side = |drive: usize, side: usize| {
-            if drive < shared {
+            if !self.chains.is_empty() {
+                2 * drive + side // the first drives are those of the chains
+            } else if drive < shared {
                 drive
             } else if drive < self.motors {
                 drive + side * motors

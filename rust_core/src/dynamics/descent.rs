@@ -217,7 +217,7 @@ impl Dynamics {
         let mut slope = m.mass * velocity.dot(change.velocity)
             + (moment - self.free_moment(phase)) * change.turn;
         for (k, spin) in self.system.spins.iter().enumerate() {
-            if let Some(of_motor) = self.motors[k].share().filter(|_| self.chains.is_empty()) {
+            if let Some(of_motor) = self.motors[k].share().filter(|_| k >= self.chains.len()) {
                 let inertia = m.drive_inertia(k);
                 let free = inertia * phase.spins[k] - phase.motor_turn(of_motor, m);
                 let moment = inertia * (state.drives[k].spin + spin.change * share);

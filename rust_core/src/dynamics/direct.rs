@@ -354,10 +354,10 @@ impl Dynamics {
             let share = motor.share().unwrap_or_default();
             let of_motor = phase.motor_turn(share, m);
             // The drive of a chain has no inertia but the chain's.
-            let drive_inertia = if self.chains.is_empty() {
-                m.drive_inertia(k)
-            } else {
+            let drive_inertia = if k < self.chains.len() {
                 1.0
+            } else {
+                m.drive_inertia(k)
             };
             system.spins[k] = Spin {
                 inertia: drive_inertia,

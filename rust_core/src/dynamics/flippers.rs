@@ -5,7 +5,10 @@
 //! damper about the velocity that its centre of mass would have by itself: the impulse of that damper is
 //! what the pivot takes.
 
-use rapier2d_f64::math::{Rotation, Vector};
+#[cfg(test)]
+mod tests;
+
+use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
 use super::direct::{Acts, Damper};
@@ -27,8 +30,6 @@ pub(super) struct Arm {
     arm: Vector,
     /// Its velocity in this piece as it would be without the pivot.
     free: Twist,
-    /// [m/s^2] What changes that.
-    pull: Vector,
 }
 
 impl Arm {
@@ -41,7 +42,6 @@ impl Arm {
             pivot: Vector::ZERO,
             arm: Vector::ZERO,
             free: Twist::default(),
-            pull: Vector::ZERO,
         }
     }
 
@@ -123,12 +123,10 @@ impl Dynamics {
 
     /// Brings the arms to where they are in the middle of a step, half its time [s] from now.
     pub(super) fn place_flippers(&mut self, state: &State, half: f64) {
-        let (_, angle) = state.moved(half);
-        let to_pivot = Rotation::new(angle);
+        let center = self.model.center_of_mass;
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
-            let along = Rotation::new(turn.angle + turn.rate * half);
-            arm.pivot = to_pivot * (arm.rule.pivot - self.model.center_of_mass);
-            arm.arm = along * arm.rule.arm;
+            let angles = [state.moved(half).1, turn.angle + turn.rate * half];
+            [arm.pivot, arm.arm] = arm.rule.spokes(center, angles);
         }
     }
 
@@ -140,18 +138,22 @@ impl Dynamics {
                 velocity: arm.velocity(chassis, turn.rate),
                 turn: turn.rate,
             };
-            // The pivot goes round with the chassis, the arm round the pivot: what pulls them inwards takes
-            // no part in what changes their turns.
-            let inwards = arm.pivot * chassis.turn * chassis.turn + arm.arm * turn.rate * turn.rate;
-            arm.pull = Vector::new(0.0, -self.gravity) + inwards;
         }
-        self.pull_flippers(time);
+        self.pull_flippers(state, state.angular_velocity, time);
     }
 
-    /// Goes on for a time [s].
-    pub(super) fn pull_flippers(&mut self, time: f64) {
-        for arm in &mut self.flippers {
-            arm.free.velocity += arm.pull * time;
+    /// Goes on for a time [s], as the weight pulls and as the turns do: the pivot goes round with the
+    /// chassis and the arm round the pivot, and what that takes inwards changes no turn. `began` is the
+    /// turn of the chassis at the beginning of the piece [rad/s]: half of it on, turns have changed by half of
+    /// what they will, and this half is that of its end.
+    pub(super) fn pull_flippers(&mut self, state: &State, began: f64, time: f64) {
+        let (center, gravity) = (self.model.center_of_mass, self.gravity);
+        for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
+            let [pivot, out] = arm.rule.spokes(center, [state.angle, turn.angle]);
+            let of_chassis = 2.0 * state.angular_velocity - began;
+            let of_arm = 2.0 * turn.rate - arm.free.turn;
+            let inwards = pivot * of_chassis * of_chassis + out * of_arm * of_arm;
+            arm.free.velocity += (inwards - Vector::new(0.0, gravity)) * time;
         }
     }
 

@@ -250,7 +250,7 @@ impl Dynamics {
         self.solve(state, &phase);
         self.move_on(state, h);
         phase.velocity += self.kick(half);
-        self.pull_flippers(half);
+        self.pull_flippers(state, phase.angular_velocity, half);
         phase.elapsed = h;
         self.guess_more(half);
         self.solve(state, &phase);

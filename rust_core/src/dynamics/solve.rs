@@ -240,7 +240,7 @@ impl Dynamics {
         let m = &self.model;
         let spin_of_set_point = phase.set_point / m.drive_radius;
         let of_drive = |(k, motor): (usize, &Motor)| match motor.share() {
-            Some(_) if !self.chains.is_empty() => 0.0,
+            Some(_) if k < self.chains.len() => 0.0,
             Some(share) => phase.motor_turn(share, m),
             None => m.drive_inertia(k) * (phase.spins[k] + spin_of_set_point),
         };
@@ -306,6 +306,10 @@ impl Dynamics {
             action.unit.length_squared() / mass + lever * lever / inertia
         };
         let of_flipper = match link {
+            // It bears beside shoes, and as softly: as one of many contacts it would chase their grips.
+            Link::Flipper(_) if !self.chains.is_empty() => {
+                action.unit.length_squared() / self.chains[0].rule.shoe_mass
+            }
             Link::Flipper(k) => {
                 let lever = action.flipper_lever;
                 lever * lever / self.flippers[k].inertia_about_pivot()
@@ -329,9 +333,10 @@ impl Dynamics {
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
     pub(super) fn turn_with_chassis(&mut self, state: &mut State, phase: &Phase) {
         let back = phase.set_point / self.model.drive_radius;
-        for (drive, motor) in state.drives.iter_mut().zip(&self.motors) {
-            // A chain is held at its driving end, and has a speed of its own.
-            if motor.share().is_none() && self.chains.is_empty() {
+        // A chain is held at its driving end, and has a speed of its own.
+        let drives = state.drives.iter_mut().zip(&self.motors);
+        for (drive, motor) in drives.skip(self.chains.len()) {
+            if motor.share().is_none() {
                 drive.spin = state.angular_velocity - back;
             }
         }

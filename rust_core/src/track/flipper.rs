@@ -20,7 +20,9 @@ pub(super) fn add(
             ..error
         })?;
         let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-        // One motor a track drives its flippers, too; wheels that turn freely do so each by itself.
+        // One motor a track drives its flippers, too; wheels that turn freely do so each by itself. Shoes
+        // cannot share a motor with a belt: theirs has no spin to turn one with.
+        let with_own_motors = with_own_motors || !track.chains.is_empty();
         let shared = if with_own_motors { 0 } else { own.motors };
         let first = track.drives;
         let of_robot = |drive: usize| {

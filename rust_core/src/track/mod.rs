@@ -16,9 +16,9 @@ use crate::scenario::{CircumferentialWheels, HybridWheels, LineOfWheels, Robot, 
 pub(crate) struct TrackModel {
     /// Shapes that meet the ground.
     pub parts: Vec<Part>,
-    /// Number of independent drives, the driven ones first; they share the mass evenly.
+    /// Number of independent drives, the driven ones first; they share the mass evenly, but for chains.
     pub drives: usize,
-    /// Number of drives with a motor; these share the force evenly.
+    /// Number of drives with a motor; these share the force evenly, but for chains.
     pub motors: usize,
     /// The drive pushes the chassis itself instead of the ground under the parts.
     pub pushes_chassis: bool,

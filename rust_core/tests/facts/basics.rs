@@ -1,7 +1,7 @@
 //! Weight, balance, equal robots, energy: what holds for every model.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Drive, Model, Scenario, Simulation, TorqueSharing, Track, Vector, Wheel};
+use crawler2d_core::{Model, Scenario, Simulation, TorqueSharing, Track, Vector, Wheel};
 
 use crate::common::*;
 
@@ -22,23 +22,6 @@ fn models() -> Vec<(&'static str, Track)> {
         ("hybrid gear", hybrid(paper_gear())),
         ("force on wheels", force_on_wheels()),
     ]
-}
-
-/// Sums of the contact forces along x and y, and of their moments about a point.
-fn contact_sums(simulation: &Simulation, x: f64, y: f64) -> (f64, f64, f64) {
-    let c = simulation.contact_table();
-    let (mut fx, mut fy, mut moment) = (0.0, 0.0, 0.0);
-    for i in 0..c.time.len() {
-        let (nx, ny) = (c.normal_x[i], c.normal_y[i]);
-        let (px, py) = (
-            c.normal_force[i] * nx + c.friction_force[i] * ny,
-            c.normal_force[i] * ny - c.friction_force[i] * nx,
-        );
-        fx += px;
-        fy += py;
-        moment += (c.x[i] - x) * py - (c.y[i] - y) * px;
-    }
-    (fx, fy, moment)
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, GrouserBeltTrack,
-    HybridWheels, LineOfWheels, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation,
-    Terrain, Track, Wheel, simulate,
+    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, Ground,
+    GrouserBeltTrack, HybridWheels, LineOfWheels, Profile, Record, Run, Scenario, SegmentalTrack,
+    ShoeShape, Simulation, Terrain, Track, Wheel, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -187,4 +187,33 @@ impl Draw {
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
+}
+
+/// Sums of the contact forces along x and y, and of their moments about a point.
+pub(crate) fn contact_sums(simulation: &Simulation, x: f64, y: f64) -> (f64, f64, f64) {
+    let c = simulation.contact_table();
+    let (mut fx, mut fy, mut moment) = (0.0, 0.0, 0.0);
+    for i in 0..c.time.len() {
+        let (nx, ny) = (c.normal_x[i], c.normal_y[i]);
+        let (px, py) = (
+            c.normal_force[i] * nx + c.friction_force[i] * ny,
+            c.normal_force[i] * ny - c.friction_force[i] * nx,
+        );
+        fx += px;
+        fy += py;
+        moment += (c.x[i] - x) * py - (c.y[i] - y) * px;
+    }
+    (fx, fy, moment)
+}
+
+fn profile(terrain: &Terrain) -> (Profile, f64) {
+    let mut ground = Ground::new(terrain, 0.2).expect("a ground");
+    (ground.lanes.remove(0), ground.goal)
+}
+
+/// The same profile thrice.
+pub(crate) fn equal_lanes(terrain: &Terrain) -> Ground {
+    let (lane, goal) = profile(terrain);
+    let tracks = [lane.clone(), lane.clone()];
+    Ground::apart(tracks, Some(lane), goal).expect("they overlap")
 }

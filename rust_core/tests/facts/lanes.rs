@@ -1,6 +1,6 @@
 //! Two lanes under one chassis: each track meets its own ground, the belly the one between.
 
-use crawler2d_core::{BodyKind, Ground, Model, Profile, Simulation, Terrain, Track, Wheel};
+use crawler2d_core::{BodyKind, Model, Simulation, Terrain, Track, Wheel};
 
 use crate::common::*;
 
@@ -16,18 +16,6 @@ fn models() -> Vec<(&'static str, Track)> {
         ("belt with grousers", grouser_belt()),
         ("chain", segmental(None)),
     ]
-}
-
-fn profile(terrain: &Terrain) -> (Profile, f64) {
-    let mut ground = Ground::new(terrain, 0.2).expect("a ground");
-    (ground.lanes.remove(0), ground.goal)
-}
-
-/// The same profile thrice.
-fn equal_lanes(terrain: &Terrain) -> Ground {
-    let (lane, goal) = profile(terrain);
-    let tracks = [lane.clone(), lane.clone()];
-    Ground::apart(tracks, Some(lane), goal).expect("they overlap")
 }
 
 fn lanes(left: Terrain, right: Terrain) -> Terrain {

@@ -1,0 +1,172 @@
+//! Arms in free flight, and on a chassis that is too heavy to feel them.
+
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::robot::Model;
+use crate::scenario::{Ends, Flippers, Scenario};
+
+/// The Engineer with arms at both ends.
+fn scenario(torque_limit: f64) -> Scenario {
+    let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    scenario.robot.flippers = Some(Flippers {
+        length: 0.34,
+        root_radius: 0.064,
+        tip_radius: 0.037,
+        mass: 0.775,
+        ends: Ends::Both,
+        angle: 0.0,
+        rate_limit: 2.0,
+        torque_limit,
+        track: None,
+    });
+    scenario
+}
+
+fn built(scenario: &Scenario) -> (Dynamics, State) {
+    let model = Model::new(&scenario.robot).expect("the robot can be built");
+    let state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
+    let solver = scenario.solver.clone();
+    let dynamics = Dynamics::new(model, vec![0.5], scenario.gravity, solver);
+    (dynamics, state)
+}
+
+fn advance(dynamics: &mut Dynamics, state: &mut State, time: f64) {
+    let steps = (time / dynamics.solver.time_step).round() as u64;
+    for step in 0..steps {
+        dynamics.advance(state, &[], 0.0, step).expect("finite");
+    }
+}
+
+/// Momentum [kg m/s], moment of momentum about the origin [kg m^2/s] and kinetic energy [J].
+fn sums(dynamics: &mut Dynamics, state: &State) -> (Vector, f64, f64) {
+    dynamics.place_flippers(state, 0.0);
+    let m = &dynamics.model;
+    let of_drives: f64 = (0..state.drives.len())
+        .map(|k| m.drive_inertia(k) * state.drives[k].spin)
+        .sum();
+    let mut sums = (
+        state.velocity * m.mass,
+        crate::plane::cross(state.center, state.velocity) * m.mass
+            + m.moment_of_inertia * state.angular_velocity
+            + of_drives,
+        0.5 * m.mass * state.velocity.length_squared()
+            + 0.5 * m.moment_of_inertia * state.angular_velocity * state.angular_velocity,
+    );
+    for (arm, turn) in dynamics.flippers.iter().zip(&state.flippers) {
+        let (velocity, mass) = (arm.velocity(state.twist(), turn.rate), arm.rule.mass);
+        let center = state.center + arm.pivot + arm.arm;
+        let inertia = arm.rule.moment_of_inertia;
+        sums.0 += velocity * mass;
+        sums.1 += crate::plane::cross(center, velocity) * mass + inertia * turn.rate;
+        sums.2 += 0.5 * mass * velocity.length_squared() + 0.5 * inertia * turn.rate * turn.rate;
+    }
+    sums
+}
+
+#[test]
+fn arms_that_swing_in_the_air_keep_momentum_and_energy_to_second_order() {
+    let mut losses = Vec::new();
+    for time_step in [1e-3, 5e-4] {
+        let mut scenario = scenario(0.0);
+        scenario.gravity = 0.0;
+        scenario.robot.drivetrain.max_torque = 0.0;
+        scenario.solver.time_step = time_step;
+        let (mut dynamics, mut state) = built(&scenario);
+        state.velocity = Vector::new(0.3, -0.2);
+        state.angular_velocity = 1.0;
+        (state.flippers[0].rate, state.flippers[1].rate) = (5.0, -3.0);
+        let before = sums(&mut dynamics, &state);
+        advance(&mut dynamics, &mut state, 2.0);
+        let after = sums(&mut dynamics, &state);
+        let lost = [
+            (after.0 - before.0).length() / before.0.length(),
+            (after.1 / before.1 - 1.0).abs(),
+            (after.2 / before.2 - 1.0).abs(),
+        ];
+        losses.push(lost);
+        assert!(lost.iter().all(|share| *share < 1e-5), "{lost:?}");
+    }
+    // With half the step a quarter is left.
+    for (coarse, fine) in losses[0].iter().zip(losses[1]) {
+        assert!(fine < 0.3 * coarse || *coarse < 1e-9, "{losses:?}");
+    }
+}
+
+/// A uniform rod about its end, of length l: T = 2 pi sqrt(2 l / (3 g)), longer by 1 + a^2/16 at amplitude a.
+#[test]
+fn a_free_arm_of_a_heavy_robot_is_a_pendulum() {
+    let mut scenario = scenario(0.0);
+    scenario.robot.mass = 1e6;
+    scenario.robot.moment_of_inertia = 1e6;
+    scenario.robot.center_of_mass = [0.0, 0.0];
+    let (mut dynamics, mut state) = built(&scenario);
+    // It falls freely with its pivot unless something holds it up.
+    dynamics.outer_force = Vector::new(0.0, dynamics.model.mass * scenario.gravity);
+    let (down, amplitude) = (-0.5 * std::f64::consts::PI, 0.2);
+    state.flippers[0].angle = down + amplitude;
+    state.flippers[1].angle = -down;
+    let mut crossings = Vec::new();
+    let mut largest: f64 = 0.0;
+    for step in 0..5000 {
+        let before = state.flippers[0].angle - down;
+        dynamics
+            .advance(&mut state, &[], 0.0, step)
+            .expect("finite");
+        let now = state.flippers[0].angle - down;
+        if before > 0.0 && now <= 0.0 {
+            crossings.push(1e-3 * (step as f64 + before / (before - now)));
+        }
+        if step > 4000 {
+            largest = largest.max(now);
+        }
+    }
+    let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
+    let small = std::f64::consts::TAU * (2.0 * 0.34 / (3.0 * scenario.gravity)).sqrt();
+    let expected = small * (1.0 + amplitude * amplitude / 16.0);
+    assert_relative_eq!(period, expected, max_relative = 1e-4);
+    assert_relative_eq!(largest, amplitude, max_relative = 1e-4);
+}
+
+#[test]
+fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
+    let mut scenario = scenario(1e4);
+    scenario.gravity = 0.0;
+    let (mut dynamics, mut state) = built(&scenario);
+    for step in 0..500 {
+        dynamics.command_flippers(&state, [0.8, 0.0]);
+        dynamics
+            .advance(&mut state, &[], 0.0, step)
+            .expect("finite");
+        let turned = (2.0 * 1e-3 * (step + 1) as f64).min(0.8);
+        assert_relative_eq!(state.over_chassis(0), turned, epsilon = 1e-9);
+        assert_relative_eq!(state.over_chassis(1), 0.0, epsilon = 1e-9);
+    }
+    assert!(state.angle < -0.01, "{} rad", state.angle);
+    let (momentum, moment, _) = sums(&mut dynamics, &state);
+    assert!(
+        momentum.length() < 1e-6 && moment.abs() < 1e-6,
+        "{momentum} {moment}"
+    );
+}
+
+#[test]
+fn arms_and_chassis_together_are_the_robot() {
+    let scenario = scenario(30.0);
+    let robot = &scenario.robot;
+    let model = Model::new(robot).expect("the robot can be built");
+    let place = |arm: &Flipper| arm.pivot + arm.arm;
+    let arms = || model.flippers.iter();
+    assert_relative_eq!(model.total_mass(), robot.mass, max_relative = 1e-12);
+    let moment: Vector = arms().map(|arm| place(arm) * arm.mass).sum();
+    let center = (model.center_of_mass * model.mass + moment) / robot.mass;
+    let expected = Vector::from(robot.center_of_mass);
+    assert!((center - expected).length() < 1e-12);
+    let about = |point: Vector| (point - center).length_squared();
+    let of_arms: f64 = arms()
+        .map(|arm| arm.moment_of_inertia + arm.mass * about(place(arm)))
+        .sum();
+    let inertia = model.locked_inertia() + model.mass * about(model.center_of_mass) + of_arms;
+    assert_relative_eq!(inertia, robot.moment_of_inertia, max_relative = 1e-12);
+}

@@ -1,0 +1,281 @@
+//! Flippers on the ground: what their motors bear, and what they do to the robot.
+
+use approx::assert_relative_eq;
+use crawler2d_core::{
+    Climb, Drive, End, Ends, Error, Flippers, Gait, Hold, Outcome, Record, Scenario, Simulation,
+    Track, Wheel, simulate,
+};
+
+use crate::common::*;
+
+/// The Engineer with its arms.
+fn with_flippers(ends: Ends, track: Track) -> Scenario {
+    let mut scenario = engineer();
+    scenario.robot.track = track;
+    scenario.robot.flippers = Some(Flippers {
+        length: 0.34,
+        root_radius: 0.064,
+        tip_radius: 0.037,
+        mass: 0.775,
+        ends,
+        angle: 0.0,
+        rate_limit: 1.0,
+        torque_limit: 30.0,
+        track: None,
+    });
+    scenario
+}
+
+fn flippers(scenario: &mut Scenario) -> &mut Flippers {
+    scenario.robot.flippers.as_mut().expect("it has flippers")
+}
+
+fn hold(angle: f64) -> Option<Gait> {
+    Some(Gait::Hold(Hold {
+        angle,
+        schedule: None,
+    }))
+}
+
+/// Every model that has a form for arms.
+fn models() -> Vec<(&'static str, Track)> {
+    vec![
+        ("belt", belt()),
+        ("belt with grousers", grouser_belt()),
+        ("line of 3", line(3)),
+        ("line of 3 gear wheels", line_of(3, paper_gear())),
+        ("24 all round", circumferential(24, Wheel::Round)),
+        (
+            "24 gear wheels all round",
+            circumferential(24, paper_gear()),
+        ),
+        ("chain", segmental(None)),
+        ("force on skids", force()),
+        ("force on wheels", force_on_wheels()),
+    ]
+}
+
+#[test]
+fn an_arm_held_in_the_air_bears_its_weight() {
+    for angle in [0.0, 0.5, 1.2, 2.0] {
+        let mut scenario = with_flippers(Ends::Both, belt());
+        scenario.terrain = slope(0.0, 0.9);
+        scenario.drive = Drive {
+            speed: 0.0,
+            schedule: None,
+            gait: hold(angle),
+        };
+        let torques: Vec<f64> = after(&scenario, 3.0).flipper_torques().collect();
+        let weight = 2.0 * 0.775 * G * 0.17 * angle.cos();
+        for torque in torques {
+            assert_relative_eq!(torque, weight, epsilon = 1e-3);
+        }
+    }
+}
+
+/// A motor at its limit presses the tip down with its torque by the lever, whatever the angle it is to go to.
+#[test]
+fn an_arm_presses_down_with_the_limit_of_its_torque() {
+    let mut scenario = with_flippers(Ends::Front, belt());
+    scenario.terrain = slope(0.0, 0.0);
+    flippers(&mut scenario).torque_limit = 5.0;
+    scenario.drive = Drive {
+        speed: 0.0,
+        schedule: None,
+        gait: hold(-1.0),
+    };
+    let simulation = after(&scenario, 3.0);
+    let table = simulation.contact_table();
+    let pivot = simulation.reading().position.x + 0.1825;
+    let is_tip = |x: f64| x > pivot + 0.2;
+    let (mut moment, mut weight) = (0.0, 0.0);
+    for (x, force) in table.x.iter().zip(&table.normal_force) {
+        weight += force;
+        if is_tip(*x) {
+            moment += (x - pivot) * force;
+        }
+    }
+    let angle = simulation.flipper_angles().next().expect("it has one");
+    let of_arm = 2.0 * 0.775 * G * 0.17 * angle.cos();
+    println!("presses with {moment:.4} N m at {angle:.4} rad");
+    assert!(angle > -0.2, "the robot is too heavy to be lifted: {angle}");
+    assert_relative_eq!(moment, 10.0 + of_arm, max_relative = 1e-3);
+    assert_relative_eq!(weight, scenario.robot.mass * G, max_relative = 1e-3);
+}
+
+#[test]
+fn a_schedule_is_followed_at_the_limit_of_the_rate() {
+    let mut scenario = with_flippers(Ends::Front, belt());
+    scenario.terrain = slope(0.0, 0.9);
+    scenario.drive = Drive {
+        speed: 0.2,
+        schedule: Some(vec![[1.0, -0.2], [2.0, 0.0]]),
+        gait: Some(Gait::Hold(Hold {
+            angle: 0.0,
+            schedule: Some(vec![[0.5, 1.0], [2.5, 0.6]]),
+        })),
+    };
+    scenario.duration = 3.0;
+    scenario.robot.drivetrain.max_acceleration = 4.0;
+    let run = simulate(&scenario, Record::default()).expect("it runs");
+    let at = |time: f64| (time / 0.01).round() as usize;
+    for (time, angle) in [
+        (0.5, 0.0),
+        (1.0, 0.5),
+        (1.5, 1.0),
+        (2.5, 1.0),
+        (2.7, 0.8),
+        (2.9, 0.6),
+    ] {
+        assert_relative_eq!(run.trace.flipper_angles[at(time)], angle, epsilon = 5e-3);
+    }
+    for (time, speed) in [(0.9, 0.2), (1.9, -0.2), (2.9, 0.0)] {
+        assert_relative_eq!(run.trace.track_speed[at(time)], speed, epsilon = 1e-3);
+    }
+}
+
+/// Arms and chassis turn and stand on both; all contacts together bear weight and inertia.
+#[test]
+fn contact_forces_bear_weight_and_inertia_while_arms_move() {
+    for (name, track) in models() {
+        if name.starts_with("force") {
+            continue; // its push is no contact force
+        }
+        let mut scenario = with_flippers(Ends::Both, track);
+        scenario.terrain = slope(0.0, 0.9);
+        flippers(&mut scenario).angle = 0.5;
+        scenario.drive = Drive {
+            speed: 0.3,
+            schedule: None,
+            gait: Some(Gait::Hold(Hold {
+                angle: 0.5,
+                schedule: Some(vec![[0.2, -0.6]]),
+            })),
+        };
+        let mut simulation = after(&scenario, 0.1);
+        let (mut worst, dt, weight) = (0.0_f64, simulation.time_step(), scenario.robot.mass * G);
+        let (mut raised, mut sum, mut steps) = (0.0_f64, [0.0; 2], 0.0);
+        let begin = simulation.momentum();
+        while simulation.time() < 2.5 {
+            let before = simulation.momentum();
+            simulation.step().expect("finite");
+            let gained = (simulation.momentum() - before) / dt;
+            let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
+            worst = worst.max((fx - gained.x).abs().max((fy - weight - gained.y).abs()));
+            sum = [sum[0] + fx * dt, sum[1] + (fy - weight) * dt];
+            steps += 1.0;
+            raised = raised.max(simulation.reading().position.y);
+        }
+        let gained = simulation.momentum() - begin;
+        let mean = (sum[0] - gained.x).abs().max((sum[1] - gained.y).abs()) / (steps * dt);
+        println!(
+            "{name}: {:.1e} of the weight at worst, {:.1e} in the mean, raised to {raised:.3} m",
+            worst / weight,
+            mean / weight
+        );
+        assert!(raised > 0.1, "{name} was raised to {raised} m");
+        assert!(mean < 1e-3 * weight, "{name}: {mean} N in the mean");
+    }
+}
+
+#[test]
+fn two_equal_lanes_are_one() {
+    for (name, track) in models() {
+        let mut scenario = with_flippers(Ends::Both, track);
+        scenario.drive.gait = hold(0.4);
+        let ground = equal_lanes(&scenario.terrain);
+        let mut apart = Simulation::on_ground(&scenario, ground).expect("it fits");
+        let mut lumped = Simulation::new(&scenario).expect("it fits");
+        let mut off: f64 = 0.0;
+        for _ in 0..500 {
+            apart.step().expect("finite");
+            lumped.step().expect("finite");
+            let (a, b) = (apart.reading(), lumped.reading());
+            off = off.max((a.position - b.position).length());
+            off = off.max((a.chassis_angle - b.chassis_angle).abs());
+        }
+        println!("{name}: lanes off {off:.1e}");
+        // The pivot's disc lies on that of the end axle, and Coulomb leaves open which of both holds what.
+        // Where grousers strike, that shows.
+        let smooth = [
+            "belt",
+            "line of 3",
+            "24 all round",
+            "force on skids",
+            "force on wheels",
+        ];
+        let limit = if smooth.contains(&name) { 1e-5 } else { 2e-4 };
+        assert!(off < limit, "{name}");
+    }
+}
+
+/// What holds the weight over the edge is where it lies: arms at the front raise the nose and no more, those
+/// at the rear lift it over.
+#[test]
+fn arms_at_the_rear_climb_what_those_at_the_front_cannot() {
+    let outcome = |ends: Ends, height: f64| {
+        let mut scenario = with_flippers(ends, belt());
+        flippers(&mut scenario).angle = 0.8;
+        scenario.terrain = step(height, 0.9);
+        scenario.drive.gait = Some(Gait::Climb(Climb {
+            reach_angle: 0.8,
+            sweep_angle: 0.0,
+            push_angle: -0.8,
+            level_angle: 0.1,
+        }));
+        simulate(&scenario, Record::summary())
+            .expect("it runs")
+            .outcome
+    };
+    assert_eq!(outcome(Ends::Front, 0.08), Outcome::Cleared);
+    assert_eq!(outcome(Ends::Front, 0.14), Outcome::TippedOver);
+    assert_eq!(outcome(Ends::Rear, 0.14), Outcome::Cleared);
+    assert_eq!(outcome(Ends::Both, 0.25), Outcome::Cleared);
+}
+
+#[test]
+fn snapshots_go_on_with_the_same_bits() {
+    for (name, track) in models() {
+        let mut scenario = with_flippers(Ends::Both, track);
+        scenario.drive.gait = Some(Gait::Climb(Climb {
+            reach_angle: 0.8,
+            sweep_angle: 0.0,
+            push_angle: -0.8,
+            level_angle: 0.1,
+        }));
+        let mut one = after(&scenario, 2.0);
+        one.set_flipper_angle(End::Rear, 0.3).expect("it has them");
+        let mut other = Simulation::from_snapshot(&one.snapshot()).expect("a snapshot");
+        for _ in 0..1000 {
+            one.step().expect("finite");
+            other.step().expect("finite");
+        }
+        let bits = |s: &Simulation| {
+            let r = s.reading();
+            let arms: Vec<u64> = s.flipper_angles().map(f64::to_bits).collect();
+            (r.position.x.to_bits(), r.chassis_angle.to_bits(), arms)
+        };
+        assert_eq!(bits(&one), bits(&other), "{name}");
+    }
+}
+
+#[test]
+fn arms_that_leave_no_chassis_are_refused() {
+    let mut scenario = with_flippers(Ends::Both, belt());
+    let path = |scenario: &Scenario| match Simulation::new(scenario).map(|_| ()) {
+        Err(Error::Scenario(error)) => error.path,
+        other => panic!("{other:?}"),
+    };
+    flippers(&mut scenario).mass = 5.0;
+    assert_eq!(path(&scenario), "robot.flippers.mass");
+    flippers(&mut scenario).mass = 2.0;
+    assert_eq!(path(&scenario), "robot.moment_of_inertia");
+    flippers(&mut scenario).mass = 0.5;
+    flippers(&mut scenario).track = Some(circumferential(4, Wheel::Round));
+    assert_eq!(path(&scenario), "robot.flippers.track.count");
+    let mut without = engineer();
+    without.drive.gait = hold(0.0);
+    assert_eq!(path(&without), "drive.gait");
+    let by_hand = with_flippers(Ends::Rear, hybrid(Wheel::Round));
+    assert_eq!(path(&by_hand), "robot.flippers.track");
+}
