@@ -23,7 +23,6 @@ __all__ = [
     "extent",
     "grousers",
     "inset",
-    "length",
     "mass_center",
     "mass_share",
     "outlines",
@@ -104,16 +103,6 @@ def mass_center(run: Run, geometry: dict[str, Any], sample: int) -> NDArray[np.f
         arm = np.array(flipper["arm"])
         center += mass_share(robot) * (_rotation(flipper["sign"] * angle) @ arm - arm)
     return center
-
-
-def length(robot: Robot) -> float:
-    """[m] From end to end, with the flippers stretched out."""
-    outline, flippers = robot.outline, robot.flippers
-    ends = {"front": outline.front_radius, "rear": outline.rear_radius}
-    if flippers is not None:
-        for end in ends if flippers.ends == "both" else (flippers.ends,):
-            ends[end] = max(ends[end], flippers.length + flippers.tip_radius)
-    return outline.axle_distance + sum(ends.values())
 
 
 def seen_lanes(geometry: dict[str, Any]) -> list[tuple[int, NDArray[np.float64]]]:

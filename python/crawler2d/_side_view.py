@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -83,7 +83,9 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
+    # A raised flipper may be behind the rear end, in the corner that is else free.
+    corner: Literal["best", "upper left"] = "best" if geometry["flippers"] else "upper left"
+    ax.legend(loc=corner, fontsize="small", framealpha=0.9)
 
 
 def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax: Axes) -> None:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d._extras import extra
-from crawler2d._shapes import length
 from crawler2d._side_view import side_view
 from crawler2d.errors import ScenarioError
 
@@ -92,8 +91,9 @@ def _title(run: Run) -> str:
 def _drawing_times(run: Run) -> NDArray[np.float64]:
     """Choose instants that lie about one robot length of travel apart."""
     travelled = np.hypot(*np.diff(run.position, axis=0, prepend=run.position[:1]).T).cumsum()
-    apart = length(run.scenario.robot)
-    count = int(np.clip(round(travelled[-1] / apart), 1, _MOST_DRAWINGS - 1)) + 1
+    outline = run.scenario.robot.outline
+    length = outline.axle_distance + outline.front_radius + outline.rear_radius
+    count = int(np.clip(round(travelled[-1] / length), 1, _MOST_DRAWINGS - 1)) + 1
     samples = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
     samples[-1] = run.time.size - 1
     return run.time[samples]

@@ -13,7 +13,6 @@ from crawler2d._shapes import (
     carrier_of,
     extent,
     inset,
-    length,
     mass_share,
     pins,
     seen_lanes,
@@ -23,6 +22,7 @@ from crawler2d.viewer.packed import packed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from crawler2d.robot import Robot
     from crawler2d.run import Run
 
 __all__ = ["MOST_FRAMES", "recording"]
@@ -200,7 +200,7 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
         "pin_radius": _pin_radius(geometry),
         "belly": packed(belly, _SHAPE) if len(belly) else None,
         "pitch": robot.outline.grouser_pitch,
-        "length": length(robot),
+        "length": _length(robot),
         "axles": robot.outline.axle_distance / 2.0,
         "mass_center": [_number(value) for value in robot.center_of_mass],
     }
@@ -241,6 +241,15 @@ def _track(run: Run, track: dict[str, Any], *, moving: bool) -> dict[str, Any]:
             name: None if shape is None else packed(shape, _SHAPE) for name, shape in shapes.items()
         },
     }
+
+
+def _length(robot: Robot) -> float:
+    """[m] Of what is seen at once: the track with one flipper stretched out."""
+    outline, flippers = robot.outline, robot.flippers
+    beyond = 0.0 if flippers is None else flippers.length + flippers.tip_radius
+    radius = max(outline.front_radius, outline.rear_radius)
+    track = outline.axle_distance + outline.front_radius + outline.rear_radius
+    return track + max(0.0, beyond - radius)
 
 
 def _pin_radius(geometry: dict[str, Any]) -> float:
