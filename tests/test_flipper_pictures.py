@@ -30,6 +30,7 @@ ROBOTS: dict[str, c2d.Robot] = {
     "wheels in front": with_flippers(c2d.LineOfWheels(5), ends="front"),
     "wheels on a belt": with_flippers(c2d.GrouserBeltTrack(), c2d.LineOfWheels(4), "rear"),
 }
+SHOES = with_flippers(c2d.SegmentalTrack(), c2d.BeltTrack())
 
 
 @pytest.fixture(scope="module", params=ROBOTS)
@@ -161,18 +162,18 @@ def rotation(angle: float) -> Any:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-@pytest.mark.parametrize("name", ROBOTS)
-def test_the_page_has_the_flippers_to_a_tenth_of_a_millimetre(name: str) -> None:
-    run = c2d.simulate(ROBOTS[name], STEP, drive=CLIMB, duration=4.0)
+@pytest.mark.parametrize("robot", [*ROBOTS.values(), SHOES], ids=[*ROBOTS, "shoes"])
+def test_the_page_has_the_flippers_to_a_tenth_of_a_millimetre(robot: c2d.Robot) -> None:
+    run = c2d.simulate(robot, STEP, drive=CLIMB, duration=4.0)
     page = page_of(run)
-    frames, robot = page["frames"], page["robot"]
+    frames, held = page["frames"], page["robot"]
     x, y, turn = (unpacked(frames[column]) for column in ("x", "y", "angle"))
     ways = unpacked(frames["ways"]).reshape(frames["count"], frames["drives"])
     angles = unpacked(frames["flippers"]).reshape(frames["count"], -1)
     arms = carriers(run, geometry_of(run))[1:]
-    assert len(arms) == len(robot["flippers"]) == angles.shape[1]
+    assert len(arms) == len(held["flippers"]) == angles.shape[1]
     for sample in range(0, frames["count"], 10):
-        for k, (arm, flipper) in enumerate(zip(arms, robot["flippers"], strict=True)):
+        for k, (arm, flipper) in enumerate(zip(arms, held["flippers"], strict=True)):
             turned = flipper["sign"] * angles[sample, k]
             middle = np.array(flipper["pivot"]) + rotation(turned) @ flipper["arm"]
             origin = rotation(turn[sample]) @ middle + (x[sample], y[sample])
@@ -181,7 +182,7 @@ def test_the_page_has_the_flippers_to_a_tenth_of_a_millimetre(name: str) -> None
             centers = arm.placed(sample, arm.track["circles"][:, :2])
             assert np.abs(seen @ onto + origin - centers).max() < 1e-4
             for wheel in flipper["wheels"]:
-                run_over = ways[sample, wheel["drive"]] + robot["drive_radius"] * turned
+                run_over = ways[sample, wheel["drive"]] + held["drive_radius"] * turned
                 assert run_over == pytest.approx(arm.ways[sample, wheel["drive"]], abs=1e-4)
             if flipper["hull"]:
                 hull = unpacked(flipper["hull"]).reshape(-1, 2) @ onto + origin
