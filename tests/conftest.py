@@ -1,5 +1,6 @@
 """What the tests share: scenarios that cover every variant, and how long to test."""
 
+import dataclasses
 import os
 from collections.abc import Callable
 from typing import Any
@@ -9,6 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.scenario import Scenario
+from crawler2d.track import Track
 
 SOAK = "CRAWLER2D_SOAK" in os.environ
 """Set by make soak: a hundred times the cases."""
@@ -27,6 +29,22 @@ GEAR = c2d.GearWheel(
     base_thickness=0.005,
     phase_fraction=0.5,
 )
+
+
+def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -> c2d.Robot:
+    """Give the robot raised flippers, with tracks of their own model if `arms` is one."""
+    flippers = c2d.Flippers(
+        length=0.34,
+        root_radius=0.064,
+        tip_radius=0.037,
+        mass=0.775,
+        torque_limit=30.0,
+        ends=ends,
+        angle=0.8,
+        track=arms,
+    )
+    return dataclasses.replace(ROBOT.with_track(track), flippers=flippers)
+
 
 VARIANTS = {
     "belt-step": Scenario(ROBOT, c2d.terrains.step(0.05, edge_radius=0.01)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -10,15 +10,15 @@ from crawler2d import _core
 from crawler2d._extras import extra
 from crawler2d._shapes import (
     SLIVER,
-    circle,
+    carriers,
     closed,
     extent,
-    grousers,
     inset,
+    mass_center,
+    outlines,
     placed,
     seen_lanes,
     shoes,
-    turned,
 )
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     """Draw ground, robot at some instants, path of the chassis origin, and what holds the robot.
 
     At the last of the instants the contacts are drawn, with their forces on the robot and the
-    speeds of its surface over the ground, the taut belt round its wheels, and the ground and the
-    edges inside that belt.
+    speeds of its surface over the ground, the taut belts round its wheels, and the ground and the
+    edges inside those belts.
 
     Parameters
     ----------
@@ -78,13 +78,14 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     )
     shown = int(samples[-1])
     _draw_contacts(run, shown, ax)
-    if not geometry["hull"]:  # nothing gets inside a belt
-        _draw_envelope(run, geometry, shown, ax)
+    _draw_envelopes(run, geometry, shown, ax)
     _draw_intrusions(run, shown, ax)
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    ax.legend(loc="upper left", fontsize="small", framealpha=0.9)
+    # A raised flipper may be behind the rear end, in the corner that is else free.
+    corner: Literal["best", "upper left"] = "best" if geometry["flippers"] else "upper left"
+    ax.legend(loc=corner, fontsize="small", framealpha=0.9)
 
 
 def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax: Axes) -> None:
@@ -105,40 +106,29 @@ def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax
 
 
 def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
-    def draw(outline: NDArray[np.float64], color: str, *, filled: bool = False) -> None:
-        x, y = placed(run, sample, outline).T
-        if filled:
-            ax.fill(x, y, color=color, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
-        ax.plot(x, y, color=color, alpha=alpha, linewidth=1.0, zorder=2)
-
     if len(geometry["belly"]):  # first: the wheels lie before it
-        draw(closed(geometry["belly"]), _GREEN, filled=True)
-    if geometry["gears"]:
-        for gear in geometry["gears"]:
-            draw(turned(gear, run.drive_positions[sample]), _BLACK)
-    elif geometry["hull"]:
+        x, y = closed(placed(run, sample, geometry["belly"])).T
+        ax.fill(x, y, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
+        ax.plot(x, y, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
+    for carrier in carriers(run, geometry):
         # What shoes slide on is no more than a hint behind them.
-        draw(closed(geometry["root_envelope"]), _GUIDE if geometry["shoes"] else _BLACK)
-        run_so_far = run.drive_positions[sample, int(geometry["drives"][0])]
-        for outline in grousers(geometry, float(run_so_far)):
-            draw(outline, _BLACK)
-        _draw_shoes(run, geometry, sample, ax, alpha=alpha)
-    else:
-        for x, y, radius in geometry["circles"]:
-            draw(circle(x, y, radius), _BLACK)
-    center = placed(run, sample, np.array([run.scenario.robot.center_of_mass]))
+        color = _GUIDE if carrier.track.get("shoes") else _BLACK
+        for outline in outlines(carrier, sample):
+            ax.plot(*outline.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
+    _draw_shoes(run, geometry, sample, ax, alpha=alpha)
+    center = placed(run, sample, mass_center(run, geometry, sample)[None])
     ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
 
 
 def _draw_shoes(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float) -> None:
     """Fill the shoes; a chain has hundreds of them in all poses, and one artist a pose is fast."""
-    outlines = shoes(run, geometry, sample)
-    if not outlines:
+    pieces = shoes(run, geometry, sample)
+    if not pieces:
         return
     collections = extra("matplotlib.collections", "plot")
     ax.add_collection(
         collections.PolyCollection(
-            outlines,
+            pieces,
             facecolor=(_BLACK, 0.5 * alpha),
             edgecolor=(_BLACK, alpha),
             linewidth=0.6,
@@ -202,25 +192,30 @@ def _draw_arrows(
     )
 
 
-def _draw_envelope(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
-    """Draw the taut belt round the wheels, and fill what of the ground is inside it."""
-    belt = geometry["envelope"]
-    ax.plot(
-        *closed(placed(run, sample, belt)).T,
-        color=_PURPLE,
-        linestyle="--",
-        linewidth=0.9,
-        label="taut belt round the wheels",
-        zorder=2.5,
-    )
-    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
-    inner = placed(run, sample, inset(belt, depth))
+def _draw_envelopes(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
+    """Draw the taut belts round the wheels, and fill what of the ground is inside them."""
     patches = extra("matplotlib.patches", "plot")
-    for _, profile in seen_lanes(geometry):
-        x, y = profile.T
-        below = float(inner[:, 1].min()) - 1.0
-        soil = ax.fill_between(x, y, below, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6)
-        soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
+    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
+    label: str | None = "taut belt round the wheels"
+    for carrier in carriers(run, geometry):
+        if carrier.track["hull"]:  # nothing gets inside a belt
+            continue
+        belt = carrier.track["envelope"]
+        ax.plot(
+            *closed(carrier.placed(sample, belt)).T,
+            color=_PURPLE,
+            linestyle="--",
+            linewidth=0.9,
+            label=label,
+            zorder=2.5,
+        )
+        label = None  # once is enough
+        inner = carrier.placed(sample, inset(belt, depth))
+        for _, profile in seen_lanes(geometry):
+            x, y = profile.T
+            below = float(inner[:, 1].min()) - 1.0
+            soil = ax.fill_between(x, y, below, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6)
+            soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
 
 
 def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:

@@ -13,7 +13,9 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
 import crawler2d as c2d
-from conftest import ROBOT
+from conftest import ROBOT, with_flippers
+from crawler2d import _core
+from crawler2d._shapes import carriers, outlines
 
 STEP = c2d.terrains.step(0.075)
 ROUND = c2d.LineOfWheels(4, wheel_radius=0.0608)
@@ -35,6 +37,8 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
         ROBOT.with_track(c2d.CircumferentialWheels(24, wheel_radius=0.015)),
         c2d.terrains.barrier(0.1, 0.02),
     ),
+    "flippers with grousers": (with_flippers(c2d.GrouserBeltTrack()), c2d.terrains.step(0.2)),
+    "flippers with gear wheels": (with_flippers(GEARED), c2d.terrains.step(0.2)),
 }
 
 # The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
@@ -103,7 +107,8 @@ def open_page(browser: Browser, tmp_path: Path) -> Iterator[Open]:
 
 def simulated(name: str) -> c2d.Run:
     robot, terrain = RUNS[name]
-    return c2d.simulate(robot, terrain, duration=4.0)
+    gait = None if robot.flippers is None else c2d.Climb()
+    return c2d.simulate(robot, terrain, drive=c2d.Drive(gait=gait), duration=4.0)
 
 
 @pytest.fixture(scope="module")
@@ -260,28 +265,51 @@ def test_keys_work_once_where_a_control_has_the_focus(open_page: Open, stopped: 
     assert page.get_attribute("#play", "aria-label") == "play"
 
 
-@pytest.mark.parametrize("name", ["shoes", "shoes on two lanes"])
-def test_the_shoes_of_the_page_lie_where_the_run_has_them(open_page: Open, name: str) -> None:
-    run = simulated(name)
-    sample = 170  # the front is on the step
-    page = open_page(run.to_html(time=run.time[sample - 1]))
+def frames_of_fills(page: Page) -> list[Any]:
+    """Frames in that of the world, of all that the page fills one sample later, shape (2, 3)."""
     page.evaluate(FILLS)
     page.keyboard.press("ArrowRight")
     page.evaluate(DRAWN)
     fills = [np.array(fill).reshape(3, 2).T for fill in page.evaluate("window.fills")]
     world, *others = fills  # the ground is in the frame of the world
-    poses = run.shoe_poses[sample, -22:]  # of two tracks the right one is in front
-    drawn = []
+    frames = []
     for fill in others:
-        turn = np.linalg.solve(world[:, :2], fill)
-        turn[:, 2] -= np.linalg.solve(world[:, :2], world[:, 2])
-        drawn.append(turn)
-    for x, y, angle in poses:
-        pose = np.array([[np.cos(angle), -np.sin(angle), x], [np.sin(angle), np.cos(angle), y]])
-        misses = [np.abs(pose - other) for other in drawn]
-        nearest = min(misses, key=lambda miss: float(miss.max()))
-        assert nearest[:, 2].max() < 1e-4  # [m]
-        assert nearest[:, :2].max() < 1e-3  # [rad]
+        frame = np.linalg.solve(world[:, :2], fill)
+        frame[:, 2] -= np.linalg.solve(world[:, :2], world[:, 2])
+        frames.append(frame)
+    return frames
+
+
+def has_frame(frames: list[Any], place: Any, angle: float) -> bool:
+    """Whether one of some frames is at a place [m] and angle [rad], to 0.1 mm and 1 mrad."""
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    pose = np.column_stack([turn, place])
+    misses = [np.abs(pose - frame) for frame in frames]
+    nearest = min(misses, key=lambda miss: float(miss.max()))
+    return bool(nearest[:, 2].max() < 1e-4 and nearest[:, :2].max() < 1e-3)
+
+
+@pytest.mark.parametrize("name", ["shoes", "shoes on two lanes"])
+def test_the_shoes_of_the_page_lie_where_the_run_has_them(open_page: Open, name: str) -> None:
+    run = simulated(name)
+    sample = 170  # the front is on the step
+    frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
+    for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
+        assert has_frame(frames, place, angle)
+
+
+@pytest.mark.parametrize("sample", [120, 200, 260])
+def test_the_flippers_of_the_page_lie_where_the_run_has_them(open_page: Open, sample: int) -> None:
+    run = simulated("flippers with grousers")
+    frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
+    _, *arms = carriers(run, _core.geometry(run.scenario.to_json()))
+    for arm in arms:
+        assert has_frame(frames, arm.origin[sample], arm.angle[sample])
+        corners = arm.track["grousers"][0]
+        seen = [corners @ frame[:, :2].T + frame[:, 2] for frame in frames]
+        for rib in outlines(arm, sample)[1:]:
+            # The belt's arcs are drawn in sides, of one or the next of which it is by a rounding.
+            assert min(np.abs(there - rib[:-1]).max() for there in seen) < 7e-4
 
 
 @pytest.mark.parametrize("layer", ["forces", "speeds", "envelope"])

@@ -22,8 +22,9 @@ class Recording {
     this.count = frames.count;
     this.drives = frames.drives;
     this.shoes = frames.shoes;
+    this.arms = data.robot.flippers.length;
     this.events = data.events;
-    for (const name of ["time", "x", "y", "angle", "speed", "commanded", "ways", "pins"]) {
+    for (const name of ["time", "x", "y", "angle", "speed", "commanded", "ways", "pins", "flippers"]) {
       this[name] = unpacked(frames[name]);
     }
     this.contacts = {};
@@ -70,6 +71,8 @@ class Recording {
       time, frame,
       x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle), speed: mixed(this.speed),
       way: (drive) => mixed(this.ways, this.drives, drive),
+      // [rad] Of a flipper over the chassis, upwards > 0.
+      flipper: (arm) => mixed(this.flippers, this.arms, arm),
       // The rear pin of a shoe, in the chassis frame.
       pin: (shoe) => [0, 1].map((axis) => mixed(this.pins, 2 * this.shoes, 2 * shoe + axis)),
     };

@@ -24,6 +24,7 @@ _SCRIPTS = (
     "data.js",
     "camera.js",
     "marks.js",
+    "track.js",
     "robot.js",
     "lane.js",
     "scene.js",

@@ -8,12 +8,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
-from crawler2d._shapes import SLIVER, extent, inset, pins, seen_lanes
+from crawler2d._shapes import (
+    SLIVER,
+    carrier_of,
+    extent,
+    inset,
+    mass_share,
+    pins,
+    seen_lanes,
+)
 from crawler2d.viewer.packed import packed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from crawler2d.robot import Robot
     from crawler2d.run import Run
 
 __all__ = ["MOST_FRAMES", "recording"]
@@ -63,7 +72,7 @@ def recording(run: Run, time: float | None = None) -> dict[str, Any]:
         "extent": [_number(value) for value in bounds],
         "frames": _frames(run, geometry, kept),
         "contacts": _contacts(run, kept),
-        "events": _events(run),
+        "events": _events(run, geometry),
         "ground": _ground(geometry),
         "robot": _robot(run, geometry),
     }
@@ -83,6 +92,7 @@ def _frames(run: Run, geometry: dict[str, Any], kept: NDArray[np.int64]) -> dict
         "commanded": packed(run.commanded_speed[kept], _SPEED),
         "ways": packed(run.drive_positions[kept], _WAY),
         "pins": packed(rear_pins[kept], _PIN),
+        "flippers": packed(run.flipper_angles[kept], _ANGLE),
     }
 
 
@@ -128,7 +138,7 @@ def _contacts(run: Run, kept: NDArray[np.int64]) -> dict[str, Any]:
     }
 
 
-def _events(run: Run) -> list[dict[str, Any]]:
+def _events(run: Run, geometry: dict[str, Any]) -> list[dict[str, Any]]:
     events = run.events
     return [
         {
@@ -137,6 +147,8 @@ def _events(run: Run) -> list[dict[str, Any]]:
             "end": _number(events["end"][row]),
             "edge": int(events["edge"][row]),
             "bodies": [int(body) for body in events["bodies"][row]],
+            # The chassis, or one of the flippers counted from 1.
+            "carrier": carrier_of(geometry, *events["bodies"][row][:1]),
         }
         for row in range(len(events))
     ]
@@ -165,9 +177,38 @@ def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dic
 
 
 def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
-    """Shapes in the chassis frame, and which drive moves each."""
+    """Collect the tracks, each in the frame of what carries it, and what else is drawn."""
     robot = run.scenario.robot
-    circles, gears = geometry["circles"], geometry["gears"]
+    arms = robot.flippers
+    flippers = [
+        {
+            **_track(run, flipper, moving=(arms.track or robot.track).kind != "force"),
+            "pivot": [_number(value) for value in flipper["pivot"]],
+            "arm": [_number(value) for value in flipper["arm"]],
+            "sign": float(flipper["sign"]),
+        }
+        for flipper in geometry["flippers"]
+        if arms is not None
+    ]
+    belly = geometry["belly"]
+    return {
+        **_track(run, geometry, moving=robot.track.kind != "force"),
+        "flippers": flippers,
+        "flipper_mass_share": mass_share(robot),
+        "drive_radius": _number(geometry["drive_radius"]),
+        "shoes": _shoes(geometry),
+        "pin_radius": _pin_radius(geometry),
+        "belly": packed(belly, _SHAPE) if len(belly) else None,
+        "pitch": robot.outline.grouser_pitch,
+        "length": _length(robot),
+        "axles": robot.outline.axle_distance / 2.0,
+        "mass_center": [_number(value) for value in robot.center_of_mass],
+    }
+
+
+def _track(run: Run, track: dict[str, Any], *, moving: bool) -> dict[str, Any]:
+    """Shapes in the frame of the chassis or a flipper, and which drive moves each."""
+    gears = track["gears"]
     wheels: list[dict[str, Any]] = [
         {
             "x": _number(x),
@@ -177,38 +218,38 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
             "body": int(body),
         }
         for (x, y, radius), drive, body in zip(
-            circles, geometry["drives"], geometry["bodies"], strict=True
+            track["circles"], track["drives"], track["bodies"], strict=True
         )
     ]
     for wheel, gear in zip(wheels, gears, strict=False):
         wheel["outline"] = packed(gear["outline"], _SHAPE)
-    hull = bool(geometry["hull"])
-    envelope = geometry["envelope"]
+    hull = bool(track["hull"])
+    envelope = track["envelope"]
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     shapes = {
-        "hull": geometry["root_envelope"] if hull else None,
+        "hull": track["root_envelope"] if hull else None,
         "envelope": None if hull else envelope,  # nothing gets inside a belt
         "inner": None if hull else inset(envelope, depth),
-        "root": geometry["root_envelope"] if gears else None,
-        "belly": geometry["belly"],
+        "root": track["root_envelope"] if gears else None,
     }
-    outline = robot.outline
     return {
         "wheels": [] if hull else wheels,
         "ends": wheels if hull else [],
-        "moving": hull and robot.track.kind != "force",
-        "grousers": [packed(corners, _SHAPE) for corners in geometry["grousers"]],
-        "shoes": _shoes(geometry),
-        "pin_radius": _pin_radius(geometry),
-        "pitch": outline.grouser_pitch,
-        "length": outline.axle_distance + outline.front_radius + outline.rear_radius,
-        "axles": outline.axle_distance / 2.0,
-        "mass_center": [_number(value) for value in robot.center_of_mass],
+        "moving": hull and moving,
+        "grousers": [packed(corners, _SHAPE) for corners in track["grousers"]],
         **{
-            name: None if shape is None or not len(shape) else packed(shape, _SHAPE)
-            for name, shape in shapes.items()
+            name: None if shape is None else packed(shape, _SHAPE) for name, shape in shapes.items()
         },
     }
+
+
+def _length(robot: Robot) -> float:
+    """[m] Of what is seen at once: the track with one flipper stretched out."""
+    outline, flippers = robot.outline, robot.flippers
+    beyond = 0.0 if flippers is None else flippers.length + flippers.tip_radius
+    radius = max(outline.front_radius, outline.rear_radius)
+    track = outline.axle_distance + outline.front_radius + outline.rear_radius
+    return track + max(0.0, beyond - radius)
 
 
 def _pin_radius(geometry: dict[str, Any]) -> float:

@@ -1,94 +1,67 @@
-// The robot in its chassis frame, in metres: chassis, wheels, gears, belt, and what surrounds them.
+// The robot in metres: chassis, track and flippers, each where it is.
 
 class Robot {
   constructor(data) {
     Object.assign(this, data);
-    for (const wheel of [...this.wheels, ...this.ends]) {
-      if (wheel.outline) wheel.path = outlineOf(unpacked(wheel.outline));
-    }
-    for (const name of ["hull", "envelope", "inner", "root", "belly"]) {
-      if (!data[name]) continue;
-      const points = unpacked(data[name]);
-      this[name] = { points, path: outlineOf(points) };
-    }
-    if (this.hull) this.marks = marksOf(this.hull.points, this.pitch);
-    this.grousers = this.grousers.map((grouser) => outlineOf(unpacked(grouser)));
-    this.shoes = this.shoes.map((pieces) => {
+    this.belly = data.belly && outlineOf(unpacked(data.belly));
+    this.shoes = data.shoes.map((pieces) => {
       const path = new Path2D();
       for (const piece of pieces) path.addPath(outlineOf(unpacked(piece)));
       return path;
     });
+    const guides = this.shoes.length > 0;
+    this.tracks = [data, ...data.flippers].map((track, i) => new Track(track, data.pitch, guides && !i));
+  }
+
+  // What carries a track, the chassis and then the flippers: where its frame is, and how far the
+  // surface of a drive has run over it.
+  carriers(moment) {
+    const { x, y, angle, way } = moment;
+    const flippers = this.flippers.map(({ pivot, arm, sign }, k) => {
+      const turn = sign * moment.flipper(k);
+      const [pivotX, pivotY] = rotated(pivot, angle);
+      const [armX, armY] = rotated(arm, angle + turn);
+      return {
+        x: x + pivotX + armX, y: y + pivotY + armY, angle: angle + turn,
+        // The sprocket turns with the chassis: over a flipper that turns it turns back.
+        way: (drive) => way(drive) + this.drive_radius * turn,
+      };
+    });
+    return [{ x, y, angle, way }, ...flippers].map((carrier, k) => ({ ...carrier, k, track: this.tracks[k] }));
   }
 
   // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
   draw(ctx, colors, pixel, moment, jammed) {
+    const [chassis, ...flippers] = this.carriers(moment);
+    ctx.save();
+    place(ctx, chassis);
     this.drawChassis(ctx, colors, pixel);
-    if (this.hull) this.drawHull(ctx, colors, pixel, moment);
-    for (const wheel of this.wheels) {
-      const color = jammed.includes(wheel.body) ? colors.intrusion : colors.track;
+    chassis.track.draw(ctx, colors, pixel, chassis.way, jammed);
+    this.drawShoes(ctx, colors, pixel, moment);
+    ctx.restore();
+    flippers.forEach(({ track, way, ...pose }, k) => {
+      const [x, y] = this.flippers[k].arm;
       ctx.save();
-      ctx.translate(wheel.x, wheel.y);
-      ctx.rotate(-moment.way(wheel.drive) / wheel.radius);
-      drawWheel(ctx, wheel, color, colors.trackFill, pixel);
+      place(ctx, pose);
+      drawBar(ctx, colors, pixel, [-x, -y], [x, y]);
+      track.draw(ctx, colors, pixel, way, jammed);
       ctx.restore();
-    }
-    this.drawMassCenter(ctx, colors, pixel);
+    });
+    ctx.save();
+    place(ctx, chassis);
+    this.drawMassCenter(ctx, colors, pixel, moment);
+    ctx.restore();
   }
 
   drawChassis(ctx, colors, pixel) {
-    ctx.strokeStyle = colors.chassis;
-    ctx.lineWidth = 1.3 * pixel;
     if (this.belly) {
+      ctx.strokeStyle = colors.chassis;
+      ctx.lineWidth = 1.3 * pixel;
       ctx.fillStyle = colors.chassisFill;
-      ctx.fill(this.belly.path);
-      ctx.stroke(this.belly.path);
+      ctx.fill(this.belly);
+      ctx.stroke(this.belly);
     }
-    ctx.beginPath();
-    ctx.moveTo(-this.axles, 0);
-    ctx.lineTo(this.axles, 0);
-    ctx.stroke();
-  }
-
-  drawHull(ctx, colors, pixel, moment) {
-    ctx.fillStyle = colors.trackFill;
-    ctx.fill(this.hull.path);
-    ctx.strokeStyle = colors.track;
-    for (const end of this.moving ? this.ends : []) {
-      ctx.save();
-      ctx.translate(end.x, end.y);
-      ctx.rotate(-moment.way(end.drive) / end.radius);
-      drawWheel(ctx, { radius: 0.8 * end.radius }, colors.track, colors.chassisFill, pixel);
-      ctx.restore();
-    }
-    const { length, at, spacing, count } = this.marks;
-    // Skids do not move, and so bear no marks; shoes are marks enough.
-    for (let i = 0; this.moving && !this.shoes.length && i < count; i++) {
-      const [x, y, nx, ny] = at(i * spacing - moment.way(this.ends[0].drive), length);
-      const long = i % 6 === 0;
-      const depth = (long ? 0.2 : 0.11) * this.ends[0].radius;
-      ctx.strokeStyle = long ? colors.speed : colors.track;
-      ctx.lineWidth = Math.max((long ? 3 : 1.6) * pixel, 0.003);
-      ctx.beginPath();
-      ctx.moveTo(x, y);
-      ctx.lineTo(x + depth * nx, y + depth * ny);
-      ctx.stroke();
-    }
-    // What shoes slide on is no more than a hint behind them.
-    ctx.strokeStyle = this.shoes.length ? colors.chassis : colors.track;
-    ctx.lineWidth = (this.shoes.length ? 1 : 2) * pixel;
-    ctx.stroke(this.hull.path);
-    this.grousers.forEach((grouser, i) => {
-      // They start at the rear end of the lower run, and the belt runs clockwise.
-      const way = this.marks.lower - (i / this.grousers.length) * length - moment.way(this.ends[0].drive);
-      const [x, y, nx, ny] = at(way);
-      ctx.save();
-      ctx.translate(x, y);
-      ctx.rotate(Math.atan2(nx, -ny));
-      ctx.fillStyle = colors.track;
-      ctx.fill(grouser);
-      ctx.restore();
-    });
-    this.drawShoes(ctx, colors, pixel, moment);
+    drawBar(ctx, colors, pixel, [-this.axles, 0], [this.axles, 0]);
   }
 
   // Each between its rear pin and that of the next one.
@@ -114,8 +87,14 @@ class Robot {
     }
   }
 
-  drawMassCenter(ctx, colors, pixel) {
-    const [x, y] = this.mass_center;
+  // It moves with the flippers.
+  drawMassCenter(ctx, colors, pixel, moment) {
+    let [x, y] = this.mass_center;
+    this.flippers.forEach(({ arm, sign }, k) => {
+      const there = rotated(arm, sign * moment.flipper(k));
+      x += this.flipper_mass_share * (there[0] - arm[0]);
+      y += this.flipper_mass_share * (there[1] - arm[1]);
+    });
     const radius = 5 * pixel;
     ctx.lineWidth = 1.2 * pixel;
     ctx.strokeStyle = ctx.fillStyle = colors.ink;
@@ -130,49 +109,29 @@ class Robot {
   }
 }
 
-// About its own centre; the spoke shows how far it has turned.
-function drawWheel(ctx, wheel, color, fill, pixel) {
-  let path = wheel.path;
-  if (!path) {
-    path = new Path2D();
-    path.arc(0, 0, wheel.radius, 0, 2 * Math.PI);
-  }
-  ctx.fillStyle = fill;
-  ctx.fill(path);
-  ctx.strokeStyle = ctx.fillStyle = color;
-  ctx.lineWidth = 1.4 * pixel;
-  ctx.stroke(path);
+// From axle to axle, in the frame of what carries them.
+function drawBar(ctx, colors, pixel, from, to) {
+  ctx.strokeStyle = colors.chassis;
+  ctx.lineWidth = 1.3 * pixel;
   ctx.beginPath();
-  ctx.moveTo(0, 0);
-  ctx.lineTo(0, 0.82 * wheel.radius);
+  ctx.moveTo(...from);
+  ctx.lineTo(...to);
   ctx.stroke();
-  ctx.beginPath();
-  ctx.arc(0, 0, Math.min(2.4 * pixel, 0.25 * wheel.radius), 0, 2 * Math.PI);
-  ctx.fill();
 }
 
-// Evenly spaced places along a closed line, counter-clockwise: point and inward normal.
-function marksOf(points, pitch) {
-  const n = points.length / 2;
-  const lengths = [0];
-  for (let i = 0; i < n; i++) {
-    const j = (i + 1) % n;
-    const way = Math.hypot(points[2 * j] - points[2 * i], points[2 * j + 1] - points[2 * i + 1]);
-    lengths.push(lengths[i] + way);
-  }
-  const length = lengths[n];
-  const count = 6 * Math.max(2, Math.min(12, Math.round(length / pitch / 6)));
-  const at = (way) => {
-    const s = ((way % length) + length) % length;
-    let i = 0;
-    while (i < n - 1 && lengths[i + 1] <= s) i++;
-    const j = (i + 1) % n;
-    const dx = points[2 * j] - points[2 * i];
-    const dy = points[2 * j + 1] - points[2 * i + 1];
-    const part = Math.hypot(dx, dy) || 1;
-    const share = (s - lengths[i]) / part;
-    return [points[2 * i] + share * dx, points[2 * i + 1] + share * dy, -dy / part, dx / part];
-  };
-  // The last side is the lower run; `lower` is where its rear end is.
-  return { length, at, count, spacing: length / count, lower: lengths[n - 1] };
+// From the frame of the world to that of a carrier, and back.
+function place(ctx, carrier) {
+  ctx.translate(carrier.x, carrier.y);
+  ctx.rotate(carrier.angle);
+}
+
+function unplace(ctx, carrier) {
+  ctx.rotate(-carrier.angle);
+  ctx.translate(-carrier.x, -carrier.y);
+}
+
+function rotated([x, y], angle) {
+  const cosine = Math.cos(angle);
+  const sine = Math.sin(angle);
+  return [cosine * x - sine * y, sine * x + cosine * y];
 }

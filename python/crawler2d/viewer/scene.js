@@ -17,7 +17,7 @@ class Scene {
 
   // Whether this run has something to draw.
   has(what) {
-    if (what === "envelope") return Boolean(this.robot.envelope);
+    if (what === "envelope") return this.robot.tracks.some((track) => track.envelope);
     const { normal_force: normal, friction_force: friction, surface_speed: speed } =
       this.recording.contacts;
     if (what === "contacts") return normal.length > 0;
@@ -53,18 +53,16 @@ class Scene {
 
     const jams = this.recording.eventsAt(time, "intrusion");
     const jammed = jams.flatMap((e) => (e.bodies[0] === e.bodies[1] ? [] : e.bodies));
-    ctx.save();
-    place(ctx, moment);
     robot.draw(ctx, colors, pixel, moment, jammed);
-    ctx.restore();
     ctx.strokeStyle = colors.groundLine;
     ctx.lineWidth = 1.8 * pixel;
     ctx.stroke(this.lanes.at(-1).surface);
-    if (this.layers.envelope) this.drawEnvelope(ctx, colors, pixel, moment, floor);
+    const belted = this.layers.envelope ? robot.carriers(moment).filter((c) => c.track.envelope) : [];
+    for (const carrier of belted) this.drawEnvelope(ctx, colors, pixel, carrier, floor);
 
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawGoal(ctx, colors);
-    this.drawEdges(ctx, colors, moment);
+    this.drawEdges(ctx, colors, belted, jams);
     if (this.layers.forces || this.layers.speeds) this.drawContacts(ctx, colors, moment);
     this.drawScale(ctx, colors);
     ctx.restore();
@@ -87,11 +85,10 @@ class Scene {
     }
   }
 
-  drawEnvelope(ctx, colors, pixel, moment, floor) {
-    const { envelope, inner, root } = this.robot;
-    if (!envelope) return;
+  drawEnvelope(ctx, colors, pixel, carrier, floor) {
+    const { envelope, inner, root, reach } = carrier.track;
     ctx.save();
-    place(ctx, moment);
+    place(ctx, carrier);
     ctx.strokeStyle = colors.intrusion;
     ctx.lineWidth = 1.3 * pixel;
     ctx.setLineDash([6 * pixel, 4 * pixel]);
@@ -104,14 +101,13 @@ class Scene {
     ctx.setLineDash([]);
     // Clips are kept from one transform to the next: the soil is cut by the belt.
     ctx.clip(inner.path);
-    unplace(ctx, moment);
+    unplace(ctx, carrier);
     for (const lane of this.lanes) {
       const pieces = new Path2D();
       for (const edge of lane.edges) {
-        if (!edge.convex || !(this.depth(edge, moment) > 0)) continue;
-        const [left, right] = lane.piece(edge.corner, (point) => this.depth(point, moment));
-        const middle = moment.y - 2 * this.robot.length;
-        pieces.rect(left - pixel, middle, right - left + 2 * pixel, 4 * this.robot.length);
+        if (!edge.convex || !(depthIn(carrier, edge) > 0)) continue;
+        const [left, right] = lane.piece(edge.corner, (point) => depthIn(carrier, point));
+        pieces.rect(left - pixel, carrier.y - reach, right - left + 2 * pixel, 2 * reach);
       }
       ctx.save();
       ctx.clip(pieces);
@@ -125,19 +121,20 @@ class Scene {
     ctx.restore();
   }
 
-  drawEdges(ctx, colors, moment) {
+  // `belted` are the carriers whose belts are shown, `jams` the intrusions of the moment.
+  drawEdges(ctx, colors, belted, jams) {
     let deepest = null;
     for (const edge of this.lanes.flatMap((lane) => lane.edges)) {
       const [x, y] = this.camera.screen(edge.x, edge.y);
-      const depth = this.layers.envelope ? this.depth(edge, moment) : 0;
-      if (edge.convex && depth > 0 && !(deepest && deepest.depth >= depth)) {
-        deepest = { depth, x, y };
+      for (const carrier of edge.convex ? belted : []) {
+        const depth = depthIn(carrier, edge);
+        if (depth > (deepest?.depth ?? 0)) deepest = { depth, x, y, carrier };
       }
       diamond(ctx, x, y, 4.5, edge.convex ? colors.groundLine : colors.ground, colors.groundLine);
     }
     if (!deepest) return;
     diamond(ctx, deepest.x, deepest.y, 6.5, colors.halo, colors.intrusion);
-    const jam = this.recording.eventsAt(moment.time, "intrusion").at(-1);
+    const jam = jams.filter((event) => event.carrier === deepest.carrier.k).at(-1);
     const millimetres = (1e3 * deepest.depth).toFixed(1);
     const where = jam && jam.bodies.length === 2 && jam.bodies[0] !== jam.bodies[1]
       ? `between wheels ${Math.min(...jam.bodies)} and ${Math.max(...jam.bodies)}` : "";
@@ -146,20 +143,6 @@ class Scene {
       const y = below + 15 * line;
       label(ctx, text, deepest.x + 14, y, colors.intrusion, colors.halo, this.camera.width);
     });
-  }
-
-  // [m] How deep a point is inside the envelope, 0 where it is not; the envelope is convex.
-  depth(point, moment) {
-    const { envelope, inner } = this.robot;
-    if (!envelope) return 0;
-    const cosine = Math.cos(moment.angle);
-    const sine = Math.sin(moment.angle);
-    const dx = point.x - moment.x;
-    const dy = point.y - moment.y;
-    if (Math.hypot(dx, dy) > 2 * this.robot.length) return 0;
-    const x = cosine * dx + sine * dy;
-    const y = cosine * dy - sine * dx;
-    return clearance(inner.points, x, y) > 0 ? clearance(envelope.points, x, y) : 0;
   }
 
   drawContacts(ctx, colors, moment) {
@@ -235,14 +218,13 @@ class Scene {
   }
 }
 
-function place(ctx, moment) {
-  ctx.translate(moment.x, moment.y);
-  ctx.rotate(moment.angle);
-}
-
-function unplace(ctx, moment) {
-  ctx.rotate(-moment.angle);
-  ctx.translate(-moment.x, -moment.y);
+// [m] How deep a point is inside the envelope of a carrier, 0 where it is not; it is convex.
+function depthIn({ track, ...frame }, point) {
+  const { envelope, inner, reach } = track;
+  const away = [point.x - frame.x, point.y - frame.y];
+  if (Math.hypot(...away) > reach) return 0;
+  const [x, y] = rotated(away, -frame.angle);
+  return clearance(inner.points, x, y) > 0 ? clearance(envelope.points, x, y) : 0;
 }
 
 // [m] Least distance inside the sides of a convex line that runs counter-clockwise; < 0 outside.
