@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from benches.peers import machine, markdown
+from benches.peers import chains_report, machine, markdown
 from benches.peers.accuracy import COST_SPAN
 from benches.peers.engines import NAMES
 from benches.peers.errors import JOINT_GAP, PATH, PENETRATION
@@ -14,11 +15,12 @@ Rows = list[dict[str, Any]]
 
 def render(result: dict[str, Any]) -> str:
     """Write the report of a run, also of one that has not got to its end."""
-    sections = {
+    sections: dict[str, Callable[[Any], str]] = {
         "defaults": _defaults,
         "accuracy": _accuracy,
         "yardstick": _yardstick,
         "batches": _batches,
+        "chains": chains_report.render,
     }
     parts = [_head(result)]
     parts += [write(result[name]) for name, write in sections.items() if name in result]
