@@ -265,7 +265,7 @@ def _judged(engine: str, place: Place, setting: Setting) -> dict[str, Any]:
         "gap": max(run.gap for run in runs),
         "survived": sum(run.survived for run in runs),
         "count": len(runs),
-        "final_x": float(runs[0].path[-1, 0]),
+        "distance_gone": float(runs[0].path[-1, 0] - runs[0].path[0, 0]),
         "speed_error": max((run.speed_error for run in runs), key=abs),
         "distance": max(run.distance(fine) for run, fine in zip(runs, finer, strict=True)),
     }

@@ -43,8 +43,8 @@ def _side_by_side(rows: Rows) -> str:
             "### All at steps of 1 ms",
             "pymunk with 10 iterations, at its defaults and tuned, crawler2d at its defaults; the"
             " least of several rounds of the lower quartile of blocks of half a second. Cells: us a"
-            " step; widest gap of a pin [mm] and runs of three starts whose chain stayed on; last x"
-            " of the chassis [m] and, on flat ground, how far the mean speed is off the commanded"
+            " step; widest gap of a pin [mm] and runs of three starts whose chain stayed on; how far"
+            " the chassis got and, on flat ground, how far the mean speed is off the commanded"
             " one; how far the path gets from that with half the step [mm].",
             markdown.table(["shoes, ground", *engines], table),
         ]
@@ -56,7 +56,7 @@ def _cell(row: dict[str, Any]) -> str:
     return (
         f"**{row['per_step'] * 1e6:.1f} us**<br>"
         f"{_millimetres(row['gap'])} mm, {row['survived']}/{row['count']}<br>"
-        f"x {row['final_x']:.2f}{speed}<br>"
+        f"{row['distance_gone']:.2f} m{speed}<br>"
         f"{_millimetres(row['distance'])} mm off"
     )
 

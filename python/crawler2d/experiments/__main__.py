@@ -1,7 +1,8 @@
 """The seizure study: which track models get the Engineer over an edge, how often, and why not.
 
 Run it with ``python -m crawler2d.experiments``; ``--help`` lists the options. With
-``chains`` it sets chains of shoes beside what stands in for them, on steps.
+``chains`` it sets chains of shoes beside what stands in for them, on steps; with ``chain-steps`` it
+asks how fine a chain must be stepped.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from crawler2d.errors import BatchInterrupted
 from crawler2d.experiments import report, stops_report
 from crawler2d.experiments import tables as rows
+from crawler2d.experiments.chain_steps import chain_steps, chain_steps_text
 from crawler2d.experiments.chains import CHAINS, CHAINS_QUICK, chain_models
 from crawler2d.experiments.models import gear_pairs
 from crawler2d.experiments.public_model import posts, public_wheel_model
@@ -35,9 +37,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("seizure", "chains"),
+        choices=("seizure", "chains", "chain-steps"),
         default="seizure",
-        help="the seizure study (default), or chains of shoes beside belt and gear wheels",
+        help="the seizure study (default), or chains beside belt and gears, or how finely to step",
     )
     parser.add_argument("--quick", action="store_true", help="few heights and repeats")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the results")
@@ -50,6 +52,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             design, models = CHAINS_QUICK if options.quick else CHAINS, chain_models()
             study = Study(design=design, models=models, seed=options.seed, threads=options.threads)
             _run_chains(study, options.out)
+        elif options.what == "chain-steps":
+            repeats = 2 if options.quick else 40
+            steps = chain_steps(repeats=repeats, seed=options.seed, threads=options.threads)
+            text = f"{chain_steps_text(steps)}\n"
+            print(f"\n{text}")
+            (options.out / "chain_steps.txt").write_text(text, encoding="utf-8")
         else:
             design = QUICK if options.quick else FULL
             study = Study(design=design, seed=options.seed, threads=options.threads)
