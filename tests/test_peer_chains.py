@@ -49,7 +49,8 @@ def test_crawler2d_has_the_same_robot(count: int) -> None:
     # Both sprockets together pull as the one motor does at the pins.
     assert 2.0 * built.drivetrain.max_torque == chain_robot.TORQUE
     state = Simulation(scenario).state()
-    assert state.position == pytest.approx((0.0, robot.radius), abs=1e-3)
+    # A corner of the polygon may stand below the outline at first.
+    assert state.position == pytest.approx((0.0, robot.radius), abs=0.05 * robot.radius)
     # The teeth count shoes of the commanded speed.
     passed = -robot.sprocket_speed / (2.0 * np.pi) * robot.tooth_count * robot.pitch
     assert passed == pytest.approx(scenario.drive.speed)

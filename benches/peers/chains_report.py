@@ -43,9 +43,9 @@ def _side_by_side(rows: Rows) -> str:
             "### All at steps of 1 ms",
             "pymunk with 10 iterations, at its defaults and tuned, crawler2d at its defaults; the"
             " least of several rounds of the lower quartile of blocks of half a second. Cells: us a"
-            " step; widest gap of a pin [mm] and runs of three starts whose chain stayed on; how far"
-            " the chassis got and, on flat ground, how far the mean speed is off the commanded"
-            " one; how far the path gets from that with half the step [mm].",
+            " step; widest gap of a pin [mm] and runs of three starts whose chain stayed on; how"
+            " far the chassis got and, on flat ground, the error of its mean speed; how far the"
+            " path gets from that with half the step [mm].",
             markdown.table(["shoes, ground", *engines], table),
         ]
     )

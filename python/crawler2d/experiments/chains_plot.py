@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 __all__ = ["plot_chains"]
 
 # Okabe and Ito's palette: told apart by colour-blind readers.
-_COLORS = ("#222222", "#0072B2", "#56B4E9", "#D55E00", "#009E73")
-_MARKERS = ("o", "s", "D", "^", "v")
-_TRACKS = 3
+_COLORS = ("#222222", "#0072B2", "#CC79A7", "#E69F00", "#D55E00", "#009E73")
+_MARKERS = ("o", "s", "P", "D", "^", "v")
+_TRACKS = 4
 
 
 def plot_chains(cells: Sequence[Cell]) -> Figure:
@@ -27,7 +27,7 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
     Parameters
     ----------
     cells : sequence of Cell
-        Heights ascending within a model; three tracks, then up to two models of wheels.
+        Heights ascending within a model; four tracks, then up to two models of wheels.
 
     Returns
     -------
