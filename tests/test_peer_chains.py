@@ -101,7 +101,10 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
                 "versions": {"pymunk": "7"},
             },
             "wall": 60.0,
-            "side_by_side": [{**cell, **judged, "engine": "crawler2d", "per_step": 3e-5}],
+            "side_by_side": [
+                {**cell, **judged, "engine": "crawler2d", "per_step": 3e-5},
+                {**cell, **judged, "engine": "pymunk, defaults", "per_step": 2e-5, "gap": 1e-3},
+            ],
             "equal_gaps": [{**cell, **equal, "allowed": 2e-4}],
             "engineer": [{"track": "22 shoes", "terrain": "flat", "per_step": 4e-5}],
         }
@@ -109,4 +112,5 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
     assert "**30.0 us**<br>0.005 mm, 3/3<br>3.16 m, -0.4 %<br>3 mm off" in text
     assert "1 ms, 20 iterations<br>100.0 ms, **2 times**" in text
     assert "none in the grid: 0.02 mm at 0.125 ms, 160 iterations" in text
-    assert "| 22 shoes | 40.0 | 50, better 35 |" in text
+    assert "| 22 shoes | 40.0 | 50, better 35 | yes |" in text
+    assert "costs 1.5 to 1.5 times as much; its pins open 200 to 200 times less" in text
