@@ -62,7 +62,7 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
             )
         ax.set(xlabel="height of the step [mm]", ylim=(-4.0, 104.0))
         ax.grid(alpha=0.25)
-        ax.legend(fontsize="small", loc="lower left")
+        ax.legend(fontsize="small", loc="upper right")
     panels[0].set_ylabel("cleared [%]")
     count = max(cell.count for cell in cells)
     figure.suptitle(f"Engineer without flippers: {count} runs a point, 95 % Wilson interval")
