@@ -111,7 +111,7 @@ def test_the_table_of_steps_has_its_units() -> None:
     )
     head, _, line = chain_steps_text([row], (0.05,)).splitlines()
     assert "gap, flat [um]" in head
-    assert line.split()[:4] == ["1", "2", "6", "43"]
+    assert line.split()[:4] == ["1", "2", "6.0", "43"]
     assert "64.00 to 64.48" in line
     assert "0.50 (0.40 to 0.60)" in line
     assert line.split()[-1] == "54"

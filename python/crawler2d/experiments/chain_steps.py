@@ -121,7 +121,7 @@ def chain_steps_text(found: Sequence[ChainStep], heights: Sequence[float] = HEIG
         (
             f"{1e3 * row.time_step:g}",
             str(row.substeps),
-            f"{1e6 * row.flat_gap:.0f}",
+            f"{1e6 * row.flat_gap:.1f}",
             f"{1e6 * row.gap:.0f}",
             f"{1e3 * row.lowest:.2f} to {1e3 * row.highest:.2f}",
             *(f"{share:.2f} ({low:.2f} to {high:.2f})" for share, low, high in row.cleared),
