@@ -63,13 +63,13 @@ fn mean_pull(track: Track, torque: f64, starts: u32) -> (f64, f64) {
     (mean, (variance / count).sqrt())
 }
 
-/// As long as the motors limit it, the belt pulls harder: a chain's lever is longer on a grouser's tip.
-/// What 6 N m could hold is more than the robot weighs; it rears, and the belt is the first to give way.
+/// At 0.1 m/s, where a pull is one of statics. At 0.2 m/s a robot whose motors hold more than its weight
+/// rears over the rails, and the belt gives way first: at 0.92 and 0.75 of the chain with 6 and 20 N m.
 #[test]
 fn on_rails_a_belt_with_grousers_pulls_like_the_chain() {
     let soak = std::env::var("CRAWLER2D_SOAK").is_ok();
     let starts = if soak { 48 } else { 6 };
-    for (torque, least) in [(2.0, 0.97), (4.0, 0.97), (6.0, 0.8), (20.0, 0.6)] {
+    for torque in [2.0, 4.0, 6.0, 20.0] {
         if torque > 6.0 && !soak {
             continue;
         }
@@ -81,6 +81,6 @@ fn on_rails_a_belt_with_grousers_pulls_like_the_chain() {
              ratio {ratio:.3}",
             2.0 * torque / 0.052
         );
-        assert!(ratio > least);
+        assert!(ratio > 0.97);
     }
 }
