@@ -42,7 +42,7 @@ fn pull(scenario: &Scenario) -> f64 {
 }
 
 /// [N] Mean and its standard error over starts that differ in approach and phase, the same for all.
-fn mean_pull(track: Track, torque: f64, starts: u32) -> (f64, f64) {
+fn mean_pull(track: &Track, torque: f64, starts: u32) -> (f64, f64) {
     let mut draw = Draw(5);
     let pulls: Vec<f64> = (0..starts)
         .map(|_| {
@@ -73,8 +73,8 @@ fn on_rails_a_belt_with_grousers_pulls_like_the_chain() {
         if torque > 6.0 && !soak {
             continue;
         }
-        let (belt, of_belt) = mean_pull(grouser_belt(), torque, starts);
-        let (chain, of_chain) = mean_pull(segmental(None), torque, starts);
+        let (belt, of_belt) = mean_pull(&grouser_belt(), torque, starts);
+        let (chain, of_chain) = mean_pull(&segmental(None), torque, starts);
         let ratio = belt / chain;
         println!(
             "motors {:.1} N: belt {belt:.1} +- {of_belt:.1} N, chain {chain:.1} +- {of_chain:.1} N, \
