@@ -48,8 +48,6 @@ GRID = [
     for tuned in (True, False)
 ]
 """What is tried of pymunk at equal gaps."""
-FINEST = GRID[-2:]
-"""What stands for the rest where no setting of the grid is good enough."""
 
 OWN: dict[str, Track] = {
     "belt with grousers": GrouserBeltTrack(),
@@ -185,11 +183,13 @@ def equal_gaps(
                 found[name] = next(is_tight, None)
                 progress(f"  {1e3 * aim:.3g} mm: {found[name] or 'nothing'}")
             row = {"shoes": count, "terrain": terrain, "gap": gap, "allowed": JOINT_GAP}
-            rows.append(row | _costs(place, found))
+            rows.append(row | _costs(place, found, grid[-2:]))
     return rows
 
 
-def _costs(place: Place, found: dict[str, Setting | None]) -> dict[str, Any]:
+def _costs(
+    place: Place, found: dict[str, Setting | None], finest: Sequence[Setting]
+) -> dict[str, Any]:
     """Time what was found beside crawler2d's defaults; look at the finest where nothing was."""
     settings = {name: setting for name, setting in found.items() if setting is not None}
     jobs = {name: partial(_blocks, "pymunk", place, s) for name, s in settings.items()}
@@ -200,7 +200,7 @@ def _costs(place: Place, found: dict[str, Setting | None]) -> dict[str, Any]:
         "found": {name: str(setting) for name, setting in settings.items()},
     }
     if len(settings) < len(found):
-        gaps = {str(s): ride("pymunk", place, s).gap for s in FINEST}
+        gaps = {str(s): ride("pymunk", place, s).gap for s in finest}
         row["finest"] = min(gaps.items(), key=lambda item: item[1])
     return row
 
