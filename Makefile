@@ -49,7 +49,7 @@ check: $(VENV)/.built ## format, lint, types, stubs and documentation, nothing c
 bench: | tools ## benchmarks
 	cargo bench
 
-bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about half an hour
+bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour
 	$(BIN)/python -m benches.peers $(ARGS)
 
 bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and time step, some minutes

@@ -1,6 +1,6 @@
 """Run the benchmark: progress on stderr, tables on the screen, `out/peers.json`, the report.
 
-Usage, from the repository root: ``python -m benches.peers [--quick]``.
+Usage, from the repository root: ``python -m benches.peers [--quick] [--sections SECTION ...]``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benches.peers import accuracy, machine, report, scenes, sections
+from benches.peers import accuracy, chains, machine, report, scenes, sections
 from benches.peers.accuracy import Effort
 from benches.peers.batches import batches
 from benches.peers.engine import Setting
@@ -27,6 +27,8 @@ _REPORT = _ROOT / "docs" / "studies" / "peers.md"
 _REPEATS = 5
 _WORLDS = 8
 _ENSEMBLE = 12
+_SHOES = (22, 36, 44)
+_SECTIONS = ("defaults", "yardstick", "batches", "accuracy", "chains")
 
 
 def main() -> None:
@@ -41,16 +43,25 @@ def main() -> None:
         metavar="SCENE",
         help="these alone, and no report",
     )
+    parser.add_argument(
+        "--sections",
+        nargs="+",
+        choices=_SECTIONS,
+        default=_SECTIONS,
+        metavar="SECTION",
+        help=f"these alone, the others as they were: {', '.join(_SECTIONS)}",
+    )
     parser.add_argument("--render", action="store_true", help="only write the report again")
     arguments = parser.parse_args()
     path = _RESULT.with_stem("peers-quick") if arguments.quick else _RESULT
     if not arguments.render:
+        is_whole = arguments.quick or set(arguments.sections) == set(_SECTIONS)
+        result = _begun() if is_whole else json.loads(path.read_text(encoding="utf-8"))
         start = time.perf_counter()
-        versions = {each.name: each.version for each in engines()}
-        result: dict[str, Any] = {"machine": machine.describe(versions)}
-        for section in quick() if arguments.quick else full(arguments.scenes):
+        for section in quick() if arguments.quick else full(arguments.scenes, arguments.sections):
             result |= section
-            result["wall"] = time.perf_counter() - start
+            if is_whole:
+                result["wall"] = time.perf_counter() - start
             path.parent.mkdir(exist_ok=True)
             path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     text = report.render(json.loads(path.read_text(encoding="utf-8")))
@@ -64,21 +75,48 @@ def quick() -> Iterator[dict[str, Any]]:
     names = ["lwa5-round-step", "lwa5-gear-step"]
     yield {"defaults": sections.defaults(names, engines(), 1)}
     yield {"yardstick": sections.yardstick(["lwa3", "lwa5"], ["step"], 2)}
+    yield {"chains": of_chains([22], ["flat"], 1, chains.GRID[10:14])}
     yield {"batches": batches(["lwa3-gear-step"], scenes.draws(2), NAMES, 1)}
     yield {"accuracy": equal_accuracy(names[0], Effort(1, 4, 0.9e-3), 1)}
 
 
-def full(names: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Run it all; `names` are the scenes of the defaults and of equal accuracy."""
+def full(names: Sequence[str], chosen: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Run the chosen sections; `names` are the scenes of the defaults and of equal accuracy."""
     robots, terrains = ["lwa3", "lwa5", "cwa24"], ["step", "field"]
     lines = ["lwa5-gear-step", "lwa3-gear-step"]
-    yield {"defaults": sections.defaults(names, engines(), _REPEATS)}
-    yield {"yardstick": sections.yardstick(robots, terrains, _REPEATS)}
-    yield {"batches": batches(lines, scenes.draws(_WORLDS), NAMES, 3)}
+    if "chains" in chosen:
+        yield {"chains": of_chains(_SHOES, chains.TERRAINS, _REPEATS)}
+    if "defaults" in chosen:
+        yield {"defaults": sections.defaults(names, engines(), _REPEATS)}
+    if "yardstick" in chosen:
+        yield {"yardstick": sections.yardstick(robots, terrains, _REPEATS)}
+    if "batches" in chosen:
+        yield {"batches": batches(lines, scenes.draws(_WORLDS), NAMES, 3)}
     rows: list[dict[str, Any]] = []
-    for name in names:
+    for name in names if "accuracy" in chosen else ():
         rows += equal_accuracy(name, Effort(3, _ENSEMBLE), _REPEATS)
         yield {"accuracy": rows}
+
+
+def of_chains(
+    counts: Sequence[int],
+    terrains: Sequence[str],
+    repeats: int,
+    grid: Sequence[Setting] = chains.GRID,
+) -> dict[str, Any]:
+    """Run the section of chains; it names its own machine, since it can be run alone."""
+    versions = {name: engine(name).version for name in ("pymunk", "crawler2d")}
+    found: dict[str, Any] = {"machine": machine.describe(versions)}
+    start = time.perf_counter()
+    found["side_by_side"] = chains.side_by_side(counts, terrains, repeats)
+    found["engineer"] = chains.engineer(repeats)
+    found["equal_gaps"] = chains.equal_gaps(counts, terrains, grid)
+    return found | {"wall": time.perf_counter() - start}
+
+
+def _begun() -> dict[str, Any]:
+    versions = {each.name: each.version for each in engines()}
+    return {"machine": machine.describe(versions)}
 
 
 def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, Any]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from benches.peers import machine, markdown
+from benches.peers import chains_report, machine, markdown
 from benches.peers.accuracy import COST_SPAN
 from benches.peers.engines import NAMES
 from benches.peers.errors import JOINT_GAP, PATH, PENETRATION
@@ -14,11 +15,12 @@ Rows = list[dict[str, Any]]
 
 def render(result: dict[str, Any]) -> str:
     """Write the report of a run, also of one that has not got to its end."""
-    sections = {
+    sections: dict[str, Callable[[Any], str]] = {
         "defaults": _defaults,
         "accuracy": _accuracy,
         "yardstick": _yardstick,
         "batches": _batches,
+        "chains": chains_report.render,
     }
     parts = [_head(result)]
     parts += [write(result[name]) for name, write in sections.items() if name in result]
@@ -200,9 +202,11 @@ _LIMITS = """
 
 - **Accuracy is against an engine's own limit.** No engine is the truth here; the limits themselves
   differ, see the table of limits.
-- **Mechanics.** crawler2d solves one body and the spins of its wheels: it has no pins that could
-  open, and its wheels cannot shake on them. MuJoCo has no gaps either, but is a 3D engine held in
-  the plane. Box2D works in single precision.
+- **Mechanics.** crawler2d solves one body and the spins of its wheels: but for a chain's it has no
+  pins that could open, and its wheels cannot shake on them. MuJoCo has no gaps either, but is a 3D
+  engine held in the plane. Box2D works in single precision.
+- **Chains.** pymunk's has teeth, lugs and play; crawler2d's drive has no teeth, and its guide a
+  tensioner. Both are one robot but for that.
 - **Work done besides.** crawler2d's time includes building the model and watching for stops.
 - **The grid is coarse**, a factor of two a step. A cheaper setting may lie between its points, and
   costs that differ by less than the noise of a shared machine may change places.

@@ -139,9 +139,9 @@ class Simulation:
         Raises
         ------
         ScenarioError
-            If `speed` is no number or beyond the drivetrain's, an angle no number, beyond a full turn
-            or of an end without flippers, or `push` no number or beyond 1e6 N. Then nothing is
-            commanded.
+            If `speed` is no number or beyond the drivetrain's, an angle no number, beyond a full
+            turn or of an end without flippers, or `push` no number or beyond 1e6 N. Then nothing
+            is commanded.
         """
         given = {
             "drive.speed": speed,

@@ -1,6 +1,8 @@
 """The seizure study: which track models get the Engineer over an edge, how often, and why not.
 
-Run it with ``python -m crawler2d.experiments``; ``--help`` lists the options.
+Run it with ``python -m crawler2d.experiments``; ``--help`` lists the options. With
+``chains`` it sets chains of shoes beside what stands in for them, on steps; with ``chain-steps`` it
+asks how fine a chain must be stepped.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 from crawler2d.errors import BatchInterrupted
 from crawler2d.experiments import report, stops_report
 from crawler2d.experiments import tables as rows
+from crawler2d.experiments.chain_steps import chain_steps, chain_steps_text
+from crawler2d.experiments.chains import CHAINS, CHAINS_QUICK, chain_models
 from crawler2d.experiments.models import gear_pairs
 from crawler2d.experiments.public_model import posts, public_wheel_model
 from crawler2d.experiments.replays import write_replays
@@ -30,16 +34,34 @@ __all__ = ["main"]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the study from the command line."""
     parser = argparse.ArgumentParser(prog="python -m crawler2d.experiments", description=__doc__)
+    parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("seizure", "chains", "chain-steps"),
+        default="seizure",
+        help="the seizure study (default), or chains beside belt and gears, or how finely to step",
+    )
     parser.add_argument("--quick", action="store_true", help="few heights and repeats")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the results")
     parser.add_argument("--threads", type=int, default=None, help="default: all cores")
     parser.add_argument("--seed", type=int, default=0, help="of the draws (default: 0)")
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    design = QUICK if options.quick else FULL
-    study = Study(design=design, seed=options.seed, threads=options.threads)
     try:
-        _run(study, options.out)
+        if options.what == "chains":
+            design, models = CHAINS_QUICK if options.quick else CHAINS, chain_models()
+            study = Study(design=design, models=models, seed=options.seed, threads=options.threads)
+            _run_chains(study, options.out)
+        elif options.what == "chain-steps":
+            repeats = 2 if options.quick else 40
+            steps = chain_steps(repeats=repeats, seed=options.seed, threads=options.threads)
+            text = f"{chain_steps_text(steps)}\n"
+            print(f"\n{text}")
+            (options.out / "chain_steps.txt").write_text(text, encoding="utf-8")
+        else:
+            design = QUICK if options.quick else FULL
+            study = Study(design=design, seed=options.seed, threads=options.threads)
+            _run(study, options.out)
     except BatchInterrupted as interrupt:
         print(interrupt, file=sys.stderr)
         return 130
@@ -105,6 +127,26 @@ def _run(study: Study, out: Path) -> None:
     _draw(cells, phases, runs, out)
     count = sum(table["outcome"].size for table in (*sweeps.values(), robots, flat, turned))
     print(f"{count + len(runs)} runs in {took:.0f} s; tables and pictures are in {out}")
+
+
+def _run_chains(study: Study, out: Path) -> None:
+    begin = time.perf_counter()
+    print(report.header(study), flush=True)
+    table = study.on_obstacle("step")
+    took = time.perf_counter() - begin
+    found = rows.cells(table, "step")
+    text = report.rates_text(found)
+    print(f"\n{text}\n")
+    (out / "chains.txt").write_text(f"{report.header(study)}\n\n\n{text}\n", encoding="utf-8")
+    table.drop_vars("scenario").to_dataframe().to_csv(out / "runs_chains.csv")
+    rows.write_csv(out / "chains.csv", found)
+    try:
+        from crawler2d.experiments.chains_plot import plot_chains  # noqa: PLC0415 - optional
+
+        plot_chains(found).savefig(out / "chains.png", dpi=100)
+    except ImportError as missing:
+        print(f"no picture: {missing}", file=sys.stderr)
+    print(f"{table['outcome'].size} runs in {took:.0f} s; table and picture are in {out}")
 
 
 def _draw(

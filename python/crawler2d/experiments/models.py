@@ -31,6 +31,8 @@ class StudyModel:
     """Figure or section of the paper, or "ours"."""
     row: str | None = None
     """The row of the paper's Table 3 that is of this kind; None: no row is."""
+    time_step: float | None = None
+    """[s] What its rates need to be converged; None: the solver's default will do."""
 
 
 def study_models(axle_distance: float) -> dict[str, StudyModel]:
@@ -63,6 +65,9 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
     return {
         "belt": StudyModel(track=BeltTrack(), source="ours"),
         "belt with grousers": StudyModel(track=GrouserBeltTrack(), source="ours"),
+        "chain of 22 shoes": StudyModel(
+            track=SegmentalTrack(shoe_count=22), source="2.3, Figs. 9, 10"
+        ),
         "force on skids": StudyModel(track=ForceTrack(), source="2.1"),
         "force on wheels": StudyModel(track=ForceTrack(support="wheels"), source="2.1"),
         "line of 3": StudyModel(track=LineOfWheels(3), source="Fig. 3", row=LWA_ROUND),
@@ -81,7 +86,10 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
             track=CircumferentialWheels(24), source="Figs. 5, 6", row=CWA_ROUND
         ),
         "24 gears all round": StudyModel(
-            track=CircumferentialWheels(24, wheel=gear), source="Fig. 12", row=CWA_GEAR
+            track=CircumferentialWheels(24, wheel=gear),
+            source="Fig. 12",
+            row=CWA_GEAR,
+            time_step=0.25e-3,
         ),
         "16 all round, spaced": StudyModel(
             track=CircumferentialWheels(16, wheel_radius=0.02), source="Fig. 7", row=CWA_ROUND

@@ -22,7 +22,7 @@ _COLORS = (_BLUE, _ORANGE, _GREEN)
 _MARKERS = ("o", "s", "^")
 # Wide below narrow: lines that coincide stay visible.
 _WIDTHS = (3.2, 2.0, 0.9)
-_COLUMNS = 5
+_COLUMNS = 4
 _EQUATION_1 = 1.0 / 3.0
 
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FULL", "QUICK", "Design", "Study", "robots_of_the_study"]
 
+# What a model of the study sets together.
+_TRACK_AND_STEP = ("robot.track", "solver.time_step")
 # [-] An estimate, as the robot's; the same everywhere.
 _FRICTION = 0.9
 
@@ -129,22 +131,22 @@ class Study:
     def on_obstacle(self, obstacle: str) -> xarray.Dataset:
         """Run every model over one obstacle: track, height, repeat; with a belt at every stop."""
         heights = self.design.heights[obstacle]
-        over = {"robot.track": self._tracks(), "terrain.height": heights}
+        over = {**self._tracks(), "terrain.height": heights}
         base = self.base.replace({"terrain": _obstacles(heights[0])[obstacle]})
         return self._sweep(base, over, self.design.repeats, counterfactual=True)
 
     def on_other_robots(self) -> xarray.Dataset:
         """Run every model of every robot over a step: robot, track, height, repeat; with belts."""
-        over = {
+        over: dict[Any, Any] = {
             "robot": robots_of_the_study(),
-            "robot.track": self._tracks(),
+            **self._tracks(),
             "terrain.height": self.design.robot_heights,
         }
         return self._sweep(self.base, over, self.design.robot_repeats, counterfactual=True)
 
     def on_the_flat(self) -> xarray.Dataset:
         """Run every model over flat ground: track, repeat."""
-        return self._sweep(self._flat(), {"robot.track": self._tracks()}, self.design.ride_repeats)
+        return self._sweep(self._flat(), self._tracks(), self.design.ride_repeats)
 
     def over_phases(self) -> xarray.Dataset:
         """Run lines of gear wheels over flat ground: count, phase_fraction, repeat."""
@@ -163,18 +165,23 @@ class Study:
             {"terrain": ground, "robot.drivetrain.max_acceleration": acceleration}
         )
 
-    def _tracks(self) -> dict[str, Any]:
-        return {name: model.track for name, model in self.models.items()}
+    def _tracks(self) -> dict[Any, Any]:
+        """Sweep the models, each with the time step that it needs."""
+        default = self.base.solver.time_step
+        points = {
+            name: (model.track, model.time_step or default) for name, model in self.models.items()
+        }
+        return {_TRACK_AND_STEP: points}
 
     def _sweep(
         self,
         base: Scenario,
-        over: Mapping[str, Any],
+        over: Mapping[Any, Any],
         repeats: int,
         *,
         counterfactual: bool = False,
     ) -> xarray.Dataset:
-        return sweep(
+        table = sweep(
             base,
             over,
             repeats=repeats,
@@ -184,3 +191,4 @@ class Study:
             on_error="record",
             counterfactual=counterfactual,
         )
+        return table.rename({"track_time_step": "track"}) if _TRACK_AND_STEP in over else table

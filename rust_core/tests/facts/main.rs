@@ -17,6 +17,7 @@ mod belt;
 mod climbing;
 mod drawn;
 mod drive;
+mod flank;
 mod flippers;
 mod gears;
 mod ghosts;

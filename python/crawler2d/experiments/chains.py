@@ -1,0 +1,44 @@
+"""Chains of shoes beside the models that stand in for them, on steps: how often each gets over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from crawler2d.experiments.models import StudyModel, study_models
+from crawler2d.experiments.sweeps import FULL, QUICK
+from crawler2d.robots import engineer
+from crawler2d.track import SegmentalTrack
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["CHAINS", "CHAINS_QUICK", "chain_models"]
+
+CHAINS = replace(FULL, heights={"step": tuple(0.01 * tens for tens in range(3, 17))}, repeats=40)
+"""Steps of 30 to 160 mm."""
+CHAINS_QUICK = replace(QUICK, heights={"step": (0.06, 0.10)}, repeats=4)
+
+TAUT = 50.0
+"""[N] Pre-tension of a track, a quarter of the robot's weight; the default is a tenth of it."""
+
+
+def chain_models() -> Mapping[str, StudyModel]:
+    """List the models: every one has the grousers of the Engineer.
+
+    Returns
+    -------
+    mapping of str to StudyModel
+        Tracks first, then wheels.
+    """
+    models = study_models(engineer().outline.axle_distance)
+    taut = StudyModel(track=SegmentalTrack(shoe_count=22, pre_tension=TAUT), source="ours")
+    finer = StudyModel(track=SegmentalTrack(shoe_count=44), source="ours")
+    return {
+        "belt with grousers": models["belt with grousers"],
+        "chain of 22 shoes": models["chain of 22 shoes"],
+        "22 shoes, taut": taut,
+        "chain of 44 shoes": finer,
+        "line of 3 gears": models["line of 3 gears"],
+        "24 gears all round": models["24 gears all round"],
+    }
