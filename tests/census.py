@@ -121,7 +121,10 @@ def robot(
     """The Engineer with another mass distribution, belly and motors."""
     center = (float(rng.uniform(-0.06, 0.06)), float(rng.uniform(-0.02, 0.07)))
     base = c2d.robots.engineer(
-        center_of_mass=center, belly_clearance=float(rng.uniform(*clearance)), track=track
+        flippers=None,
+        center_of_mass=center,
+        belly_clearance=float(rng.uniform(*clearance)),
+        track=track,
     )
     shared = rng.random() < 0.7
     drivetrain = dataclasses.replace(

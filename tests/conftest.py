@@ -19,7 +19,7 @@ hypothesis.settings.register_profile("test", max_examples=100, deadline=None, de
 hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)
 hypothesis.settings.load_profile("soak" if SOAK else "test")
 
-ROBOT = c2d.robots.engineer()
+ROBOT = c2d.robots.engineer(flippers=None)
 POINTS = [[-3.0, 0.0], [0.0, 0.0], [0.0, 0.05], [3.0, 0.05]]
 PLACEMENTS: Any = [[-0.1875, 0.0, 0.0625], [0.0, -0.03125, 0.03125], [0.1875, 0.0, 0.0625]]
 GEAR = c2d.GearWheel(
@@ -81,6 +81,16 @@ VARIANTS = {
         ),
         c2d.terrains.step(0.04),
     ),
+    "flippers-climb": Scenario(
+        c2d.robots.engineer(track=c2d.BeltTrack()),
+        c2d.terrains.step(0.06, edge_radius=0.002),
+        drive=c2d.Drive(schedule=((1.0, 0.2), (2.0, 0.4)), gait=c2d.Climb()),
+    ),
+    "flippers-hold": Scenario(
+        c2d.robots.absolem(track="public"),
+        c2d.terrains.flat(),
+        drive=c2d.Drive(gait=c2d.Hold(0.5, ((0.5, -0.2),))),
+    ),
     "line-barrier": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
         c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),
@@ -113,7 +123,9 @@ def scenario() -> Scenario:
 @pytest.fixture(scope="session")
 def run() -> c2d.Run:
     """A finished run with its history."""
-    return c2d.simulate(c2d.robots.engineer(track=c2d.LineOfWheels(3)), c2d.terrains.step(0.05))
+    return c2d.simulate(
+        c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3)), c2d.terrains.step(0.05)
+    )
 
 
 @pytest.fixture

@@ -149,11 +149,11 @@ def test_points_may_run_from_right_to_left() -> None:
 
 @pytest.mark.parametrize("center", [np.array([0.01, 0.02]), [0.01, 0.02], (0.01, np.float64(0.02))])
 def test_a_point_may_be_any_array(center: Any) -> None:
-    assert c2d.robots.engineer(center_of_mass=center).center_of_mass == (0.01, 0.02)
+    assert c2d.robots.engineer(flippers=None, center_of_mass=center).center_of_mass == (0.01, 0.02)
 
 
 @pytest.mark.parametrize("center", [0.0, [0.0], [0.0, 1.0, 2.0], "ab", [True, False], [[0.0, 1.0]]])
 def test_a_point_that_is_none_is_refused(center: Any) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
-        c2d.robots.engineer(center_of_mass=center)
+        c2d.robots.engineer(flippers=None, center_of_mass=center)
     assert caught.value.path == "robot.center_of_mass"

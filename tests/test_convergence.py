@@ -50,7 +50,7 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
         draw = np.random.default_rng([0, repeat]).random(4)
         scenarios.append(
             c2d.Scenario(
-                robot=c2d.robots.engineer(track=track),
+                robot=c2d.robots.engineer(flippers=None, track=track),
                 terrain=c2d.terrains.step(height, friction=friction * (0.98 + 0.04 * draw[3])),
                 drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * draw[2])),
                 start=c2d.Start(approach=0.05 + 0.1 * draw[0], track_phase=0.048 * draw[1]),

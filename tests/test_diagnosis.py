@@ -28,7 +28,9 @@ LOW_BELLY = dataclasses.replace(
 )
 # Free wheels on a slope that their drive is just too weak for.
 ROLLING = dataclasses.replace(
-    c2d.robots.engineer(track=c2d.ForceTrack(support="wheels"), center_of_mass=(0.0347, 0.02)),
+    c2d.robots.engineer(
+        flippers=None, track=c2d.ForceTrack(support="wheels"), center_of_mass=(0.0347, 0.02)
+    ),
     drivetrain=dataclasses.replace(ROBOT.drivetrain, max_torque=1.0),
 )
 STOPS: dict[str, tuple[c2d.Robot, Any]] = {

@@ -191,7 +191,9 @@ def test_the_page_has_the_flippers_to_a_tenth_of_a_millimetre(robot: c2d.Robot) 
 
 
 def test_a_page_without_flippers_has_none() -> None:
-    page = page_of(c2d.simulate(c2d.robots.engineer(), c2d.terrains.flat(), duration=0.5))
+    page = page_of(
+        c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.flat(), duration=0.5)
+    )
     assert page["robot"]["flippers"] == []
     assert not unpacked(page["frames"]["flippers"]).size
 

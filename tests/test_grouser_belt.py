@@ -11,7 +11,7 @@ from crawler2d._shapes import grousers, placed
 from crawler2d.scenario import Scenario
 from crawler2d.terrain import Terrain
 
-ROBOT = c2d.robots.engineer().with_track(c2d.GrouserBeltTrack())
+ROBOT = c2d.robots.engineer(flippers=None).with_track(c2d.GrouserBeltTrack())
 BELT, BELLY, GROUSER = 1, 3, 4
 
 

@@ -14,7 +14,8 @@ BATCH = """
 import sys, time
 import crawler2d as c2d
 
-base = c2d.Scenario(c2d.robots.engineer(track=c2d.LineOfWheels(9)), c2d.terrains.flat(length=50.0))
+robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(9))
+base = c2d.Scenario(robot, c2d.terrains.flat(length=50.0))
 scenarios = [base.replace({"duration": 1.0})] * 3 + [base.replace({"duration": 1000.0})] * 20
 
 def progress(done, total):
@@ -35,7 +36,8 @@ RUN = """
 import time
 import crawler2d as c2d
 
-scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat(length=900.0), duration=10000.0)
+robot = c2d.robots.engineer(flippers=None)
+scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=10000.0)
 print("ready", flush=True)
 try:
     c2d.simulate(scenario, sample_interval=1.0)
@@ -47,7 +49,7 @@ ADVANCE = """
 import time
 import crawler2d as c2d
 
-sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat()))
+sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat()))
 print("ready", flush=True)
 try:
     sim.advance(10000.0)
@@ -63,7 +65,8 @@ BRANCH = """
 import time
 import crawler2d as c2d
 
-scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat(length=900.0), duration=1000.0)
+robot = c2d.robots.engineer(flippers=None)
+scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=1000.0)
 run = c2d.Run(scenario, {{"outcome": "timed_out", "metrics": {{"time": 1000.0}}}})
 print("ready", flush=True)
 try:

@@ -12,7 +12,7 @@ from crawler2d import _core
 from crawler2d.scenario import Scenario
 from crawler2d.statistics import newcombe
 
-ENGINEER = c2d.robots.engineer()
+ENGINEER = c2d.robots.engineer(flippers=None)
 SIDES = {"both": 0, "left": 1, "right": 2, "middle": 3}
 
 

@@ -39,7 +39,7 @@ def test_a_turn_rate_of_8_5_revolutions_a_minute_is_0_89_radians_a_second() -> N
 
 
 def test_the_preset_has_the_measured_acceleration_and_the_declared_speed() -> None:
-    drivetrain = c2d.robots.engineer().drivetrain
+    drivetrain = c2d.robots.engineer(flippers=None).drivetrain
     (robot,) = (row for row in paper.TABLE_3 if row.model == paper.REAL_ROBOT)
     assert drivetrain.max_acceleration == robot.acceleration
     assert drivetrain.max_speed == paper.TABLE_1.declared_max_speed

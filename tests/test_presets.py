@@ -11,7 +11,7 @@ from crawler2d.scenario import Scenario
 
 
 def test_the_engineer_has_the_figures_of_its_sources() -> None:
-    robot = c2d.robots.engineer()
+    robot = c2d.robots.engineer(flippers=None)
     assert (robot.mass, robot.track_mass) == (21.2, 2.4)
     assert robot.center_of_mass == (0.0, 0.02)
     assert robot.outline == c2d.TrackOutline(
@@ -35,19 +35,22 @@ def test_every_preset_drives_over_what_its_radius_allows(preset: Any) -> None:
 
 
 def test_the_gazebo_vehicle_is_put_together_from_its_file() -> None:
-    robot = c2d.robots.gz_tracked_vehicle()
+    robot = c2d.robots.gz_tracked_vehicle(flippers=None)
     assert robot.mass == pytest.approx(25.26)
     assert robot.center_of_mass == pytest.approx((-0.0635, 0.0496), abs=5e-5)
     assert robot.moment_of_inertia == pytest.approx(0.529, abs=5e-4)
-    assert c2d.robots.gz_tracked_vehicle(track="public").track == c2d.BeltTrack()
+    assert c2d.robots.gz_tracked_vehicle(flippers=None, track="public").track == c2d.BeltTrack()
 
 
 def test_public_wheel_models_let_in_what_a_belt_passes() -> None:
     """In one line each: what people run into who replace tracks by wheels."""
     blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
-    assert c2d.simulate(c2d.robots.engineer(track="public"), blade).mechanism is not None
-    assert c2d.simulate(c2d.robots.engineer(), blade).outcome == "cleared"
-    public = c2d.robots.absolem(track="public")
+    assert (
+        c2d.simulate(c2d.robots.engineer(flippers=None, track="public"), blade).mechanism
+        is not None
+    )
+    assert c2d.simulate(c2d.robots.engineer(flippers=None), blade).outcome == "cleared"
+    public = c2d.robots.absolem(flippers=None, track="public")
     assert public.track == c2d.LineOfWheels(8)
     stop = c2d.simulate(public, c2d.terrains.step(0.11), counterfactual=True).diagnosis
     assert stop is not None
@@ -64,14 +67,14 @@ def test_a_word_that_is_no_track_is_refused(name: str) -> None:
 
 
 def test_22_grousers_fit_on_the_engineers_belt() -> None:
-    outline = c2d.robots.engineer().outline
+    outline = c2d.robots.engineer(flippers=None).outline
     belt = outline.front_radius - outline.grouser_height
     perimeter = 2 * outline.axle_distance + 2 * math.pi * belt
     assert perimeter / outline.grouser_pitch == pytest.approx(22, abs=0.02)
 
 
 def test_the_belly_of_the_engineer_lies_as_high_as_asked() -> None:
-    robot = c2d.robots.engineer(belly_clearance=0.02)
+    robot = c2d.robots.engineer(flippers=None, belly_clearance=0.02)
     assert robot.belly is not None
     assert min(y for _, y in robot.belly) == pytest.approx(0.02 - 0.064)
     Scenario(robot, c2d.terrains.flat()).validate()
@@ -80,13 +83,13 @@ def test_the_belly_of_the_engineer_lies_as_high_as_asked() -> None:
 @pytest.mark.parametrize("clearance", ["0.03", None, True])
 def test_a_clearance_that_is_no_number_is_refused(clearance: Any) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
-        c2d.robots.engineer(belly_clearance=clearance)
+        c2d.robots.engineer(flippers=None, belly_clearance=clearance)
     assert caught.value.path == "belly_clearance"
 
 
 def test_a_simple_robot_of_the_engineers_size_is_like_it() -> None:
     simple = c2d.Robot.simple(21.2, axle_distance=0.365, radius=0.064)
-    preset = c2d.robots.engineer()
+    preset = c2d.robots.engineer(flippers=None)
     assert simple.drivetrain.max_torque == pytest.approx(preset.drivetrain.max_torque, rel=0.03)
     assert simple.outline.grouser_height == pytest.approx(preset.outline.grouser_height)
     assert simple.outline.grouser_pitch == pytest.approx(preset.outline.grouser_pitch, rel=1e-3)
@@ -132,6 +135,6 @@ def test_a_terrain_generator_sets_what_it_is_given() -> None:
 
 
 def test_parameters_cannot_be_changed() -> None:
-    robot = c2d.robots.engineer()
+    robot = c2d.robots.engineer(flippers=None)
     with pytest.raises(dataclasses.FrozenInstanceError):
         robot.mass = 1.0  # type: ignore[misc]

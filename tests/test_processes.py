@@ -18,7 +18,9 @@ def final_pose(text: str) -> tuple[float, float, float]:
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork:DeprecationWarning")
 @pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
 def test_every_kind_of_process_finds_the_same_bits(method: str) -> None:
-    scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05), duration=2.0)
+    scenario = c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05), duration=2.0
+    )
     text = scenario.to_json()
     here = final_pose(text)
     with multiprocessing.get_context(method).Pool(2) as pool:
@@ -44,24 +46,32 @@ def test_a_second_interpreter_gets_an_import_error() -> None:
 
 
 EXTREMES = {
-    "no gravity": c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05), gravity=0.0),
+    "no gravity": c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05), gravity=0.0
+    ),
     "ten thousand newton metres": c2d.Scenario(
-        c2d.robots.engineer(), c2d.terrains.step(0.05)
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05)
     ).replace({"robot.drivetrain.max_torque": 1e4}),
-    "a step of ten radii": c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.64)),
+    "a step of ten radii": c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.64)
+    ),
     "a slope of 88 degrees": c2d.Scenario(
-        c2d.robots.engineer(), c2d.terrains.ramp(np.radians(88.0), length=0.05)
+        c2d.robots.engineer(flippers=None), c2d.terrains.ramp(np.radians(88.0), length=0.05)
     ),
     "a post of a millimetre": c2d.Scenario(
-        c2d.robots.engineer(track=c2d.LineOfWheels(3)),
+        c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3)),
         c2d.terrains.from_points(
             [(-2, 0), (0, 0), (0, 0.04), (0.001, 0.04), (0.001, 0), (2, 0)], goal=0.001
         ),
     ),
-    "no friction": c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05, friction=0.0)),
-    "friction of five": c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05, friction=5.0)),
+    "no friction": c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05, friction=0.0)
+    ),
+    "friction of five": c2d.Scenario(
+        c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05, friction=5.0)
+    ),
     "on its nose": c2d.Scenario(
-        c2d.robots.engineer(), c2d.terrains.flat(), start=c2d.Start(angle=-1.5)
+        c2d.robots.engineer(flippers=None), c2d.terrains.flat(), start=c2d.Start(angle=-1.5)
     ),
 }
 

@@ -236,7 +236,7 @@ def test_the_data_set_has_units_and_provenance(run: c2d.Run) -> None:
 
 
 def test_the_data_set_of_a_chain_has_its_shoes() -> None:
-    robot = c2d.robots.engineer(track=c2d.SegmentalTrack())
+    robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack())
     run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=0.5))
     dataset = run.to_xarray()
     assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1, "shoe": 22, "pose": 3}

@@ -6,7 +6,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.scenario import Scenario
 
-ENGINEER = c2d.robots.engineer()
+ENGINEER = c2d.robots.engineer(flippers=None)
 
 
 def chain(**options: object) -> c2d.Robot:

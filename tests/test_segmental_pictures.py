@@ -30,7 +30,7 @@ RUNS: dict[str, tuple[c2d.SegmentalTrack, Any]] = {
 
 
 def simulated(track: Track, terrain: Any = STEP, **fields: Any) -> c2d.Run:
-    return c2d.simulate(c2d.robots.engineer(track=track), terrain, **fields)
+    return c2d.simulate(c2d.robots.engineer(flippers=None, track=track), terrain, **fields)
 
 
 @pytest.fixture(scope="module", params=RUNS)

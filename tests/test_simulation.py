@@ -93,7 +93,7 @@ def test_an_impossible_speed_is_refused_and_changes_nothing(scenario: Scenario, 
     assert np.array_equal(sim.state().position, twin.state().position)
 
 
-@pytest.mark.parametrize("wrong", ["scenario", None, c2d.robots.engineer()])
+@pytest.mark.parametrize("wrong", ["scenario", None, c2d.robots.engineer(flippers=None)])
 def test_what_is_no_scenario_is_refused(wrong: Any) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.Simulation(wrong)

@@ -71,7 +71,9 @@ def test_a_command_and_a_push_go_with_the_snapshot(scenario: Scenario) -> None:
 def test_a_push_beyond_friction_moves_a_standing_robot() -> None:
     ground = c2d.terrains.flat(friction=0.5)
     sim = c2d.Simulation(
-        Scenario(c2d.robots.engineer(), ground, drive=c2d.Drive(speed=0.0), duration=1.0)
+        Scenario(
+            c2d.robots.engineer(flippers=None), ground, drive=c2d.Drive(speed=0.0), duration=1.0
+        )
     )
     sim.advance(0.5)
     limit = 0.5 * sim.scenario.robot.mass * sim.scenario.gravity

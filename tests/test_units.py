@@ -4,9 +4,9 @@ import inspect
 import re
 
 import crawler2d as c2d
-from crawler2d import robot, scenario, terrain, track
+from crawler2d import flippers, gaits, robot, scenario, terrain, track
 from crawler2d._json import Parameters
-from crawler2d._units import FIELDS, METRICS
+from crawler2d._units import METRICS, unit_of
 
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:
@@ -15,10 +15,11 @@ def test_every_metric_has_a_unit(run: c2d.Run) -> None:
 
 def test_units_are_those_of_the_docstrings() -> None:
     documented: dict[str, str] = {}
-    for module in (scenario, robot, terrain, track):
+    for module in (scenario, gaits, robot, flippers, terrain, track):
         for kind in vars(module).values():
             if inspect.isclass(kind) and issubclass(kind, Parameters):
                 text = inspect.getdoc(kind) or ""
                 for names, unit in re.findall(r"^([\w, ]+) : .*\n +\[([^\]]+)\]", text, re.M):
-                    documented |= dict.fromkeys(names.split(", "), unit.replace("-", "1"))
-    assert {name: FIELDS.get(name) for name in documented} == documented
+                    paths = [f"{kind.place}.{name}" for name in names.split(", ")]
+                    documented |= dict.fromkeys(paths, unit.replace("-", "1"))
+    assert {path: unit_of(path) for path in documented} == documented

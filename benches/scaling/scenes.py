@@ -173,4 +173,4 @@ def _over(track: Track, panel: str) -> Scenario:
 
 
 def _on(track: Track, terrain: Lane, duration: float = _SHORT) -> Scenario:
-    return Scenario(c2d.robots.engineer(track=track), terrain, duration=duration)
+    return Scenario(c2d.robots.engineer(flippers=None, track=track), terrain, duration=duration)

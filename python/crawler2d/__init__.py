@@ -4,7 +4,7 @@ One body in the plane, its track as a belt, as wheels or as a mere force, on gro
 Units are SI, angles radians, x forward, y up.
 
 >>> import crawler2d as c2d
->>> robot = c2d.robots.engineer().with_track(c2d.BeltTrack())
+>>> robot = c2d.robots.engineer(flippers=None).with_track(c2d.BeltTrack())
 >>> run = c2d.simulate(robot, c2d.terrains.step(0.05))
 >>> str(run.outcome)
 'cleared'

@@ -11,7 +11,7 @@ import numpy as np
 
 from crawler2d._arrays import frozen_scalar
 from crawler2d._labels import Label, labelled
-from crawler2d._units import FIELDS, METRICS
+from crawler2d._units import METRICS, unit_of
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
@@ -91,8 +91,9 @@ def field_attributes(paths: Sequence[str]) -> dict[str, str]:
         "path": ", ".join(paths),
         "long_name": " and ".join(dict.fromkeys(lasts)).replace("_", " "),
     }
-    if len(paths) == 1 and lasts[0] in FIELDS:
-        attributes["units"] = FIELDS[lasts[0]]
+    unit = unit_of(paths[0]) if len(paths) == 1 else None
+    if unit is not None:
+        attributes["units"] = unit
     return attributes
 
 

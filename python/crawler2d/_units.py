@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["FIELDS", "METRICS"]
+__all__ = ["FIELDS", "METRICS", "unit_of"]
 
 _FIELDS_BY_UNIT = {
     "m": (
@@ -10,11 +10,15 @@ _FIELDS_BY_UNIT = {
         " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
         " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
         " plate_thickness points post prediction_distance"
-        " radius rear_radius rise run stationary_distance thickness tip_thickness track_phase"
-        " wheel_radius width"
+        " radius rear_radius rise root_radius run stationary_distance thickness tip_radius"
+        " tip_thickness track_phase wheel_radius width"
     ),
     "s": "clear_time duration escape_time stop_window time_step",
-    "rad": "angle barrier_yaw clear_angle edge_angle tip_over_angle yaw",
+    "rad": (
+        "angle barrier_yaw clear_angle edge_angle level_angle push_angle reach_angle sweep_angle"
+        " tip_over_angle yaw"
+    ),
+    "rad/s": "rate_limit",
     "kg": "mass track_mass",
     "kg m^2": "moment_of_inertia",
     "m/s": "max_push_speed max_speed speed",
@@ -33,6 +37,14 @@ _FIELDS_BY_UNIT = {
 
 FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in names.split()}
 """Unit of every number of a scenario, by the name of its field."""
+
+_FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
+
+
+def unit_of(path: str) -> str | None:
+    """Look up the unit of the field at a path; None if it is no number."""
+    return _FIELDS_BY_PLACE.get(path, FIELDS.get(path.rpartition(".")[2]))
+
 
 METRICS = {
     "time": "s",

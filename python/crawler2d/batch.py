@@ -61,7 +61,7 @@ def simulate(
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> run = c2d.simulate(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
     >>> run.outcome
     <Outcome.CLEARED: 'cleared'>
     """
@@ -122,7 +122,7 @@ def simulate_many(
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.03))
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03))
     >>> runs = c2d.simulate_many([base, base.replace({"terrain.height": 0.2})], record="summary")
     >>> [str(run.outcome) for run in runs]
     ['cleared', 'tipped_over']

@@ -87,7 +87,7 @@ def compare(
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
     >>> models = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
     >>> found = c2d.compare(base, models, repeats=5, progress=False).sel(model="skids")
     >>> found.difference.item(), found.only_reference.item(), found.p_value.item()

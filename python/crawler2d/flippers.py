@@ -49,10 +49,15 @@ class Flippers(Parameters):
     --------
     >>> import crawler2d as c2d
     >>> arms = Flippers(
-    ...     length=0.34, root_radius=0.064, tip_radius=0.037, mass=0.775, torque_limit=30.0
+    ...     length=0.34,
+    ...     root_radius=0.064,
+    ...     tip_radius=0.037,
+    ...     mass=0.775,
+    ...     ends="both",
+    ...     torque_limit=30.0,
     ... )
     >>> robot = c2d.robots.engineer(flippers=arms)
-    >>> run = c2d.simulate(robot, c2d.terrains.step(0.15), drive=c2d.Drive(gait=c2d.Climb()))
+    >>> run = c2d.simulate(robot, c2d.terrains.step(0.2), drive=c2d.Drive(gait=c2d.Climb()))
     >>> str(run.outcome)
     'cleared'
     """

@@ -19,7 +19,7 @@ class Hold(Parameters):
     angle : float
         [rad] Over the chassis, upwards > 0; of the flippers at both ends.
     schedule : array_like, shape (n, 2), optional
-        [s], [rad] Times from which other angles hold, rising.
+        Times [s], rising, and the angles [rad] that hold from then on.
 
     Examples
     --------

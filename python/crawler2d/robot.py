@@ -162,7 +162,7 @@ class Robot(Parameters):
         Examples
         --------
         >>> import crawler2d as c2d
-        >>> wheels = c2d.robots.engineer(track=c2d.LineOfWheels(3)).wheels()
+        >>> wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3)).wheels()
         >>> wheels["x"].tolist(), wheels["mass"].tolist()
         ([-0.1825, 0.0, 0.1825], [1.6, 1.6, 1.6])
         """

@@ -296,7 +296,7 @@ class Run:
         Examples
         --------
         >>> import crawler2d as c2d
-        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
         >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
         >>> str(run.outcome), str(run.branch(track=c2d.BeltTrack()).outcome)
         ('seized', 'cleared')
@@ -328,7 +328,7 @@ class Run:
         Examples
         --------
         >>> import crawler2d as c2d
-        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
         >>> c2d.simulate(robot, c2d.terrains.step(0.10)).counterfactual().freed
         True
         """

@@ -28,7 +28,7 @@ class Drive(Parameters):
     speed : float
         [m/s] Track speed; above 0 drives towards +x.
     schedule : array_like, shape (n, 2), optional
-        [s], [m/s] Times from which other speeds hold, rising.
+        Times [s], rising, and the speeds [m/s] that hold from then on.
     gait : Hold or Climb, optional
         How the flippers move; None holds them where they start.
 
@@ -211,7 +211,7 @@ class Scenario(Parameters):
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> scenario = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> scenario = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
     >>> scenario.replace({"terrain.height": 0.10}).terrain.height
     0.1
     """

@@ -78,7 +78,7 @@ class Simulation:
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.flat()))
+    >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat()))
     >>> sim.advance(0.5)
     >>> sim.command(speed=0.1)
     >>> sim.advance(1.5)
@@ -185,7 +185,8 @@ class Simulation:
         Examples
         --------
         >>> import crawler2d as c2d
-        >>> sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05)))
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.05)))
         >>> sim.advance(1.0)
         >>> copy = c2d.Simulation.from_snapshot(sim.snapshot())
         >>> for each in (sim, copy):
@@ -250,7 +251,7 @@ class Simulation:
         >>> blade = [(-0.36, 0), (-0.36, 0.02), (-0.35, 0.02), (-0.35, 0)]
         >>> points = [(-2, 0), *blade, (0, 0), (0, 0.1), (2, 0.1)]
         >>> ground = c2d.terrains.from_points(points, goal=0.0)
-        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(2))
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(2))
         >>> sim = c2d.Simulation(c2d.Scenario(robot, ground))
         >>> inside = sim.intrusions()
         >>> inside["bodies"].tolist(), inside["depth"].tolist(), inside["edges"].tolist()

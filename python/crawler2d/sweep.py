@@ -118,7 +118,7 @@ def sweep(
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> base = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.05))
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
     >>> models = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
     >>> table = c2d.sweep(base, {"robot.track": models}, repeats=2, progress=False)
     >>> table.outcome.values.tolist()

@@ -235,7 +235,7 @@ class SegmentalTrack(Parameters):
     Examples
     --------
     >>> import crawler2d as c2d
-    >>> robot = c2d.robots.engineer(track=c2d.SegmentalTrack(shoe_count=36))
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack(shoe_count=36))
     >>> run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=1.0))
     >>> run.metrics["max_pin_gap"] < 1e-4
     True

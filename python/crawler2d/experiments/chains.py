@@ -31,7 +31,7 @@ def chain_models() -> Mapping[str, StudyModel]:
     mapping of str to StudyModel
         Tracks first, then wheels.
     """
-    models = study_models(engineer().outline.axle_distance)
+    models = study_models(engineer(flippers=None).outline.axle_distance)
     taut = StudyModel(track=SegmentalTrack(shoe_count=22, pre_tension=TAUT), source="ours")
     finer = StudyModel(track=SegmentalTrack(shoe_count=44), source="ours")
     return {

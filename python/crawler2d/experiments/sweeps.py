@@ -73,13 +73,13 @@ def robots_of_the_study() -> dict[str, Robot]:
     out. The belly hangs lower, or is out of reach. The motors are twice as strong: a gear wheel
     that hooks into an edge asks more of them than a round one that slides on it.
     """
-    base = engineer()
+    base = engineer(flippers=None)
     strong = replace(base.drivetrain, max_torque=2.0 * base.drivetrain.max_torque)
     return {
         "preset": base,
-        "mass 20 mm up": engineer(center_of_mass=(0.0, 0.04)),
-        "mass 30 mm forward": engineer(center_of_mass=(0.03, 0.02)),
-        "belly at 20 mm": engineer(belly_clearance=0.020),
+        "mass 20 mm up": engineer(flippers=None, center_of_mass=(0.0, 0.04)),
+        "mass 30 mm forward": engineer(flippers=None, center_of_mass=(0.03, 0.02)),
+        "belly at 20 mm": engineer(flippers=None, belly_clearance=0.020),
         "no belly": replace(base, belly=None),
         "torque doubled": replace(base, drivetrain=strong),
     }
@@ -94,11 +94,11 @@ def _obstacles(height: float) -> dict[str, Terrain]:
 
 
 def _base() -> Scenario:
-    return Scenario(engineer(), _obstacles(0.1)["step"], drive=Drive(speed=0.4))
+    return Scenario(engineer(flippers=None), _obstacles(0.1)["step"], drive=Drive(speed=0.4))
 
 
 def _models() -> dict[str, StudyModel]:
-    return study_models(engineer().outline.axle_distance)
+    return study_models(engineer(flippers=None).outline.axle_distance)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
