@@ -227,7 +227,9 @@ def test_the_data_set_has_units_and_provenance(run: c2d.Run) -> None:
     assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1}
     assert dataset["position"].sel(axis="x").values == pytest.approx(run.position[:, 0])
     assert {name: dataset[name].attrs["units"] for name in dataset} == {
-        name: unit for name, unit in UNITS.items() if name not in ("time", "shoe_poses")
+        name: unit
+        for name, unit in UNITS.items()
+        if name != "time" and not name.startswith(("shoe", "flipper"))
     }
     assert dataset.attrs["outcome"] == "cleared"
     assert Scenario.from_json(dataset.attrs["scenario"]) == run.scenario
