@@ -89,7 +89,7 @@ impl Simulation {
             ..DriveState::default()
         };
         let now_pose = self.state.pose(self.dynamics.model());
-        let state = State {
+        let mut state = State {
             center,
             angle: now.chassis_angle,
             velocity: self.state.velocity_at(center),
@@ -98,6 +98,7 @@ impl Simulation {
             shoes: shoes_at_rest(&model, now_pose, now.track_position),
             idlers: idlers_at_rest(&model, now.track_position),
         };
+        state.run_shoes(&model, now.track_speed);
         let mut branch = Self::of(scenario, ground, model, state);
         branch.step = (self.time() / branch.time_step()).round() as u64;
         branch.command = self.command;

@@ -294,3 +294,26 @@ fn without_grousers_it_climbs_as_high_as_the_belt() {
         assert!((shoes / smooth - 1.0).abs() < within);
     }
 }
+
+/// The shoes of a branch run as the belt ran: nothing jerks the robot.
+#[test]
+fn a_chain_takes_over_a_moving_belt_without_a_jerk() {
+    let mut scenario = chained(22);
+    scenario.terrain = slope(0.0, 0.9);
+    let mut belted = scenario.clone();
+    belted.robot.track = belt();
+    let belt = after(&belted, 4.0);
+    let mut chain = belt.branch(&scenario).expect("it fits");
+    let start = chain.reading();
+    assert!((start.velocity.x / 0.4 - 1.0).abs() < 1e-3);
+    let (mut slowest, mut fastest, mut run) = (f64::INFINITY, 0.0_f64, 0.0);
+    for _ in 0..50 {
+        chain.step().expect("finite");
+        let now = chain.reading();
+        (slowest, fastest) = (slowest.min(now.velocity.x), fastest.max(now.velocity.x));
+        run += 0.02 * now.track_speed;
+    }
+    println!("robot {slowest:.4} to {fastest:.4} m/s, chain {run:.4} m/s");
+    assert!(0.38 < slowest && fastest < 0.42);
+    assert!((run / 0.4 - 1.0).abs() < 0.03);
+}
