@@ -135,6 +135,9 @@ impl Dynamics {
 
     /// [N s] What the drive of a chain gives if its motor does not hold the speed.
     fn given(&self, k: usize, phase: &Phase) -> Option<f64> {
+        if !self.chains[k].has_hold() {
+            return Some(0.0);
+        }
         let share = self.motors[k].share()?;
         Some(phase.motor_impulse(share, &self.model))
     }

@@ -312,6 +312,11 @@ impl Chain {
         slope - given.unwrap_or_else(|| self.pull.damper().at(ahead)) * of_drive
     }
 
+    /// Whether the drive has anything to act on.
+    pub(super) fn has_hold(&self) -> bool {
+        self.pull.has_hold()
+    }
+
     /// [N s] What the drive gives in this piece.
     pub(super) fn drive_impulse(&self) -> f64 {
         self.pull.impulses.impulse

@@ -52,7 +52,8 @@ pub(super) struct Grasp {
 }
 
 impl Pull {
-    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`.
+    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`; of a
+    /// chain that has come off there may be none.
     pub(super) fn follow(
         &mut self,
         chain: &ChainOfShoes,
@@ -79,6 +80,10 @@ impl Pull {
                 });
             }
         }
+        if torque <= 0.0 {
+            self.shoes.clear();
+            return;
+        }
         let scale = chain.drive_radius() / torque;
         for grasp in &mut self.shoes {
             grasp.on_shoe = grasp.on_shoe.map(|entry| entry * scale);
@@ -86,6 +91,11 @@ impl Pull {
         }
         let admittance = scale * scale * squares / chain.shoe_mass;
         self.stiffness = 1.0 / (DAMPING * admittance);
+    }
+
+    /// Whether there is a shoe to pull on.
+    pub(super) fn has_hold(&self) -> bool {
+        !self.shoes.is_empty()
     }
 
     /// [m/s] Speed that the drive aims at.
@@ -104,5 +114,58 @@ impl Pull {
         };
         let of = |g: &Grasp| along(&g.on_shoe, shoe(g.shoe)) + along(&g.on_chassis, chassis);
         self.shoes.iter().map(of).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::Tensioner;
+    use crate::outline::{Disc, Envelope, ShoeLoop};
+
+    #[test]
+    fn a_drive_without_a_shoe_behind_it_finds_no_hold() {
+        let end = |x| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.05,
+        };
+        let ends = [end(-0.2), end(0.2)];
+        let chain = ChainOfShoes {
+            number: 0,
+            shoes: 0..22,
+            path: ShoeLoop::new(ends, 22).unwrap(),
+            guide: ends,
+            plate_thickness: 0.003,
+            shoe_mass: 0.1,
+            shoe_inertia: 1e-5,
+            tensioner: Tensioner {
+                pre_tension: 8.0,
+                stiffness: 1000.0,
+                damping: 10.0,
+            },
+            hull: Envelope::new(&ends),
+        };
+        let shoe = |angle: f64| Shoe {
+            center: Vector::new(-0.25, 0.0),
+            angle,
+            twist: Twist::default(),
+        };
+        let state = State {
+            center: Vector::ZERO,
+            angle: 0.0,
+            velocity: Vector::ZERO,
+            angular_velocity: 0.0,
+            drives: Vec::new(),
+            shoes: Vec::new(),
+            idlers: Vec::new(),
+        };
+        let mut pull = Pull::default();
+        // Upwards behind the axle is round the end; downwards faces forwards.
+        for (angle, holds) in [(1.6, true), (-1.6, false)] {
+            let shoes = [shoe(angle)];
+            let along = [shoes[0].along()];
+            pull.follow(&chain, (&shoes, &along), &state, end(-0.2).center);
+            assert_eq!(pull.has_hold(), holds);
+        }
     }
 }
