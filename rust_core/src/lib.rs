@@ -44,22 +44,22 @@ mod track;
 
 pub use batch::{Progress, simulate_many};
 pub use bodies::{ChassisBody, WheelBody};
-pub use chain::{ChainOfShoes, Tensioner};
+pub use chain::{ChainOfShoes, Sprocket, Tensioner};
 pub use contact::Intrusion;
 pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
 pub use dynamics::ChainReading;
 pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use outcome::Outcome;
-pub use outline::{Disc, Gear, Grouser, ShoeLoop};
+pub use outline::{Disc, Gear, Grouser, ShoeLoop, Teeth};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Mount, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
-    BeltTrack, CircumferentialWheels, ContactMethod, Drive, Drivetrain, FieldPattern, ForceSupport,
-    ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA,
-    Scenario, SegmentalTrack, SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain,
-    TorqueSharing, Track, TrackOutline, Wheel,
+    BeltTrack, ChainMechanism, CircumferentialWheels, ContactMethod, Drive, Drivetrain,
+    FieldPattern, ForceSupport, ForceTrack, GearWheel, GrouserBeltTrack, HybridWheels,
+    LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SegmentalTrack, SeizureCriteria, ShoeShape,
+    Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

@@ -4,7 +4,7 @@ use rapier2d_f64::math::{Pose, Vector};
 
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc};
-use crate::robot::{BodyKind, Model, Part, Shape};
+use crate::robot::{Model, Part, Shape};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Profile};
 
@@ -29,8 +29,8 @@ pub(crate) fn start_position(
     let shoes: Vec<Pose> = shoes.collect();
     for part in &model.parts {
         let Touching { discs, segments } = &mut touching[part.lane];
-        if part.kind == BodyKind::Guide {
-            continue; // inside of its chain
+        if part.kind.is_in_chain() {
+            continue;
         }
         discs.extend(part.discs().map(|(_, root)| turned_disc(root)));
         match &part.shape {

@@ -3,6 +3,7 @@
 mod belt;
 mod force;
 mod grouser_belt;
+mod running_gear;
 mod segmental;
 mod wheels;
 
