@@ -118,7 +118,12 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
             draw(turned(gear, run.drive_positions[sample]), _BLACK)
     elif geometry["hull"]:
         # What shoes slide on is no more than a hint behind them.
-        draw(closed(geometry["root_envelope"]), _GUIDE if geometry["shoes"] else _BLACK)
+        if geometry["sprocket"]:
+            draw(turned(geometry["sprocket"], run.drive_positions[sample]), _BLACK)
+            for x, y, radius in geometry["circles"][1:]:
+                draw(circle(x, y, radius), _GUIDE)
+        else:
+            draw(closed(geometry["root_envelope"]), _GUIDE if geometry["shoes"] else _BLACK)
         run_so_far = run.drive_positions[sample, int(geometry["drives"][0])]
         for outline in grousers(geometry, float(run_so_far)):
             draw(outline, _BLACK)

@@ -1,8 +1,8 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    BodyKind, ContactTable, Edge, Event, Ground, Intrusion, Model, Part, Record, Run, Scenario,
-    Shape, SimulationError, Trace, WheelBody,
+    BodyKind, ChainOfShoes, ContactTable, Edge, Event, Ground, Intrusion, Model, Part, Record, Run,
+    Scenario, Shape, SimulationError, Trace, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -318,6 +318,8 @@ pub(crate) fn geometry<'py>(
     result.set_item("gears", gears)?;
     result.set_item("grousers", grousers)?;
     result.set_item("shoes", shoes)?;
+    let sprocket = model.chains.last().map(|chain| sprocket(py, chain));
+    result.set_item("sprocket", sprocket.transpose()?.flatten())?;
     result.set_item("wheels", wheels(py, model)?)?;
     result.set_item("belly", rows(py, &belly))?;
     let [envelope, root_envelope] = model.envelopes(BELT_TURN).map(|points| {
@@ -328,6 +330,27 @@ pub(crate) fn geometry<'py>(
     result.set_item("root_envelope", root_envelope)?;
     result.set_item("goal", ground.goal_of(scenario))?;
     Ok(result)
+}
+
+/// The toothed wheel of a chain as a gear is given: its outline when its drive has not run.
+fn sprocket<'py>(py: Python<'py>, chain: &ChainOfShoes) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let Some(sprocket) = &chain.sprocket else {
+        return Ok(None);
+    };
+    let (sine, cosine) = sprocket.angle(0.0).sin_cos();
+    let outline: Vec<[f64; 2]> = sprocket
+        .teeth
+        .outline(0.5 * chain.plate_thickness)
+        .iter()
+        .map(|p| [cosine * p.x - sine * p.y, sine * p.x + cosine * p.y])
+        .collect();
+    let center = chain.ends[0].center;
+    let drawn = PyDict::new(py);
+    drawn.set_item("center", (center.x, center.y))?;
+    drawn.set_item("radius", sprocket.teeth.drive_radius())?;
+    drawn.set_item("drive", chain.number)?;
+    drawn.set_item("outline", rows(py, &outline))?;
+    Ok(Some(drawn))
 }
 
 /// Wheels of both sides together, as an engine of bodies and joints would hold them.

@@ -182,6 +182,10 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     ]
     for wheel, gear in zip(wheels, gears, strict=False):
         wheel["outline"] = packed(gear["outline"], _SHAPE)
+    sprocket = geometry["sprocket"]
+    if sprocket:  # the first of the wheels in its chain
+        turning = {"radius": _number(sprocket["radius"]), "drive": int(sprocket["drive"])}
+        wheels[0] |= {**turning, "outline": packed(sprocket["outline"], _SHAPE)}
     hull = bool(geometry["hull"])
     envelope = geometry["envelope"]
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
@@ -196,6 +200,7 @@ def _robot(run: Run, geometry: dict[str, Any]) -> dict[str, Any]:
     return {
         "wheels": [] if hull else wheels,
         "ends": wheels if hull else [],
+        "rolling": bool(sprocket),
         "moving": hull and robot.track.kind != "force",
         "grousers": [packed(corners, _SHAPE) for corners in geometry["grousers"]],
         "shoes": _shoes(geometry),

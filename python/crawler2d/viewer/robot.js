@@ -57,7 +57,8 @@ class Robot {
       ctx.save();
       ctx.translate(end.x, end.y);
       ctx.rotate(-moment.way(end.drive) / end.radius);
-      drawWheel(ctx, { radius: 0.8 * end.radius }, colors.track, colors.chassisFill, pixel);
+      const shown = this.rolling ? end : { radius: 0.8 * end.radius };
+      drawWheel(ctx, shown, colors.track, colors.chassisFill, pixel);
       ctx.restore();
     }
     const { length, at, spacing, count } = this.marks;
@@ -76,7 +77,7 @@ class Robot {
     // What shoes slide on is no more than a hint behind them.
     ctx.strokeStyle = this.shoes.length ? colors.chassis : colors.track;
     ctx.lineWidth = (this.shoes.length ? 1 : 2) * pixel;
-    ctx.stroke(this.hull.path);
+    if (!this.rolling) ctx.stroke(this.hull.path);
     this.grousers.forEach((grouser, i) => {
       // They start at the rear end of the lower run, and the belt runs clockwise.
       const way = this.marks.lower - (i / this.grousers.length) * length - moment.way(this.ends[0].drive);

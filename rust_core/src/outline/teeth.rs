@@ -54,7 +54,7 @@ impl Teeth {
     }
 
     /// [m] Radius at which a turn moves the chain by as many pitches as there are teeth.
-    pub(crate) fn drive_radius(&self) -> f64 {
+    pub fn drive_radius(&self) -> f64 {
         self.count as f64 * self.pitch / TAU
     }
 
