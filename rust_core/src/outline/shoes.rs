@@ -17,7 +17,7 @@ use crate::plane::{direction, right_of};
 const PHASES: u32 = 16;
 /// Share of what the pins on a sprocket go out and in by which that is lifted off the lower run: shoes that it
 /// turns down would else lift the robot.
-const LIFT: f64 = 0.25;
+const LIFT: f64 = 0.5;
 
 /// The closed path of a chain, and the chain on it.
 #[derive(Clone, Debug)]
@@ -69,9 +69,9 @@ impl ShoeLoop {
         Self { pitch, ..self }
     }
 
-    /// The teeth of its sprocket, if it has one.
-    pub(crate) fn teeth(&self) -> Option<Teeth> {
-        self.teeth.map(|count| Teeth::new(count, self.pitch))
+    /// The teeth of its sprocket, if it has one, which reach no farther out than `most` [m] where they can.
+    pub(crate) fn teeth(&self, most: f64) -> Option<Teeth> {
+        self.teeth.map(|count| Teeth::new(count, self.pitch, most))
     }
 
     /// [rad] Angle over the chassis of a seat of the sprocket when the chain has not run.

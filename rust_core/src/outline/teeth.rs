@@ -13,8 +13,9 @@ use crate::plane::{direction, left_of, right_of};
 
 /// [pitches] By which a seat is wider than a pin: less lets the polygon of the shoes wedge, ...
 const PLAY: f64 = 0.04;
-/// ... and how far teeth reach beyond the circle of the pins.
-const HEIGHT: f64 = 0.15;
+/// ... and how far teeth reach beyond the circle of the pins, at least and at most: over low ones a chain
+/// jumps.
+const HEIGHTS: [f64; 2] = [0.15, 0.25];
 
 /// The teeth of a sprocket; the middle of a seat lies on its x axis, and chains run clockwise.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub struct Teeth {
     pub pitch: f64,
     /// [m] Radius of the circle of the seated pins.
     pub radius: f64,
+    /// [m] Radius of the circle of the tips.
+    pub(crate) tip_radius: f64,
     /// Round the seat on the x axis: where the pin behind it sits when it is driven, the one ahead when it is
     /// braked, and its own pin, braked and driven.
     seats: [Vector; 4],
@@ -40,12 +43,15 @@ pub(crate) struct Flank {
 }
 
 impl Teeth {
-    pub(crate) fn new(count: usize, pitch: f64) -> Self {
+    /// Teeth that reach out to `most` [m], as far as that is sensible.
+    pub(crate) fn new(count: usize, pitch: f64, most: f64) -> Self {
         let step = TAU / count as f64;
         let radius = 0.5 * pitch / libm::sin(0.5 * step);
         let play = 0.5 * PLAY * pitch / radius;
         let seat = |angle: f64| direction(angle) * radius;
+        let [low, high] = HEIGHTS.map(|height| height * pitch);
         Self {
+            tip_radius: radius + (most - radius).clamp(low, high),
             count,
             pitch,
             radius,
@@ -58,15 +64,10 @@ impl Teeth {
         self.count as f64 * self.pitch / TAU
     }
 
-    /// [m] Radius of the circle of the tips.
-    pub(crate) fn tip_radius(&self) -> f64 {
-        self.radius + HEIGHT * self.pitch
-    }
-
     /// The tooth behind a pin and the one ahead of it; none if it lies beyond `reach` [m] of the tips.
     pub(crate) fn flanks(&self, pin: Vector, reach: f64) -> Option<[Flank; 2]> {
         let out = pin.length();
-        let over = out - self.tip_radius();
+        let over = out - self.tip_radius;
         if over > reach || out == 0.0 {
             return None;
         }
@@ -122,7 +123,7 @@ impl Teeth {
         let step = TAU / self.count as f64;
         let play = 0.5 * PLAY * self.pitch / self.radius;
         let reach = self.pitch + pin_radius;
-        let tip = self.tip_radius() - pin_radius;
+        let tip = self.tip_radius - pin_radius;
         let root = self.radius - pin_radius;
         // A point at a distance from the axle and the pitch, less the pin, from the neighbouring seat.
         let angle_at = |out: f64| {
@@ -164,7 +165,7 @@ mod tests {
     #[test]
     fn a_pin_in_its_seat_touches_the_flank_that_drives_it() {
         for count in [7, 11, 14] {
-            let teeth = Teeth::new(count, 0.04);
+            let teeth = Teeth::new(count, 0.04, 0.0);
             let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
             let step = TAU / count as f64;
             for seat in 0..count {
@@ -180,7 +181,7 @@ mod tests {
     /// The load of a driven pin is along the shoe behind it, that of a braked one along the shoe ahead.
     #[test]
     fn a_flank_pushes_along_the_shoe() {
-        let teeth = Teeth::new(7, 0.0486);
+        let teeth = Teeth::new(7, 0.0486, 0.064);
         let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
         let step = TAU / 7.0;
         let [flank, _] = teeth.flanks(seated(&teeth, play), 0.0).unwrap();
@@ -190,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_pin_swings_past_its_tooth_about_the_neighbour() {
-        let teeth = Teeth::new(7, 0.0486);
+        let teeth = Teeth::new(7, 0.0486, 0.064);
         let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
         let step = TAU / 7.0;
         let last = seated(&teeth, play + step);
@@ -207,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_pin_below_its_seat_is_free_to_go_deeper() {
-        let teeth = Teeth::new(7, 0.0486);
+        let teeth = Teeth::new(7, 0.0486, 0.064);
         for out in [0.9, 0.95, 0.99] {
             let [behind, ahead] = teeth.flanks(Vector::X * teeth.radius * out, 0.0).unwrap();
             assert!(behind.gap > 0.0 && ahead.gap > 0.0);
@@ -217,8 +218,8 @@ mod tests {
 
     #[test]
     fn a_pin_on_a_tip_is_pushed_out() {
-        let teeth = Teeth::new(11, 0.03);
-        let pin = direction(0.5 * TAU / 11.0) * (teeth.tip_radius() - 1e-4);
+        let teeth = Teeth::new(11, 0.03, 1.0);
+        let pin = direction(0.5 * TAU / 11.0) * (teeth.tip_radius - 1e-4);
         let [behind, ahead] = teeth.flanks(pin, 0.0).unwrap();
         let top = if behind.gap < ahead.gap {
             behind

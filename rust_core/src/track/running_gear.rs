@@ -68,9 +68,10 @@ impl RunningGear {
         }
     }
 
-    /// The wheel that drives it: as heavy as the shoes on it, our assumption.
-    pub(super) fn sprocket(path: &ShoeLoop, shoe_mass: f64) -> Option<Sprocket> {
-        let teeth = path.teeth()?;
+    /// The wheel that drives it: as heavy as the shoes on it, our assumption. Its teeth reach no farther out
+    /// than `most` [m], where the tips of the grousers are.
+    pub(super) fn sprocket(path: &ShoeLoop, shoe_mass: f64, most: f64) -> Option<Sprocket> {
+        let teeth = path.teeth(most)?;
         let mass = shoe_mass * teeth.count as f64;
         Some(Sprocket {
             first_seat: path.first_seat(),

@@ -114,7 +114,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             hull: Envelope::new(&ends),
             ends,
             wheels,
-            sprocket: RunningGear::sprocket(&path, shoe_mass),
+            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius),
             path,
         }],
     })

@@ -21,8 +21,9 @@ use rests::Rest;
 pub(super) use rests::Stand;
 use system::{Beside, ChainSystem};
 
-/// Stiffness of the stop of an idler in units of its tensioner's: a millimetre is more than any load.
-const STOP_STIFFNESS: f64 = 1000.0;
+/// Stiffness of the stop of an idler in units of its tensioner's: harder ones hold, but a chain that an obstacle
+/// tightens meets them with blows of kilonewtons.
+const STOP_STIFFNESS: f64 = 100.0;
 
 /// One closed chain.
 pub(super) struct Chain {
