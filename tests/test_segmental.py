@@ -142,7 +142,7 @@ def test_a_sprocket_on_two_lanes_turns_each_chain() -> None:
     run = c2d.simulate(Scenario(chain(mechanism="sprocket"), lanes, duration=5.0))
     assert run.shoe_poses.shape[1] == 44
     assert run.metrics["max_pin_gap"] < 6e-4
-    assert run.track_position[-1] > 1.0
+    assert run.outcome == c2d.Outcome.CLEARED
 
 
 def test_a_belt_takes_over_from_a_chain_and_back() -> None:
