@@ -219,7 +219,8 @@ class SegmentalTrack(Parameters):
     limit of its own at the rear, an idler at the front, road wheels and return rollers on the runs
     between them. Nothing but the flanks of the teeth moves the chain, by its pins. The sprocket has
     the number of teeth that comes nearest to the outline, and the radius that these need; it turns
-    evenly, and so the chain does not. Wheels turn with what they touch.
+    evenly, and so the chain does not. Its teeth take the pins beside the plates. Wheels turn with
+    what they touch.
 
     In both, the front end sits on a spring and a damper, the tensioner, which takes up what the
     polygon of the shoes needs more or less as it runs.

@@ -124,19 +124,24 @@ impl Teeth {
         let play = 0.5 * PLAY * self.pitch / self.radius;
         let reach = self.pitch + pin_radius;
         let tip = self.tip_radius - pin_radius;
-        let root = self.radius - pin_radius;
+        // On the drum, below the inner faces of the plates.
+        let root = self.radius * libm::cos(0.5 * step) - pin_radius;
         // A point at a distance from the axle and the pitch, less the pin, from the neighbouring seat.
         let angle_at = |out: f64| {
             let r = self.radius;
+            if out < r {
+                return play + libm::asin((pin_radius / out).min(1.0));
+            }
             let inner = reach - 2.0 * pin_radius;
             let cosine = (out * out + r * r - inner * inner) / (2.0 * out * r);
             step + play - libm::acos(cosine.clamp(-1.0, 1.0))
         };
-        let flank = (0..POINTS).map(|i| {
-            let out = root + (tip - root) * i as f64 / (POINTS - 1) as f64;
-            (out, angle_at(out).min(0.5 * step))
-        });
-        let flank: Vec<(f64, f64)> = flank.collect();
+        let outs =
+            (0..POINTS).map(|i| self.radius + (tip - self.radius) * i as f64 / (POINTS - 1) as f64);
+        let flank: Vec<(f64, f64)> = std::iter::once(root)
+            .chain(outs)
+            .map(|out| (out, angle_at(out).min(0.5 * step)))
+            .collect();
         let point = |(out, angle): (f64, f64)| direction(angle) * out;
         (0..self.count)
             .flat_map(|tooth| {

@@ -83,9 +83,8 @@ impl RunningGear {
     /// What of it could meet the ground between the shoes, whose tips reach `beyond` [m] its surface: wheels
     /// that turn with what they touch.
     pub(super) fn parts(&self, beyond: f64) -> impl Iterator<Item = Part> {
-        let of = |kind, discs: &[Disc]| {
-            let discs = discs.to_vec().into_iter();
-            discs.map(move |disc| Part {
+        let of = |kind, discs: Vec<Disc>| {
+            discs.into_iter().map(move |disc| Part {
                 kind,
                 shape: Shape::Hull {
                     discs: vec![disc],
@@ -98,9 +97,9 @@ impl RunningGear {
             })
         };
         let [rear, front] = self.ends;
-        of(BodyKind::Sprocket, &[rear])
-            .chain(of(BodyKind::Idler, &[front]))
-            .chain(of(BodyKind::RoadWheel, &self.road_wheels))
-            .chain(of(BodyKind::Roller, &self.rollers))
+        of(BodyKind::Sprocket, vec![rear])
+            .chain(of(BodyKind::Idler, vec![front]))
+            .chain(of(BodyKind::RoadWheel, self.road_wheels.clone()))
+            .chain(of(BodyKind::Roller, self.rollers.clone()))
     }
 }
