@@ -20,14 +20,17 @@ fn toothed(count: u32) -> Scenario {
     scenario
 }
 
+/// A robot on a chain of so many shoes.
+type Build = fn(u32) -> Scenario;
+
 /// Counts of shoes on both mechanisms.
-fn cases() -> impl Iterator<Item = (u32, fn(u32) -> Scenario)> {
-    let of = |(_, build): (&str, fn(u32) -> Scenario)| COUNTS.map(|count| (count, build));
+fn cases() -> impl Iterator<Item = (u32, Build)> {
+    let of = |build: Build| COUNTS.map(|count| (count, build));
     MECHANISMS.into_iter().flat_map(of)
 }
 
 /// Both mechanisms.
-const MECHANISMS: [(&str, fn(u32) -> Scenario); 2] = [("guide", chained), ("sprocket", toothed)];
+const MECHANISMS: [Build; 2] = [chained, toothed];
 
 #[test]
 fn the_engineers_chain_has_its_22_shoes_of_48_mm() {
@@ -101,7 +104,7 @@ fn on_level_ground_speed_and_height_are_the_geometrys() {
 fn the_ground_bears_its_weight_on_the_level_and_on_a_ramp() {
     for (angle, build) in [0.0, 0.35, -0.35]
         .into_iter()
-        .flat_map(|angle| MECHANISMS.map(|(_, build)| (angle, build)))
+        .flat_map(|angle| MECHANISMS.map(|build| (angle, build)))
     {
         let mut scenario = build(22);
         scenario.terrain = slope(angle, 0.9);
@@ -267,7 +270,7 @@ fn no_chain_leaves_its_wheels() {
     stays_on(toothed, 5e-3);
 }
 
-fn stays_on(build: fn(u32) -> Scenario, deepest: f64) {
+fn stays_on(build: Build, deepest: f64) {
     let soak = std::env::var("CRAWLER2D_SOAK").is_ok();
     let starts = if soak { 100 } else { 1 };
     let (mut runs, mut draw) = (0, Draw(7));
