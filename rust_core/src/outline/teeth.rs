@@ -189,8 +189,10 @@ mod tests {
         let teeth = Teeth::new(7, 0.0486, 0.064);
         let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
         let step = TAU / 7.0;
-        let [flank, _] = teeth.flanks(seated(&teeth, play), 0.0).unwrap();
-        let shoe = seated(&teeth, play) - seated(&teeth, play + step);
+        let last = seated(&teeth, play + step);
+        // Just above its seat: in it, the radial flank below touches as well.
+        let shoe = Rotation::new(0.01) * (seated(&teeth, play) - last);
+        let [flank, _] = teeth.flanks(last + shoe, 0.0).unwrap();
         assert!(flank.normal.dot(shoe.normalize()) > 1.0 - 1e-12);
     }
 
