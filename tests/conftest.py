@@ -91,6 +91,18 @@ VARIANTS = {
         c2d.terrains.flat(),
         drive=c2d.Drive(gait=c2d.Hold(0.5, ((0.5, -0.2),))),
     ),
+    "sprocket-step": Scenario(
+        ROBOT.with_track(
+            c2d.SegmentalTrack(
+                mechanism="sprocket",
+                tensioner_stiffness=900.0,
+                tensioner_damping=60.0,
+                road_wheel_count=6,
+                return_roller_count=2,
+            )
+        ),
+        c2d.terrains.step(0.04),
+    ),
     "line-barrier": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(3, wheel=GEAR)),
         c2d.terrains.barrier(0.05, 0.03, edge_radius=0.005),

@@ -13,10 +13,13 @@ def chain(**options: object) -> c2d.Robot:
     return ENGINEER.with_track(c2d.SegmentalTrack(**options))  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("mechanism", ["guide", "sprocket"])
 @pytest.mark.parametrize("shape", ["rectangle", "trapezoid"])
 @pytest.mark.parametrize("count", [22, 36, 44])
-def test_shoes_stay_linked_and_the_robot_as_high_as_built(shape: str, count: int) -> None:
-    robot = chain(shoe_count=count, shoe_shape=shape)
+def test_shoes_stay_linked_and_the_robot_as_high_as_built(
+    mechanism: str, shape: str, count: int
+) -> None:
+    robot = chain(shoe_count=count, shoe_shape=shape, mechanism=mechanism)
     run = c2d.simulate(Scenario(robot, c2d.terrains.flat(), duration=5.0))
     assert run.shoe_poses.shape == (run.time.size, count, 3)
     pitch = _pitch(run)
@@ -38,8 +41,9 @@ def _pitch(run: c2d.Run) -> float:
     return float(np.sum(between * halves) / np.sum(halves * halves))
 
 
-def test_ground_speed_is_the_belts() -> None:
-    run = c2d.simulate(Scenario(chain(), c2d.terrains.flat(), duration=12.0))
+@pytest.mark.parametrize("mechanism", ["guide", "sprocket"])
+def test_ground_speed_is_the_belts(mechanism: str) -> None:
+    run = c2d.simulate(Scenario(chain(mechanism=mechanism), c2d.terrains.flat(), duration=12.0))
     steady = run.time > 4.0
     ground = np.ptp(run.position[steady, 0]) / np.ptp(run.time[steady])
     belt = np.ptp(run.track_position[steady]) / np.ptp(run.time[steady])
@@ -60,8 +64,9 @@ def test_a_tighter_chain_has_more_tension() -> None:
     assert tension(100.0) - tension(50.0) == pytest.approx(50.0, rel=0.2)
 
 
-def test_forces_of_the_ground_bear_the_weight() -> None:
-    robot = chain()
+@pytest.mark.parametrize("mechanism", ["guide", "sprocket"])
+def test_forces_of_the_ground_bear_the_weight(mechanism: str) -> None:
+    robot = chain(mechanism=mechanism)
     run = c2d.simulate(Scenario(robot, c2d.terrains.flat(), duration=6.0))
     contacts = run.contacts
     upwards = contacts["normal_force"] * contacts["normal_y"]
@@ -72,8 +77,9 @@ def test_forces_of_the_ground_bear_the_weight() -> None:
     assert upwards[settled].sum() / samples == pytest.approx(weight, rel=2e-3)
 
 
-def test_the_same_bits_again_and_from_a_snapshot() -> None:
-    scenario = Scenario(chain(), c2d.terrains.step(0.05), duration=3.0)
+@pytest.mark.parametrize("mechanism", ["guide", "sprocket"])
+def test_the_same_bits_again_and_from_a_snapshot(mechanism: str) -> None:
+    scenario = Scenario(chain(mechanism=mechanism), c2d.terrains.step(0.05), duration=3.0)
     first, again = (c2d.simulate(scenario) for _ in range(2))
     assert first.shoe_poses.tobytes() == again.shoe_poses.tobytes()
     half = c2d.Simulation(scenario)
@@ -95,6 +101,16 @@ def test_the_same_bits_again_and_from_a_snapshot() -> None:
         ({"plate_thickness": -1.0}, "robot.track.plate_thickness", "m"),
         ({"pre_tension": 0.0}, "robot.track.pre_tension", "N"),
         ({"pre_tension": float("nan")}, "robot.track.pre_tension", "N"),
+        ({"mechanism": "friction"}, "robot.track.mechanism", "guide, sprocket"),
+        ({"tensioner_stiffness": 0.0}, "robot.track.tensioner_stiffness", "N/m"),
+        ({"tensioner_damping": -1.0}, "robot.track.tensioner_damping", "N s/m"),
+        ({"road_wheel_count": 5}, "robot.track.road_wheel_count", "a guide has no wheels"),
+        ({"return_roller_count": 0}, "robot.track.return_roller_count", "a guide has no wheels"),
+        (
+            {"mechanism": "sprocket", "road_wheel_count": 201},
+            "robot.track.road_wheel_count",
+            "from 0 to 200",
+        ),
     ],
 )
 def test_bad_fields_are_refused_by_name(options: dict[str, object], path: str, rule: str) -> None:
@@ -109,6 +125,24 @@ def test_the_closed_belt_of_a_stop_weighs_as_much() -> None:
     run = c2d.simulate(scenario, counterfactual=True)
     assert run.diagnosis is not None
     assert run.diagnosis.counterfactual is not None
+
+
+def test_only_a_sprocket_slips() -> None:
+    def slip(robot: c2d.Robot) -> float:
+        run = c2d.simulate(Scenario(robot, c2d.terrains.flat(), duration=4.0))
+        return run.metrics["max_sprocket_slip"]
+
+    assert slip(chain()) == 0.0
+    # The play of the teeth is 4 % of the pitch of 48.7 mm, and the polygon makes as much.
+    assert 0.0 < slip(chain(mechanism="sprocket")) < 4e-3
+
+
+def test_a_sprocket_on_two_lanes_turns_each_chain() -> None:
+    lanes = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
+    run = c2d.simulate(Scenario(chain(mechanism="sprocket"), lanes, duration=5.0))
+    assert run.shoe_poses.shape[1] == 44
+    assert run.metrics["max_pin_gap"] < 6e-4
+    assert run.outcome == c2d.Outcome.CLEARED
 
 
 def test_a_belt_takes_over_from_a_chain_and_back() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d._shapes import shoes
+from crawler2d._shapes import pins, shoes, turned
 from crawler2d.track import Track
 
 mpl.use("Agg")
@@ -26,6 +26,7 @@ RUNS: dict[str, tuple[c2d.SegmentalTrack, Any]] = {
     "trapezoids": (c2d.SegmentalTrack(shoe_shape="trapezoid"), STEP),
     "short shoes": (c2d.SegmentalTrack(shoe_count=44), STEP),
     "two lanes": (c2d.SegmentalTrack(), LANES),
+    "sprocket": (c2d.SegmentalTrack(mechanism="sprocket"), STEP),
 }
 
 
@@ -144,6 +145,37 @@ def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
     name = {"rectangle": "a grouser", "trapezoid": "a shoe"}[shape]
     assert f"; {name} bears on it with" in told
     assert "wheel" not in told
+
+
+def test_teeth_stand_between_the_pins_that_are_drawn() -> None:
+    run = simulated(c2d.SegmentalTrack(mechanism="sprocket"), c2d.terrains.flat(), duration=4.0)
+    geometry = _core.geometry(run.scenario.to_json())
+    sprocket = geometry["sprocket"]
+    for sample in range(100, run.time.size, 25):
+        teeth = turned(sprocket, run.drive_positions[sample])
+        places = (pins(run, geometry)[sample] - run.position[sample]) @ rotation(
+            run.chassis_angle[sample]
+        )
+        from_axle = np.hypot(*(places - sprocket["center"]).T)
+        seated = places[(places[:, 0] < sprocket["center"][0]) & (from_axle < 0.0575)]
+        assert len(seated) >= 1
+        # A pin is as thick as the plates, some 3 mm, and keeps its play to the flanks.
+        clear = [distance(place, teeth) for place in seated]
+        assert min(clear) > 1e-3
+        assert max(clear) < 4e-3
+
+
+def rotation(angle: float) -> Any:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def test_the_page_has_sprocket_idler_and_wheels() -> None:
+    run = simulated(c2d.SegmentalTrack(mechanism="sprocket"), duration=0.5)
+    robot = page_of(run)["robot"]
+    assert robot["rolling"]
+    assert len(robot["ends"]) == 2 + 7 + 3
+    assert "outline" in robot["ends"][0]
 
 
 def test_the_guide_is_called_by_its_name() -> None:

@@ -13,14 +13,21 @@ if TYPE_CHECKING:
 
 __all__ = ["sentence"]
 
-_BELT, _BELLY, _GROUSER, _SHOE, _GUIDE = 1, 3, 4, 5, 6
+_BELT, _BELLY, _GROUSER, _SHOE = 1, 3, 4, 5
+_IN_CHAIN = {
+    6: "the guide",
+    7: "the sprocket",
+    8: "the idler",
+    9: "a road wheel",
+    10: "a return roller",
+}
 _NAMES = {
     _BELT: "the belt",
     2: "the skid",
     _BELLY: "the belly",
     _GROUSER: "a grouser",
     _SHOE: "a shoe",
-    _GUIDE: "the guide",
+    **_IN_CHAIN,
 }
 """What a reader calls the bodies that are no wheels, by their code in `body_kind`."""
 _LEAST_SHARE = 0.02
@@ -112,7 +119,7 @@ def _name(d: Diagnosis, body: int) -> str:
 def _is_chain(d: Diagnosis) -> bool:
     """Tell shoes from other bodies by what bears: nothing gets inside a belt with grousers."""
     kinds = d.contacts["body_kind"]
-    told = (_SHOE, _GUIDE) if d.intrusion is None else (_GROUSER, _SHOE, _GUIDE)
+    told = [_SHOE, *_IN_CHAIN] if d.intrusion is None else [_GROUSER, _SHOE, *_IN_CHAIN]
     return bool(np.isin(kinds, told).any())
 
 

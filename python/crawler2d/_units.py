@@ -24,12 +24,14 @@ _FIELDS_BY_UNIT = {
     "m/s": "max_push_speed max_speed speed",
     "m/s^2": "gravity max_acceleration max_deceleration",
     "N": "pre_tension",
+    "N/m": "tensioner_stiffness",
+    "N s/m": "tensioner_damping",
     "N m": "max_torque",
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
         " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
-        " shoe_count skid_friction"
+        " return_roller_count road_wheel_count shoe_count skid_friction"
         " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
         " wheel_count"
     ),
@@ -70,5 +72,6 @@ METRICS = {
     "max_track_tension": "N",
     "max_pin_gap": "m",
     "max_guide_penetration": "m",
+    "max_sprocket_slip": "m",
 }
 """Unit of every metric of a run."""

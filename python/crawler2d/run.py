@@ -84,7 +84,9 @@ class Run:
     `intrusion_force`        N      its mean normal force
     `max_track_tension`      N      largest force in a pin of a chain of shoes; 0 without one
     `max_pin_gap`            m      farthest that a pin was off
-    `max_guide_penetration`  m      deepest overlap of a shoe with the guide
+    `max_guide_penetration`  m      deepest overlap of a shoe with guide, wheels or teeth
+    `max_sprocket_slip`      m      farthest that a chain ran ahead of its sprocket or behind; some
+                                    hundredths of a pitch are the play of the teeth
     =======================  =====  ===============================================================
 
     The track distance exceeds the path length by the slip; on gear wheels also because these roll

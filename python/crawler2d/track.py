@@ -205,18 +205,29 @@ class GrouserBeltTrack(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentalTrack(Parameters):
-    """A chain of rigid shoes linked by pins, on a guide of the chassis (section 2.3, Figs. 9, 10).
+    """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figs. 9, 10).
 
     Every shoe is a body. The outer faces of the plates run along the roots of the outline, the pins
-    in the middle of the plates, so that the robot stands as high as the built one. The plates slide
-    on the guide without friction; its front end sits on a spring and a damper, the tensioner, which
-    takes up what the polygon of the shoes needs more or less as it runs. The drive pulls on the
-    shoes round the rear end, with the same forces back on the chassis: a sprocket without teeth,
-    which counts its shoes. Grousers are those of `robot.outline`, with a `grouser_height` of 0
-    there are none.
+    in the middle of the plates, so that the robot stands as high as the built one. Grousers are
+    those of `robot.outline`, with a `grouser_height` of 0 there are none.
+
+    *Guide*: the plates slide on a guide of the outline's shape without friction. The drive pulls on
+    the shoes round its rear end, with the same forces back on the chassis: a sprocket without
+    teeth, which counts its shoes.
+
+    *Sprocket*: the mechanism that one sees. A toothed wheel with a spin, an inertia and a torque
+    limit of its own at the rear, an idler at the front, road wheels and return rollers on the runs
+    between them. Nothing but the flanks of the teeth moves the chain, by its pins. The sprocket has
+    the number of teeth that comes nearest to the outline, and the radius that these need; it turns
+    evenly, and so the chain does not. Its teeth take the pins beside the plates. Wheels turn with
+    what they touch.
+
+    In both, the front end sits on a spring and a damper, the tensioner, which takes up what the
+    polygon of the shoes needs more or less as it runs.
 
     A run has the forces and gaps of the pins (`Run.track_tension`, `max_track_tension`,
-    `max_pin_gap`), the places of its shoes (`Run.shoe_poses`), and may end as *detracked*.
+    `max_pin_gap`), the places of its shoes (`Run.shoe_poses`), what the chain runs ahead of its
+    sprocket or behind (`max_sprocket_slip`), and may end as *detracked*.
 
     Parameters
     ----------
@@ -224,6 +235,8 @@ class SegmentalTrack(Parameters):
         Shoes of one chain, 3 to 400; None takes the whole number that comes nearest to the
         outline's `grouser_pitch`: 22 for the Engineer. A shoe may be half as long as the distance
         of the axles.
+    mechanism : {"guide", "sprocket"}
+        What the chain runs on and what drives it.
     shoe_shape : {"rectangle", "trapezoid"}
         A flat plate with a grouser on its middle, or one body that tapers from the pins to the tip.
     plate_thickness : float, optional
@@ -231,6 +244,17 @@ class SegmentalTrack(Parameters):
     pre_tension : float, optional
         [N] Force of the tensioner of one track. None takes a fortieth of the robot's weight, our
         assumption: much more lifts the robot over the corners of the polygon.
+    tensioner_stiffness : float, optional
+        [N/m] Stiffness of that tensioner. None lets a tenth of the pitch take all its force.
+    tensioner_damping : float, optional
+        [N s/m] Its damping. None is critical for the mass of one track.
+    road_wheel_count : int, optional
+        Wheels on the lower run of one track between sprocket and idler, 0 to 200. None takes as
+        many as leave at most a pitch between them: shoes sink where more is free. Only with a
+        sprocket.
+    return_roller_count : int, optional
+        Rollers under the upper run of one track, 0 to 200. None takes as many as leave at most two
+        pitches between them. Only with a sprocket.
 
     Examples
     --------
@@ -239,15 +263,22 @@ class SegmentalTrack(Parameters):
     >>> run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=1.0))
     >>> run.metrics["max_pin_gap"] < 1e-4
     True
+    >>> c2d.SegmentalTrack(mechanism="sprocket", road_wheel_count=5).shoe_shape
+    'rectangle'
     """
 
     kind: ClassVar[str] = "segmental"
     place: ClassVar[str] = "robot.track"
 
     shoe_count: int | None = None
+    mechanism: Literal["guide", "sprocket"] = "guide"
     shoe_shape: Literal["rectangle", "trapezoid"] = "rectangle"
     plate_thickness: float | None = None
     pre_tension: float | None = None
+    tensioner_stiffness: float | None = None
+    tensioner_damping: float | None = None
+    road_wheel_count: int | None = None
+    return_roller_count: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

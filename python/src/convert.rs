@@ -1,8 +1,8 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    ContactTable, Edge, Event, Ground, Intrusion, Model, Mount, Part, Record, Run, Scenario, Shape,
-    SimulationError, Trace, Vector, WheelBody,
+    ChainOfShoes, ContactTable, Edge, Event, Ground, Intrusion, Model, Mount, Part, Record, Run,
+    Scenario, Shape, SimulationError, Trace, Vector, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -279,7 +279,7 @@ pub(crate) fn geometry<'py>(
         let drawn = track(py, model, (Mount::Flipper(k), near))?;
         drawn.set_item("pivot", (flipper.pivot.x, flipper.pivot.y))?;
         drawn.set_item("arm", (flipper.arm.x, flipper.arm.y))?;
-        drawn.set_item("sign", flipper.sign)?;
+        drawn.set_item("sign", flipper.sign())?;
         flippers.append(drawn)?;
     }
     let lanes = PyList::empty(py);
@@ -289,6 +289,8 @@ pub(crate) fn geometry<'py>(
     result.set_item("lanes", lanes)?;
     result.set_item("edges", edges(py, &ground.edges())?)?;
     result.set_item("shoes", shoes)?;
+    let sprocket = model.chains.last().map(|chain| sprocket(py, chain));
+    result.set_item("sprocket", sprocket.transpose()?.flatten())?;
     result.set_item("wheels", wheels(py, model)?)?;
     let none = || points(py, &[]).into_any();
     result.set_item("belly", belly.get_item(0).unwrap_or_else(|_| none()))?;
@@ -357,6 +359,24 @@ fn track<'py>(
 fn points<'py>(py: Python<'py>, points: &[Vector]) -> Bound<'py, PyArray2<f64>> {
     let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
     rows(py, &points)
+}
+
+/// The toothed wheel of a chain as a gear is given: its outline when its drive has not run.
+fn sprocket<'py>(py: Python<'py>, chain: &ChainOfShoes) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let Some(sprocket) = &chain.sprocket else {
+        return Ok(None);
+    };
+    let (sine, cosine) = sprocket.angle(0.0).sin_cos();
+    let turned = |p: &Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+    let outline = sprocket.teeth.outline(0.5 * chain.plate_thickness);
+    let outline: Vec<Vector> = outline.iter().map(turned).collect();
+    let center = chain.ends[0].center;
+    let drawn = PyDict::new(py);
+    drawn.set_item("center", (center.x, center.y))?;
+    drawn.set_item("radius", sprocket.teeth.drive_radius())?;
+    drawn.set_item("drive", chain.number)?;
+    drawn.set_item("outline", points(py, &outline))?;
+    Ok(Some(drawn))
 }
 
 /// Wheels of both sides together, as an engine of bodies and joints would hold them.

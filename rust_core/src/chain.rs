@@ -5,10 +5,10 @@ use std::ops::Range;
 use rapier2d_f64::math::Vector;
 
 use crate::contact::Running;
-use crate::outline::{Disc, Envelope, ShoeLoop};
+use crate::outline::{Disc, Envelope, ShoeLoop, Teeth};
 use crate::robot::Model;
 
-/// A closed chain of shoes round a guide of the chassis.
+/// A closed chain of shoes round a guide, or round sprocket and idler.
 #[derive(Clone, Debug)]
 pub struct ChainOfShoes {
     /// Its own number.
@@ -17,8 +17,12 @@ pub struct ChainOfShoes {
     pub shoes: Range<usize>,
     /// Its path along the pins, and how far these are from each other.
     pub path: ShoeLoop,
-    /// The ends of the guide that the plates slide on, rear first.
-    pub guide: [Disc; 2],
+    /// The ends of the guide that the plates slide on, or the drum of the sprocket and the idler: rear first.
+    pub ends: [Disc; 2],
+    /// Road wheels and return rollers between them.
+    pub wheels: Vec<Disc>,
+    /// What drives it; none pulls on the shoes at the rear end of a guide.
+    pub sprocket: Option<Sprocket>,
     /// [m] Thickness of the plates; the pins lie in their middle.
     pub plate_thickness: f64,
     /// [kg] Mass of a shoe.
@@ -27,8 +31,26 @@ pub struct ChainOfShoes {
     pub shoe_inertia: f64,
     /// What holds the front end out.
     pub tensioner: Tensioner,
-    /// The guide's outline.
+    /// The hull of its ends.
     pub(crate) hull: Envelope,
+}
+
+/// The wheel that drives a chain with its teeth.
+#[derive(Clone, Debug)]
+pub struct Sprocket {
+    /// Its teeth; they turn about the centre of the rear end.
+    pub teeth: Teeth,
+    /// [rad] Angle over the chassis of one of its seats when it has not turned.
+    pub first_seat: f64,
+    /// [kg m^2] Moment of inertia about its axle.
+    pub inertia: f64,
+}
+
+impl Sprocket {
+    /// [rad] Angle over the chassis when it has moved the chain so far [m]; it drives forwards clockwise.
+    pub fn angle(&self, run: f64) -> f64 {
+        self.first_seat - run / self.teeth.drive_radius()
+    }
 }
 
 /// A spring and a damper that push the front end of a guide along the chassis; it weighs nothing.
@@ -40,14 +62,24 @@ pub struct Tensioner {
     pub stiffness: f64,
     /// [N s/m] Damping.
     pub damping: f64,
+    /// [m] How far it can be pressed in before it meets a stop; a guide bears what goes beyond.
+    pub stop: f64,
 }
 
 impl ChainOfShoes {
     /// [m] Radius at which the drive pulls: a turn moves the chain by as many pitches as it takes shoes to go
     /// round.
     pub(crate) fn drive_radius(&self) -> f64 {
+        if let Some(sprocket) = &self.sprocket {
+            return sprocket.teeth.drive_radius();
+        }
         let half = 0.5 * self.path.pitch;
-        half / libm::atan(half / (self.guide[0].radius + 0.5 * self.plate_thickness))
+        half / libm::atan(half / (self.ends[0].radius + 0.5 * self.plate_thickness))
+    }
+
+    /// [kg m^2] Moment of inertia of its sprocket, if there is one.
+    fn sprocket_inertia(&self) -> f64 {
+        self.sprocket.as_ref().map_or(0.0, |s| s.inertia)
     }
 }
 
@@ -74,10 +106,15 @@ impl Model {
         let of_shoes: f64 = places
             .map(|((shoe, inertia), place)| inertia + shoe * about(place))
             .sum();
-        self.moment_of_inertia = locked - of_shoes - mass * about(self.center_of_mass);
+        let of_sprockets: f64 = chains.iter().map(ChainOfShoes::sprocket_inertia).sum();
+        let of_chassis = mass * about(self.center_of_mass);
+        self.moment_of_inertia = locked - of_shoes - of_chassis - of_sprockets;
         self.mass = mass;
         // The first drives are those of the chains; the others keep what turns with them.
         self.drive_masses[..chains.len()].fill(0.0);
+        if let Some(sprocket) = chains.first().and_then(|chain| chain.sprocket.as_ref()) {
+            self.drive_radius = sprocket.teeth.drive_radius();
+        }
         let of_drives: f64 = (0..self.drives).map(|k| self.drive_inertia(k)).sum();
         self.moment_of_inertia -= of_drives;
         self.chains = chains;
@@ -132,6 +169,7 @@ impl Model {
         let about = |point: Vector| (point - whole.center_of_mass).length_squared();
         let mut inertia = self.locked_inertia() + self.mass * about(self.center_of_mass);
         for (k, chain) in self.chains.iter().enumerate() {
+            inertia += chain.sprocket_inertia();
             for place in &running.shoes[chain.shoes.clone()] {
                 inertia += chain.shoe_inertia + chain.shoe_mass * about(place.translation);
             }

@@ -27,8 +27,8 @@ pub struct Flipper {
     pub torque_limit: f64,
     /// [rad] At time 0, upwards > 0.
     pub start_angle: f64,
-    /// 1 at the front, -1 at the rear, where upwards is clockwise.
-    pub sign: f64,
+    /// Where it is.
+    pub end: End,
 }
 
 /// Where a flipper is on the chassis.
@@ -60,10 +60,15 @@ impl Flipper {
                 rate_limit: flippers.rate_limit,
                 torque_limit: 2.0 * flippers.torque_limit,
                 start_angle: flippers.angle,
-                sign,
+                end,
             }
         };
         flippers.ends().map(arm).collect()
+    }
+
+    /// 1 at the front, -1 at the rear, where upwards is clockwise.
+    pub fn sign(&self) -> f64 {
+        self.end.sign()
     }
 
     /// [kg] What moves at the speed of its track where that has a drive of its own: a tenth, our assumption.

@@ -46,7 +46,7 @@ mod track;
 
 pub use batch::{Progress, simulate_many};
 pub use bodies::{ChassisBody, WheelBody};
-pub use chain::{ChainOfShoes, Tensioner};
+pub use chain::{ChainOfShoes, Sprocket, Tensioner};
 pub use contact::Intrusion;
 pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
 pub use dynamics::ChainReading;
@@ -54,14 +54,14 @@ pub use error::{Error, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use flipper::Flipper;
 pub use outcome::Outcome;
-pub use outline::{Disc, Gear, Grouser, ShoeLoop};
+pub use outline::{Disc, Gear, Grouser, ShoeLoop, Teeth};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Mount, Part, Shape};
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
-    BeltTrack, CircumferentialWheels, Climb, ContactMethod, Drive, Drivetrain, End, Ends,
-    FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold,
-    HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SegmentalTrack,
+    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Drive, Drivetrain, End,
+    Ends, FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack,
+    Hold, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SegmentalTrack,
     SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing, Track,
     TrackOutline, Wheel,
 };

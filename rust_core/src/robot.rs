@@ -57,6 +57,26 @@ pub enum BodyKind {
     Shoe = 5,
     /// The guide that a chain slides on.
     Guide = 6,
+    /// The toothed wheel that drives a chain.
+    Sprocket = 7,
+    /// The wheel at the other end, on the tensioner.
+    Idler = 8,
+    /// A wheel that the lower run of a chain carries.
+    RoadWheel = 9,
+    /// A return roller, which carries the upper run.
+    Roller = 10,
+}
+
+impl BodyKind {
+    /// Whether a chain of shoes runs round it.
+    pub(crate) fn is_in_chain(self) -> bool {
+        match self {
+            Self::Guide | Self::Sprocket | Self::Idler | Self::RoadWheel | Self::Roller => true,
+            Self::Wheel | Self::Belt | Self::Skid | Self::Belly | Self::Grouser | Self::Shoe => {
+                false
+            }
+        }
+    }
 }
 
 /// A shape on a body of the robot that meets the ground.

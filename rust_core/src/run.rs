@@ -87,13 +87,15 @@ pub struct Metrics {
     pub max_track_tension: f64,
     /// [m] Largest gap of a pin.
     pub max_pin_gap: f64,
-    /// [m] Deepest penetration of a chain's guide by a shoe.
+    /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe.
     pub max_guide_penetration: f64,
+    /// [m] Farthest that a chain has run ahead of its sprocket or stayed behind; 0 without a sprocket.
+    pub max_sprocket_slip: f64,
 }
 
 impl Metrics {
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 23] {
+    pub fn entries(&self) -> [(&'static str, f64); 24] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -118,6 +120,7 @@ impl Metrics {
             ("max_track_tension", self.max_track_tension),
             ("max_pin_gap", self.max_pin_gap),
             ("max_guide_penetration", self.max_guide_penetration),
+            ("max_sprocket_slip", self.max_sprocket_slip),
         ]
     }
 }
@@ -261,6 +264,7 @@ fn advance(
         max_track_tension: seen.max_track_tension,
         max_pin_gap: seen.max_pin_gap,
         max_guide_penetration: seen.max_guide_penetration,
+        max_sprocket_slip: seen.max_sprocket_slip,
     };
     Ok(Run {
         outcome,

@@ -1,6 +1,6 @@
 //! A robot on lanes: what lies under the left track, the right one, and the belly between them.
 
-use crate::chain::{ChainOfShoes, Tensioner};
+use crate::chain::{ChainOfShoes, Sprocket, Tensioner};
 use crate::error::ScenarioError;
 use crate::robot::{BodyKind, Model, Mount, Part};
 use crate::scenario::Robot;
@@ -82,7 +82,12 @@ impl Model {
                     pre_tension: 0.5 * chain.tensioner.pre_tension,
                     stiffness: 0.5 * chain.tensioner.stiffness,
                     damping: 0.5 * chain.tensioner.damping,
+                    ..chain.tensioner
                 },
+                sprocket: chain.sprocket.clone().map(|whole| Sprocket {
+                    inertia: 0.5 * whole.inertia,
+                    ..whole
+                }),
                 shoe_mass: 0.5 * chain.shoe_mass,
                 shoe_inertia: 0.5 * chain.shoe_inertia,
                 ..chain.clone()

@@ -5,7 +5,7 @@ use rapier2d_f64::math::{Pose, Vector};
 use crate::contact::Running;
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc};
-use crate::robot::{BodyKind, Model, Shape};
+use crate::robot::{Model, Shape};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Profile};
 
@@ -26,8 +26,8 @@ pub(crate) fn start_position(
     let mut touching = vec![Touching::default(); ground.lanes.len()];
     for part in &model.parts {
         let Touching { discs, segments } = &mut touching[part.lane];
-        if part.kind == BodyKind::Guide {
-            continue; // inside of its chain
+        if part.kind.is_in_chain() {
+            continue;
         }
         let (mount, run) = (
             running.mounted(part.mount, Pose::IDENTITY),

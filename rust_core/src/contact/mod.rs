@@ -40,7 +40,7 @@ impl Running {
     /// All of a robot at time 0, when its tracks have run by `track_phase` [m].
     pub(crate) fn at_start(model: &Model, track_phase: f64) -> Self {
         let places = |chain: &ChainOfShoes| chain.path.places(track_phase);
-        let mounted = |arm: &Flipper| arm.mounted(arm.sign * arm.start_angle, model.drive_radius);
+        let mounted = |arm: &Flipper| arm.mounted(arm.sign() * arm.start_angle, model.drive_radius);
         Self {
             drives: vec![track_phase; model.drives],
             shoes: model.chains.iter().flat_map(places).collect(),

@@ -1,7 +1,7 @@
 //! What a robot's chains of shoes add to the equations of motion.
 
 use super::Dynamics;
-use super::chain::Chain;
+use super::chain::{Chain, Stand};
 use super::row::{Link, Row};
 use super::solve::Phase;
 use super::state::{State, Twist};
@@ -17,9 +17,11 @@ pub struct ChainReading {
     pub tension: f64,
     /// [m] Largest gap of a pin.
     pub pin_gap: f64,
-    /// [m] Deepest penetration of the guide by a shoe.
+    /// [m] Deepest penetration of guide, wheels or teeth by a shoe.
     pub guide_penetration: f64,
-    /// Whether a shoe has left the guide for good.
+    /// [m] How far chain and sprocket have run apart.
+    pub sprocket_slip: f64,
+    /// Whether a shoe has left the guide for good, or the chain its wheels.
     pub is_off: bool,
 }
 
@@ -32,9 +34,10 @@ impl Dynamics {
                 reading.tension = reading.tension.max(force);
                 reading.pin_gap = reading.pin_gap.max(gap);
             }
+            reading.sprocket_slip = reading.sprocket_slip.max(chain.sprocket_slip());
             reading.is_off |= chain.is_off;
         }
-        let on_guide = |row: &&Row| matches!(row.link, Link::Guide { .. });
+        let on_guide = |row: &&Row| matches!(row.link, Link::Guide { .. } | Link::Tooth { .. });
         let gaps = self.rows.iter().filter(on_guide).map(|row| row.gap);
         reading.guide_penetration = gaps.fold(0.0, |deepest, gap| deepest.max(-gap));
         reading
@@ -51,32 +54,35 @@ impl Dynamics {
         state.velocity * self.model.mass + of_shoes + self.momentum_of_flippers(state)
     }
 
-    /// Adds a row for each place where a shoe rests on the guide, or nearly, in the middle of the step.
+    /// Adds a row for each place where a shoe rests on guide, wheel or tooth, or nearly, in the middle of the
+    /// step.
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64) {
         let pose = state.pose_after(half, &self.model);
         for chain in &mut self.chains {
             let first = chain.rule.shoes.start;
             let place_of = |i: usize| state.shoes[first + i].after(half).pose();
             let idler = &state.idlers[chain.rule.number];
-            let travel = idler.travel + idler.rate * half;
             let number = chain.rule.number;
-            let memory = std::mem::take(&mut chain.memory);
-            chain.rests(pose, travel, place_of, NEAR_GUIDE, |rest| {
-                let last = memory[rest.shoe][rest.place];
+            let stand = Stand {
+                chassis: pose,
+                travel: idler.travel + idler.rate * half,
+                run: state.drives[number].position + state.track_speed(&self.model, number) * half,
+            };
+            chain.rests(stand, place_of, NEAR_GUIDE, |chain, rest| {
                 let of = (first + rest.shoe, number);
-                self.rows.push(Row::on_guide(&rest, last, state, of, half));
+                let last = chain.recall(&rest);
+                self.rows.push(Row::at_rest(&rest, last, state, of, half));
             });
-            chain.memory = memory;
         }
     }
 
     /// Keeps what the rests did, which come behind the contacts with the ground.
     pub(super) fn remember_rests(&mut self, contacts: usize) {
         for chain in &mut self.chains {
-            chain.memory.fill(Default::default());
+            chain.forget_rests();
         }
         for row in &self.rows[contacts..] {
-            if let Link::Guide { shoe, chain } = row.link {
+            if let Link::Guide { shoe, chain } | Link::Tooth { shoe, chain } = row.link {
                 self.chains[chain].remember_rest(shoe % self.shoes_a_chain, row);
             }
         }
@@ -129,6 +135,9 @@ impl Dynamics {
 
     /// [N s] What the drive of a chain gives if its motor does not hold the speed.
     fn given(&self, k: usize, phase: &Phase) -> Option<f64> {
+        if !self.chains[k].has_hold() {
+            return Some(0.0);
+        }
         let share = self.motors[k].share()?;
         Some(phase.motor_impulse(share, &self.model))
     }
@@ -151,8 +160,11 @@ impl Dynamics {
             self.system.set_of_chassis(rows);
         }
         let (velocity, turn) = self.system.solve()?;
-        for chain in &mut self.chains {
+        for (chain, spin) in self.chains.iter_mut().zip(&mut self.system.spins) {
             chain.solve([velocity.x, velocity.y, turn]);
+            if chain.has_sprocket() {
+                spin.value = chain.spin;
+            }
         }
         Some((velocity, turn))
     }
@@ -199,8 +211,10 @@ impl Dynamics {
             let chain = &mut self.chains[k];
             let of_chain = chain.follow_velocities(state, phase.set_point, given);
             off = off.max(of_chain);
-            state.drives[k].spin =
-                state.angular_velocity - chain.speed(state) / self.model.drive_radius;
+            if !chain.has_sprocket() {
+                state.drives[k].spin =
+                    state.angular_velocity - chain.speed(state) / self.model.drive_radius;
+            }
         }
         off
     }
@@ -215,7 +229,8 @@ impl Dynamics {
     ) -> f64 {
         let of_chain = |k: usize| {
             let given = self.given(k, phase);
-            self.chains[k].slope(state, *change, (phase.set_point, given), share)
+            let moved = (*change, self.system.spins[k].change);
+            self.chains[k].slope(state, moved, (phase.set_point, given), share)
         };
         (0..self.chains.len()).map(of_chain).sum()
     }

@@ -6,6 +6,7 @@
 //! energy.
 
 use super::Dynamics;
+use super::chain::Chain;
 use super::direct::Damper;
 use super::row::Row;
 use super::solve::{AGREEMENT, Phase};
@@ -102,7 +103,8 @@ impl Dynamics {
             self.change_shoes(state);
             self.change_flippers(state, &change);
             for (k, spin) in self.system.spins.iter_mut().enumerate() {
-                let is_free = self.motors[k].share().is_some();
+                let of_sprocket = self.chains.get(k).is_some_and(Chain::has_sprocket);
+                let is_free = self.motors[k].share().is_some() || of_sprocket;
                 spin.change = if is_free {
                     spin.value - state.drives[k].spin
                 } else {

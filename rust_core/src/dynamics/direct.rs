@@ -418,6 +418,10 @@ impl Dynamics {
                 let back = [force.reaction(), action.reaction()];
                 self.chains[chain].add_rest(shoe % self.shoes_a_chain, on_body, back, damper);
             }
+            Link::Tooth { shoe, chain } => {
+                let back = [force.reaction(), action.reaction()];
+                self.chains[chain].add_tooth(shoe % self.shoes_a_chain, on_body, back, damper);
+            }
         }
     }
 

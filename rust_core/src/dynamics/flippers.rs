@@ -17,6 +17,7 @@ use super::solve::{Action, Phase};
 use super::state::{State, Twist};
 use crate::flipper::Flipper;
 use crate::plane::left_of;
+use crate::scenario::End;
 
 /// The arms at one end in the equations of motion.
 pub(super) struct Arm {
@@ -27,7 +28,7 @@ pub(super) struct Arm {
     /// [m] From the chassis' centre of mass to the pivot, ...
     pivot: Vector,
     /// [m] ... and from there to its own, in the middle of the step.
-    arm: Vector,
+    center: Vector,
     /// Its velocity in this piece as it would be without the pivot.
     free: Twist,
 }
@@ -40,7 +41,7 @@ impl Arm {
             motor: if has_motor { Motor::Holds } else { Motor::Free },
             rate: 0.0,
             pivot: Vector::ZERO,
-            arm: Vector::ZERO,
+            center: Vector::ZERO,
             free: Twist::default(),
         }
     }
@@ -57,7 +58,7 @@ impl Arm {
 
     /// [m/s] Velocity of its centre of mass.
     fn velocity(&self, chassis: Twist, rate: f64) -> Vector {
-        chassis.at(self.pivot) + rate * left_of(self.arm)
+        chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
     /// [N m s] What its motor has given at a share of its limit.
@@ -68,7 +69,7 @@ impl Arm {
     /// Its inertia along x, along y and in turn, and its motor: how velocities count, and the impulses
     /// that belong to them.
     fn dampers(&self, phase: &Phase) -> [(Action, Damper); 4] {
-        let [pivot, arm] = [self.pivot, self.arm].map(left_of);
+        let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {
             mass,
             moment_of_inertia: inertia,
@@ -111,12 +112,8 @@ impl Dynamics {
     pub(crate) fn command_flippers(&mut self, state: &State, angles: [f64; 2]) {
         let dt = self.solver.time_step;
         for (k, arm) in self.flippers.iter_mut().enumerate() {
-            let target = if arm.rule.sign > 0.0 {
-                angles[0]
-            } else {
-                angles[1]
-            };
-            let way = arm.rule.sign * target - state.over_chassis(k);
+            let target = angles[usize::from(arm.rule.end == End::Rear)];
+            let way = arm.rule.sign() * target - state.over_chassis(k);
             arm.rate = (way / dt).clamp(-arm.rule.rate_limit, arm.rule.rate_limit);
         }
     }
@@ -126,7 +123,7 @@ impl Dynamics {
         let center = self.model.center_of_mass;
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
             let angles = [state.moved(half).1, turn.angle + turn.rate * half];
-            [arm.pivot, arm.arm] = arm.rule.spokes(center, angles);
+            [arm.pivot, arm.center] = arm.rule.spokes(center, angles);
         }
     }
 
@@ -236,7 +233,7 @@ impl Dynamics {
         }
         // What the contacts have not, the motor has changed of its moment of momentum about the pivot.
         let gained = arm.velocity(state.twist(), rate) - arm.free.velocity;
-        let of_arm = arm.rule.mass * left_of(arm.arm).dot(gained)
+        let of_arm = arm.rule.mass * left_of(arm.center).dot(gained)
             + arm.rule.moment_of_inertia * (rate - arm.free.turn);
         let on_it = self.rows.iter().filter(|row| row.flipper() == Some(k));
         let of_contacts = on_it.map(|row| {

@@ -23,10 +23,12 @@ pub(super) enum Link {
     Chassis,
     /// A shoe to the ground.
     Shoe(usize),
-    /// A shoe to the guide: the chassis takes the reaction.
+    /// A shoe to the guide, or to a wheel in the chain: the chassis takes the reaction.
     Guide { shoe: usize, chain: usize },
     /// A flipper, or what a drive carries over it, to the ground.
     Flipper(usize),
+    /// A pin of a shoe to a tooth: the sprocket takes the reaction, and the chassis at its axle.
+    Tooth { shoe: usize, chain: usize },
 }
 
 /// One contact's constraint in one step.
@@ -80,7 +82,7 @@ pub(crate) struct Direction {
     pub unit: Vector,
     /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
     pub lever: f64,
-    /// [m] Lever of the drive's spin; of a place on an idler, the share of its slide.
+    /// [m] Lever of the spin of the drive or sprocket; of a place on an idler, the share of its slide.
     pub drive_lever: f64,
     /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
     pub back: f64,
@@ -329,6 +331,10 @@ impl Row {
                 of(state.shoes[shoe].twist, along.lever) - of(state.twist(), along.back)
                     + along.drive_lever * state.idlers[chain].rate
             }
+            Link::Tooth { shoe, chain } => {
+                of(state.shoes[shoe].twist, along.lever) - of(state.twist(), along.back)
+                    + along.drive_lever * state.drives[chain].spin
+            }
         }
     }
 
@@ -353,8 +359,12 @@ impl Row {
                 [of_n + n.flipper_lever * rate, of_t + t.flipper_lever * rate]
             }
             Link::Shoe(i) => along(shoe(i), 0.0),
-            Link::Guide { shoe: i, chain } => {
-                let [of_n, of_t] = along(shoe(i), idler(chain));
+            Link::Guide { shoe: i, chain } | Link::Tooth { shoe: i, chain } => {
+                let beside = match self.link {
+                    Link::Tooth { .. } => spin(chain),
+                    _ => idler(chain),
+                };
+                let [of_n, of_t] = along(shoe(i), beside);
                 let back = |a: &Action| a.unit.dot(chassis.velocity) + a.back * chassis.turn;
                 [of_n - back(n), of_t - back(t)]
             }
@@ -366,7 +376,7 @@ impl Row {
         let mount = match self.link {
             Link::Chassis => Mount::Chassis,
             Link::Flipper(k) => Mount::Flipper(k),
-            Link::Shoe(_) | Link::Guide { .. } => {
+            Link::Shoe(_) | Link::Guide { .. } | Link::Tooth { .. } => {
                 // Its directions stay, and so does its speed through the piece.
                 self.gap += self.opening_speed(state) * h;
                 return;
@@ -385,7 +395,7 @@ impl Row {
     pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
         self.bears = true;
         let share = match self.link {
-            Link::Guide { .. } => ON_GUIDE,
+            Link::Guide { .. } | Link::Tooth { .. } => ON_GUIDE,
             _ => ON_GROUND,
         };
         self.compliance = share * soft.compliance;

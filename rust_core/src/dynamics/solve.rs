@@ -95,11 +95,11 @@ impl Action {
         }
     }
 
-    fn of_shoe(along: &Direction, of_idler: f64) -> Self {
+    fn of_shoe(along: &Direction, beside: f64) -> Self {
         Self {
             unit: along.unit,
             lever: along.lever,
-            spin_lever: of_idler,
+            spin_lever: beside,
             back: along.back,
             ..Self::default()
         }
@@ -110,7 +110,7 @@ impl Action {
         [self.unit.x, self.unit.y, self.lever]
     }
 
-    /// What it does to x, y and angle of the chassis that takes the reaction, and to the idler.
+    /// What it does to x, y and angle of the chassis that takes the reaction, and to idler or sprocket.
     pub(super) fn reaction(&self) -> [f64; 4] {
         [-self.unit.x, -self.unit.y, -self.back, self.spin_lever]
     }
@@ -214,7 +214,9 @@ impl Dynamics {
                 Link::Flipper(k) => Action::new(along, held, spin_of_set_point)
                     .of_flipper(self.flippers[k].held_rate()),
                 Link::Shoe(_) => Action::of_shoe(along, 0.0),
-                Link::Guide { .. } => Action::of_shoe(along, along.drive_lever),
+                Link::Guide { .. } | Link::Tooth { .. } => {
+                    Action::of_shoe(along, along.drive_lever)
+                }
             });
             let admittance = Admittance {
                 normal: self.admittance(&n, row.link, row.drive),
@@ -316,11 +318,16 @@ impl Dynamics {
             }
             _ => 0.0,
         };
-        if let Link::Shoe(shoe) | Link::Guide { shoe, .. } = link {
+        if let Link::Shoe(shoe) | Link::Guide { shoe, .. } | Link::Tooth { shoe, .. } = link {
             let rule = &self.chains[shoe / self.shoes_a_chain].rule;
             let of_shoe = of_body(rule.shoe_mass, rule.shoe_inertia, action.lever);
             return match link {
                 Link::Guide { .. } => of_shoe + of_body(self.model.mass, self.inertia, action.back),
+                Link::Tooth { chain, .. } => {
+                    let of_sprocket = self.chains[chain].admittance(action.spin_lever);
+                    let of_chassis = of_body(self.model.mass, self.inertia, action.back);
+                    of_shoe + of_chassis + of_sprocket
+                }
                 _ => of_shoe,
             };
         }

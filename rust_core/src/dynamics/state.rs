@@ -286,6 +286,23 @@ impl State {
         (self.angular_velocity - self.drives[drive].spin) * model.drive_radius
     }
 
+    /// Lets the shoes ride with the chassis and run at a speed [m/s] along the paths of their chains.
+    pub(crate) fn run_shoes(&mut self, model: &Model, track_speed: f64) {
+        let pose = self.pose(model);
+        for chain in &model.chains {
+            for i in chain.shoes.clone() {
+                let origin = self.shoes[i].center;
+                let on_chassis = pose.inverse_transform_point(origin);
+                let motion = chain.path.motion_at(on_chassis);
+                let along = motion.at(on_chassis) * track_speed;
+                self.shoes[i].twist = Twist {
+                    velocity: self.velocity_at(origin) + pose.rotation * along,
+                    turn: self.angular_velocity - motion.turn * track_speed,
+                };
+            }
+        }
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         let body = self.center.is_finite() && self.velocity.is_finite();
         let turn = self.angle.is_finite() && self.angular_velocity.is_finite();
@@ -330,7 +347,7 @@ pub(crate) fn idlers_at_rest(model: &Model, track_phase: f64) -> Vec<Idler> {
 /// The flippers of a robot at rest at an angle [rad].
 pub(crate) fn flippers_at_rest(model: &Model, angle: f64) -> Vec<Turn> {
     let turned = |arm: &Flipper| Turn {
-        angle: angle + arm.sign * arm.start_angle,
+        angle: angle + arm.sign() * arm.start_angle,
         ..Turn::default()
     };
     model.flippers.iter().map(turned).collect()

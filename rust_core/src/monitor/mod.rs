@@ -72,8 +72,10 @@ pub(crate) struct Seen {
     pub max_track_tension: f64,
     /// [m] Largest gap of a pin so far.
     pub max_pin_gap: f64,
-    /// [m] Deepest penetration of a chain's guide by a shoe so far.
+    /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe so far.
     pub max_guide_penetration: f64,
+    /// [m] Farthest that a chain and its sprocket have run apart so far.
+    pub max_sprocket_slip: f64,
 }
 
 impl Seen {
@@ -99,6 +101,7 @@ impl Seen {
             max_track_tension: 0.0,
             max_pin_gap: 0.0,
             max_guide_penetration: 0.0,
+            max_sprocket_slip: 0.0,
         }
     }
 }
@@ -187,6 +190,7 @@ impl Monitor {
         seen.max_track_tension = seen.max_track_tension.max(chains.tension);
         seen.max_pin_gap = seen.max_pin_gap.max(chains.pin_gap);
         seen.max_guide_penetration = seen.max_guide_penetration.max(chains.guide_penetration);
+        seen.max_sprocket_slip = seen.max_sprocket_slip.max(chains.sprocket_slip);
         if chains.is_off {
             seen.ended.get_or_insert(Outcome::Detracked);
         }

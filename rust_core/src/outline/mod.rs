@@ -9,6 +9,7 @@ mod layout;
 pub(crate) mod search;
 mod shoes;
 mod stretch;
+mod teeth;
 mod travel;
 
 use rapier2d_f64::math::Vector;
@@ -18,6 +19,7 @@ pub use gear::Gear;
 pub use grouser::Grouser;
 pub(crate) use layout::wheels;
 pub use shoes::ShoeLoop;
+pub use teeth::Teeth;
 pub(crate) use travel::Motion;
 
 use crate::scenario::TrackOutline;

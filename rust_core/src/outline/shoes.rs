@@ -4,15 +4,20 @@
 //! so the pins go farther out there: along the circle on which chords of a pitch touch the end. It meets
 //! the run half a pitch before the run is over.
 
+use std::f64::consts::{PI, TAU};
+
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::search::bisect;
 use super::stretch::Form;
-use super::{Disc, Envelope, Motion};
-use crate::plane::direction;
+use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
+use crate::plane::{direction, right_of};
 
 /// Places of the chain along its path over which its length is averaged.
 const PHASES: u32 = 16;
+/// Share of what the pins on a sprocket go out and in by which that is lifted off the lower run: shoes that it
+/// turns down would else lift the robot.
+const LIFT: f64 = 0.5;
 
 /// The closed path of a chain, and the chain on it.
 #[derive(Clone, Debug)]
@@ -23,28 +28,75 @@ pub struct ShoeLoop {
     pub count: usize,
     /// [m] Distance of the pins of a shoe.
     pub pitch: f64,
+    /// Teeth of the sprocket that the rear end is, if it is one.
+    teeth: Option<usize>,
 }
 
 impl ShoeLoop {
     /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
     /// a shoe would be longer than half a run.
     pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
-        let chain = Self {
-            discs,
-            count,
-            pitch: 0.0,
-        };
         let least = Envelope::new(&discs).length() / count as f64;
         let most = 1.1 * least;
         if count < 3 || 2.0 * most > (discs[1].center - discs[0].center).length() {
             return None;
         }
+        let chain = Self {
+            discs,
+            count,
+            pitch: 0.0,
+            teeth: None,
+        };
+        Some(chain.taut_between(least, most))
+    }
+
+    /// The same chain round a sprocket in place of the rear end: as many teeth as come nearest to it.
+    pub(crate) fn on_sprocket(self) -> Self {
+        let half = 0.5 * self.pitch;
+        let teeth = PI / libm::atan(half / self.discs[0].radius);
+        let (least, most) = (0.8 * self.pitch, 1.2 * self.pitch);
+        let teeth = Some(teeth.round().max(3.0) as usize);
+        Self { teeth, ..self }.taut_between(least, most)
+    }
+
+    /// With the pitch between these at which it is taut in the mean.
+    fn taut_between(self, least: f64, most: f64) -> Self {
         let taut = |phase: u32| {
             let share = f64::from(phase) / f64::from(PHASES);
-            bisect(least, most, |p: f64| chain.excess(p, share * p, 0.0))
+            bisect(least, most, |p: f64| self.excess(p, share * p, 0.0))
         };
         let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
-        Some(Self { pitch, ..chain })
+        Self { pitch, ..self }
+    }
+
+    /// The teeth of its sprocket, if it has one, which reach no farther out than `most` [m] where they can.
+    pub(crate) fn teeth(&self, most: f64) -> Option<Teeth> {
+        self.teeth.map(|count| Teeth::new(count, self.pitch, most))
+    }
+
+    /// [rad] Angle over the chassis of a seat of the sprocket when the chain has not run.
+    pub(crate) fn first_seat(&self) -> f64 {
+        match self.path(self.pitch, 0.0).stretches[0].shape {
+            Form::Arc { from, .. } => from,
+            Form::Run { .. } => 0.0,
+        }
+    }
+
+    /// Discs whose hull the pin lines are tangent to with shoes of a pitch [m].
+    ///
+    /// A sprocket is as large as its teeth need, and its axle where the lower run is as without it, but for what
+    /// its polygon needs.
+    pub(crate) fn ends(&self, pitch: f64) -> [Disc; 2] {
+        let [rear, front] = self.discs;
+        let Some(teeth) = self.teeth else {
+            return self.discs;
+        };
+        let radius = 0.5 * pitch / libm::tan(PI / teeth as f64);
+        let [from, to] = lower_tangent(rear, front);
+        let down = right_of((to - from).normalize());
+        let rise = radius / libm::cos(PI / teeth as f64) - radius;
+        let center = rear.center + down * (rear.radius - radius - LIFT * rise);
+        [Disc { center, radius }, front]
     }
 
     /// [m] How far the front end must be out to keep the chain taut when it has run so far [m].
@@ -59,7 +111,7 @@ impl ShoeLoop {
     pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
         let phase = run.rem_euclid(self.pitch);
         let path = self.path(self.pitch, self.travel(run));
-        let ways = self.walk(&path, self.pitch, phase);
+        let ways = self.walk(&path, self.pitch, self.first_way(phase));
         let mut pins: Vec<Vector> = ways.map(|way| path.point_at(way)).collect();
         pins.pop();
         // Each shoe keeps its number as the chain runs.
@@ -78,16 +130,28 @@ impl ShoeLoop {
     /// How the chain moves a shoe whose origin is there, for each metre that it runs: the mean while the shoe
     /// passes by.
     pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
-        let path = Envelope::new(&self.discs);
+        let path = Envelope::new(&self.ends(self.pitch));
         path.motion_at(path.way_of(origin), 0.5 * self.pitch)
     }
 
-    /// [m] By how much a chain of a pitch is too long with the front end so far out, and a pin at the way
-    /// `phase`.
+    /// [m] By how much a chain of a pitch is too long with the front end so far out, and a pin that has run so
+    /// far from the beginning of the path.
     fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
         let path = self.path(pitch, out);
-        let last = self.walk(&path, pitch, phase).last().unwrap_or(phase);
-        last - phase - path.length()
+        let first = self.first_way(phase);
+        let last = self.walk(&path, pitch, first).last().unwrap_or(first);
+        last - first - path.length()
+    }
+
+    /// [m] Way along the path of a pin that has run so far from its beginning: a sprocket turns its pins evenly.
+    fn first_way(&self, phase: f64) -> f64 {
+        match self.teeth {
+            Some(teeth) => {
+                let step = TAU / teeth as f64;
+                phase * 0.5 * step / libm::sin(0.5 * step)
+            }
+            None => phase,
+        }
     }
 
     /// [m] Ways to the pins of a chain, and to the one after the last.
@@ -103,7 +167,7 @@ impl ShoeLoop {
 
     /// The path of the pins with the front end so far out [m].
     fn path(&self, pitch: f64, out: f64) -> Envelope {
-        let mut discs = self.discs;
+        let mut discs = self.ends(pitch);
         discs[1].center.x += out;
         let half = 0.5 * pitch;
         let mut path = Envelope::new(&discs);

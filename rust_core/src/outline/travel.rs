@@ -4,6 +4,7 @@ use rapier2d_f64::math::{Pose, Vector};
 
 use super::envelope::Envelope;
 use super::stretch::{Form, Stretch};
+use crate::plane::right_of;
 
 /// How a belt along the hull moves what it carries, for each metre that it runs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,6 +25,11 @@ impl Motion {
             turn: self.turn,
             along: pose.rotation * self.along,
         }
+    }
+
+    /// What it moves a point by, for each metre.
+    pub(crate) fn at(&self, point: Vector) -> Vector {
+        right_of(point - self.center) * self.turn + self.along
     }
 
     /// A share of another motion in this one; one of them turns at most.

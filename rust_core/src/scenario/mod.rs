@@ -19,8 +19,8 @@ pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub use track::{
-    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack, HybridWheels,
-    LineOfWheels, SegmentalTrack, ShoeShape, Track,
+    BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
+    HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,
 };
 pub(crate) use wheel::MAX_GROUSERS;
 pub use wheel::{GearWheel, Wheel};

@@ -13,6 +13,8 @@ const MAX_WHEELS: u32 = 200;
 const MAX_SHOES: u32 = 400;
 const PLATE: Range = Range::between(1e-4, 1.0, "m");
 const PRE_TENSION: Range = Range::between(1e-3, 1e6, "N");
+const STIFFNESS: Range = Range::between(1e-3, 1e9, "N/m");
+const DAMPING: Range = Range::between(0.0, 1e9, "N s/m");
 const RADIUS: Range = Range::between(1e-3, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
@@ -83,12 +85,33 @@ pub struct GrouserBeltTrack {
 pub struct SegmentalTrack {
     /// Shoes of a chain; none takes the whole number that comes nearest to the outline's pitch.
     pub shoe_count: Option<u32>,
+    /// What they run on, and what drives them.
+    pub mechanism: ChainMechanism,
     /// Form of the shoes.
     pub shoe_shape: ShoeShape,
     /// [m] Thickness of the plates; none takes a sixteenth of the pitch.
     pub plate_thickness: Option<f64>,
     /// [N] Force of the tensioner of one track; none takes a fortieth of the weight.
     pub pre_tension: Option<f64>,
+    /// [N/m] Its stiffness; none lets a tenth of the pitch take all its force.
+    pub tensioner_stiffness: Option<f64>,
+    /// [N s/m] Its damping; none is critical for the mass of one track.
+    pub tensioner_damping: Option<f64>,
+    /// Wheels between sprocket and idler on the lower run; none takes as many as leave a pitch at most between
+    /// them.
+    pub road_wheel_count: Option<u32>,
+    /// Rollers under the upper run; none takes as many as leave two pitches at most.
+    pub return_roller_count: Option<u32>,
+}
+
+/// What a chain of shoes runs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChainMechanism {
+    /// A low-friction guide of the outline's shape; the drive pulls on the shoes at its rear end.
+    Guide,
+    /// A toothed sprocket at the rear, an idler at the front, road wheels and return rollers.
+    Sprocket,
 }
 
 /// Form of a shoe in side view.
@@ -152,18 +175,7 @@ impl Track {
             "grouser_belt" => Self::GrouserBelt(GrouserBeltTrack {
                 grouser_count: f.optional_integer("grouser_count", 1, MAX_GROUSERS)?,
             }),
-            "segmental" => Self::Segmental(SegmentalTrack {
-                shoe_count: f.optional_integer("shoe_count", 3, MAX_SHOES)?,
-                shoe_shape: f.choice(
-                    "shoe_shape",
-                    &[
-                        ("rectangle", ShoeShape::Rectangle),
-                        ("trapezoid", ShoeShape::Trapezoid),
-                    ],
-                )?,
-                plate_thickness: f.optional_number("plate_thickness", PLATE)?,
-                pre_tension: f.optional_number("pre_tension", PRE_TENSION)?,
-            }),
+            "segmental" => Self::Segmental(read_segmental(&mut f)?),
             "force" => Self::Force(ForceTrack {
                 support: f.choice(
                     "support",
@@ -203,6 +215,39 @@ impl Track {
         }
         Ok(())
     }
+}
+
+fn read_segmental(f: &mut Fields) -> Result<SegmentalTrack, ScenarioError> {
+    let mechanisms = [
+        ("guide", ChainMechanism::Guide),
+        ("sprocket", ChainMechanism::Sprocket),
+    ];
+    let shapes = [
+        ("rectangle", ShoeShape::Rectangle),
+        ("trapezoid", ShoeShape::Trapezoid),
+    ];
+    let track = SegmentalTrack {
+        shoe_count: f.optional_integer("shoe_count", 3, MAX_SHOES)?,
+        mechanism: f.choice("mechanism", &mechanisms)?,
+        shoe_shape: f.choice("shoe_shape", &shapes)?,
+        plate_thickness: f.optional_number("plate_thickness", PLATE)?,
+        pre_tension: f.optional_number("pre_tension", PRE_TENSION)?,
+        tensioner_stiffness: f.optional_number("tensioner_stiffness", STIFFNESS)?,
+        tensioner_damping: f.optional_number("tensioner_damping", DAMPING)?,
+        road_wheel_count: f.optional_integer("road_wheel_count", 0, MAX_WHEELS)?,
+        return_roller_count: f.optional_integer("return_roller_count", 0, MAX_WHEELS)?,
+    };
+    let wheels = [
+        ("road_wheel_count", track.road_wheel_count),
+        ("return_roller_count", track.return_roller_count),
+    ];
+    for (name, count) in wheels {
+        if let Some(count) = count.filter(|_| track.mechanism == ChainMechanism::Guide) {
+            let rule = "must not be given: a guide has no wheels (mechanism \"sprocket\" has)";
+            return Err(f.error(name, count, rule));
+        }
+    }
+    Ok(track)
 }
 
 fn read_placements(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {

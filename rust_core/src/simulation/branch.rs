@@ -89,7 +89,7 @@ impl Simulation {
             ..DriveState::default()
         };
         let now_pose = self.state.pose(self.dynamics.model());
-        let state = State {
+        let mut state = State {
             center,
             angle: now.chassis_angle,
             velocity: self.state.velocity_at(center),
@@ -103,6 +103,7 @@ impl Simulation {
                 flippers_at_rest(&model, now.chassis_angle)
             },
         };
+        state.run_shoes(&model, now.track_speed);
         let mut branch = Self::of(scenario, ground, model, state);
         branch.step = (self.time() / branch.time_step()).round() as u64;
         branch.command = self.command;

@@ -126,7 +126,7 @@ impl Simulation {
             let sight = Sight {
                 time,
                 chassis_angle: self.state.angle,
-                touches: [1.0, -1.0].map(|sign| self.flipper_touches(sign)),
+                touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
             let angles = self.driver.angles(drive, flippers.angle, sight);
             self.dynamics.command_flippers(&self.state, angles);
@@ -135,15 +135,15 @@ impl Simulation {
         self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
     }
 
-    /// Whether a flipper at the front, 1, or at the rear, -1, bears on something beyond its root.
-    fn flipper_touches(&self, sign: f64) -> bool {
+    /// Whether the flipper at an end bears on something beyond its root.
+    fn flipper_touches(&self, end: End) -> bool {
         let model = self.dynamics.model();
-        let Some(k) = model.flippers.iter().position(|f| f.sign == sign) else {
+        let Some(k) = model.flippers.iter().position(|f| f.end == end) else {
             return false;
         };
         let flipper = &model.flippers[k];
         let pivot = self.state.pose(model).transform_point(flipper.pivot);
-        let along = sign * direction(self.state.flippers[k].angle);
+        let along = end.sign() * direction(self.state.flippers[k].angle);
         self.loaded().iter().any(|l| {
             let beyond = (l.contact.point - pivot).dot(along) > flipper.root_radius;
             let mount = model.parts[l.contact.part].mount;
@@ -252,14 +252,14 @@ impl Simulation {
     /// [rad] Angles of the flippers over the chassis, the front first, upwards > 0.
     pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter().enumerate();
-        flippers.map(|(k, flipper)| flipper.sign * self.state.over_chassis(k))
+        flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
     }
 
     /// [N m] Torques of their motors, the means over the last step, upwards > 0.
     pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter();
         let turns = flippers.zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign * turn.torque)
+        turns.map(|(flipper, turn)| flipper.sign() * turn.torque)
     }
 
     /// Gives commands of all kinds at once: all or, if one is refused, none.

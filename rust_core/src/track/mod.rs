@@ -4,6 +4,7 @@ mod belt;
 mod flipper;
 mod force;
 mod grouser_belt;
+mod running_gear;
 mod segmental;
 mod wheels;
 

@@ -1,22 +1,25 @@
-//! A chain of rigid shoes linked by pins (section 2.3 of the paper), on a guide of the chassis.
+//! A chain of rigid shoes linked by pins (section 2.3 of the paper), on a guide of the chassis or on wheels.
 //!
 //! The outer faces of the plates run along the roots of the outline, the pins in the middle of the plates,
-//! and the guide under their inner faces, so that the robot stands as high as the built one.
+//! and guide or wheels under their inner faces, so that the robot stands as high as the built one.
 
 use super::TrackModel;
+use super::running_gear::RunningGear;
 use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Envelope, ShoeLoop};
 use crate::robot::{BodyKind, Mount, Part, Shape};
-use crate::scenario::{Robot, SegmentalTrack, ShoeShape};
+use crate::scenario::{ChainMechanism, Robot, SegmentalTrack, ShoeShape};
 use rapier2d_f64::math::Vector;
 
 /// [m/s^2] By which the default pre-tension is a share of the weight; that of the scenario may be none.
 const GRAVITY: f64 = 9.81;
 /// Pitches by which the tensioner moves from its pre-tension to none.
 const SOFTNESS: f64 = 0.1;
+/// Pitches by which an idler can be pressed in.
+const STOP: f64 = 0.06;
 
-/// Shoes on a guide.
+/// Shoes on a guide or on wheels.
 pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
     let outline = &robot.outline;
     let ends = |inside: f64| {
@@ -55,14 +58,11 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         let value = count as f64;
         return Err(ScenarioError::new("robot.track.shoe_count", value, rule));
     };
-    // Both tracks together.
-    let pre_tension = 2.0 * track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
-    let stiffness = pre_tension / (SOFTNESS * path.pitch);
-    let tensioner = Tensioner {
-        pre_tension,
-        stiffness,
-        damping: 2.0 * (stiffness * robot.track_mass).sqrt(),
+    let path = match track.mechanism {
+        ChainMechanism::Guide => path,
+        ChainMechanism::Sprocket => path.on_sprocket(),
     };
+    let tensioner = tensioner(robot, track, path.pitch);
     let shoe_mass = robot.track_mass / count as f64;
     let mut parts = Vec::new();
     for shoe in 0..count {
@@ -76,17 +76,28 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             mount: Mount::Shoe(shoe),
         }));
     }
-    parts.push(Part {
-        kind: BodyKind::Guide,
-        shape: Shape::Hull {
-            discs: guide.to_vec(),
-            grouser_height: plate_thickness + outline.grouser_height,
-        },
-        drive: None,
-        friction_limit: f64::INFINITY,
-        lane: 0,
-        mount: Mount::Chassis,
-    });
+    let beyond = plate_thickness + outline.grouser_height;
+    let (ends, wheels) = match track.mechanism {
+        ChainMechanism::Guide => {
+            parts.push(Part {
+                kind: BodyKind::Guide,
+                shape: Shape::Hull {
+                    discs: guide.to_vec(),
+                    grouser_height: beyond,
+                },
+                drive: None,
+                friction_limit: f64::INFINITY,
+                lane: 0,
+                mount: Mount::Chassis,
+            });
+            (guide, Vec::new())
+        }
+        ChainMechanism::Sprocket => {
+            let gear = RunningGear::new(&path, guide, plate_thickness, track);
+            parts.extend(gear.parts(beyond));
+            (gear.ends, [gear.road_wheels, gear.rollers].concat())
+        }
+    };
     Ok(TrackModel {
         parts,
         drives: 1,
@@ -100,11 +111,33 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             shoe_mass,
             // A thin plate between its pins.
             shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
-            hull: Envelope::new(&guide),
-            guide,
+            hull: Envelope::new(&ends),
+            ends,
+            wheels,
+            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius),
             path,
         }],
     })
+}
+
+/// The tensioners of both tracks together.
+fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
+    let pre_tension = track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
+    let stiffness = track
+        .tensioner_stiffness
+        .unwrap_or(pre_tension / (SOFTNESS * pitch));
+    let damping = track
+        .tensioner_damping
+        .unwrap_or_else(|| (2.0 * stiffness * robot.track_mass).sqrt());
+    Tensioner {
+        pre_tension: 2.0 * pre_tension,
+        stiffness: 2.0 * stiffness,
+        damping: 2.0 * damping,
+        stop: match track.mechanism {
+            ChainMechanism::Guide => f64::INFINITY,
+            ChainMechanism::Sprocket => STOP * pitch,
+        },
+    }
 }
 
 /// The convex pieces of a shoe in its own frame, counter-clockwise.

@@ -1,7 +1,7 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, Ground,
+    BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, Ground,
     GrouserBeltTrack, HybridWheels, LineOfWheels, Profile, Record, Run, Scenario, SegmentalTrack,
     ShoeShape, Simulation, Terrain, Track, Wheel, simulate,
 };
@@ -94,7 +94,23 @@ pub(crate) fn segmental(shoe_count: Option<u32>) -> Track {
         shoe_shape: ShoeShape::Rectangle,
         plate_thickness: None,
         pre_tension: None,
+        mechanism: ChainMechanism::Guide,
+        tensioner_stiffness: None,
+        tensioner_damping: None,
+        road_wheel_count: None,
+        return_roller_count: None,
     })
+}
+
+/// The same round a sprocket.
+pub(crate) fn sprocketed(shoe_count: Option<u32>) -> Track {
+    match segmental(shoe_count) {
+        Track::Segmental(track) => Track::Segmental(SegmentalTrack {
+            mechanism: ChainMechanism::Sprocket,
+            ..track
+        }),
+        other => other,
+    }
 }
 
 pub(crate) fn force() -> Track {

@@ -30,11 +30,11 @@ fn flippers(scenario: &mut Scenario) -> &mut Flippers {
     scenario.robot.flippers.as_mut().expect("it has flippers")
 }
 
-fn hold(angle: f64) -> Option<Gait> {
-    Some(Gait::Hold(Hold {
+fn hold(angle: f64) -> Gait {
+    Gait::Hold(Hold {
         angle,
         schedule: None,
-    }))
+    })
 }
 
 /// Every model that has a form for arms.
@@ -63,7 +63,7 @@ fn an_arm_held_in_the_air_bears_its_weight() {
         scenario.drive = Drive {
             speed: 0.0,
             schedule: None,
-            gait: hold(angle),
+            gait: Some(hold(angle)),
         };
         let torques: Vec<f64> = after(&scenario, 3.0).flipper_torques().collect();
         let weight = 2.0 * 0.775 * G * 0.17 * angle.cos();
@@ -82,7 +82,7 @@ fn an_arm_presses_down_with_the_limit_of_its_torque() {
     scenario.drive = Drive {
         speed: 0.0,
         schedule: None,
-        gait: hold(-1.0),
+        gait: Some(hold(-1.0)),
     };
     let simulation = after(&scenario, 3.0);
     let table = simulation.contact_table();
@@ -182,7 +182,7 @@ fn contact_forces_bear_weight_and_inertia_while_arms_move() {
 fn two_equal_lanes_are_one() {
     for (name, track) in models() {
         let mut scenario = with_flippers(Ends::Both, track);
-        scenario.drive.gait = hold(0.4);
+        scenario.drive.gait = Some(hold(0.4));
         let ground = equal_lanes(&scenario.terrain);
         let mut apart = Simulation::on_ground(&scenario, ground).expect("it fits");
         let mut lumped = Simulation::new(&scenario).expect("it fits");
@@ -274,7 +274,7 @@ fn arms_that_leave_no_chassis_are_refused() {
     flippers(&mut scenario).track = Some(circumferential(4, Wheel::Round));
     assert_eq!(path(&scenario), "robot.flippers.track.count");
     let mut without = engineer();
-    without.drive.gait = hold(0.0);
+    without.drive.gait = Some(hold(0.0));
     assert_eq!(path(&without), "drive.gait");
     let by_hand = with_flippers(Ends::Rear, hybrid(Wheel::Round));
     assert_eq!(path(&by_hand), "robot.flippers.track");

@@ -14,6 +14,24 @@ fn chained(count: u32) -> Scenario {
     scenario
 }
 
+fn toothed(count: u32) -> Scenario {
+    let mut scenario = engineer();
+    scenario.robot.track = sprocketed(Some(count));
+    scenario
+}
+
+/// A robot on a chain of so many shoes.
+type Build = fn(u32) -> Scenario;
+
+/// Counts of shoes on both mechanisms.
+fn cases() -> impl Iterator<Item = (u32, Build)> {
+    let of = |build: Build| COUNTS.map(|count| (count, build));
+    MECHANISMS.into_iter().flat_map(of)
+}
+
+/// Both mechanisms.
+const MECHANISMS: [Build; 2] = [chained, toothed];
+
 #[test]
 fn the_engineers_chain_has_its_22_shoes_of_48_mm() {
     let mut scenario = engineer();
@@ -40,8 +58,8 @@ fn the_engineers_chain_has_its_22_shoes_of_48_mm() {
 /// Chassis and shoes together are the robot; the shoes are its track's mass.
 #[test]
 fn chassis_and_shoes_weigh_as_much_as_the_robot() {
-    for count in COUNTS {
-        let robot = chained(count).robot;
+    for (count, build) in cases() {
+        let robot = build(count).robot;
         let model = Model::new(&robot).expect("it can be built");
         let chain = &model.chains[0];
         let shoes = chain.shoe_mass * f64::from(count);
@@ -53,8 +71,8 @@ fn chassis_and_shoes_weigh_as_much_as_the_robot() {
 
 #[test]
 fn on_level_ground_speed_and_height_are_the_geometrys() {
-    for count in COUNTS {
-        let mut scenario = chained(count);
+    for (count, build) in cases() {
+        let mut scenario = build(count);
         scenario.terrain = slope(0.0, 0.9);
         let mut simulation = after(&scenario, 3.0);
         let (start, run) = (
@@ -84,8 +102,11 @@ fn on_level_ground_speed_and_height_are_the_geometrys() {
 /// Weight, change of momentum and the forces of the ground: exact but for the agreement of the solver.
 #[test]
 fn the_ground_bears_its_weight_on_the_level_and_on_a_ramp() {
-    for angle in [0.0, 0.35, -0.35] {
-        let mut scenario = chained(22);
+    for (angle, build) in [0.0, 0.35, -0.35]
+        .into_iter()
+        .flat_map(|angle| MECHANISMS.map(|build| (angle, build)))
+    {
+        let mut scenario = build(22);
         scenario.terrain = slope(angle, 0.9);
         scenario.start.angle = angle;
         scenario.robot.drivetrain.max_torque = 20.0;
@@ -194,11 +215,10 @@ fn trials(seed: u64) -> Vec<Trial> {
 /// What a trial came to: the outcome, and the worst of all steps.
 fn outcome_of(
     trial: &Trial,
-    count: u32,
+    mut scenario: Scenario,
     draw: &mut Draw,
     duration: f64,
 ) -> (Outcome, ChainReading) {
-    let mut scenario = chained(count);
     scenario.terrain = trial.terrain.clone();
     scenario.robot.drivetrain.max_torque = 20.0;
     scenario.robot.drivetrain.max_acceleration = 2.0;
@@ -221,6 +241,10 @@ fn outcome_of(
         worst.pin_gap = worst.pin_gap.max(now.pin_gap);
         worst.guide_penetration = worst.guide_penetration.max(now.guide_penetration);
         worst.tension = worst.tension.max(now.tension);
+        worst.sprocket_slip = worst.sprocket_slip.max(now.sprocket_slip);
+        if simulation.is_over() {
+            break; // on its back, where no robot drives on
+        }
     }
     (simulation.outcome_now(), worst)
 }
@@ -237,23 +261,34 @@ fn most_gap(trial: &str) -> f64 {
 /// With `CRAWLER2D_SOAK` a hundred starts of each, ten of them for a minute.
 #[test]
 fn no_chain_leaves_its_guide() {
+    stays_on(chained, 2e-3);
+}
+
+/// Nor its wheels; a sprocket's shoes begin up to 2 mm inside of the road wheels next to it.
+#[test]
+fn no_chain_leaves_its_wheels() {
+    stays_on(toothed, 5e-3);
+}
+
+fn stays_on(build: Build, deepest: f64) {
     let soak = std::env::var("CRAWLER2D_SOAK").is_ok();
     let starts = if soak { 100 } else { 1 };
     let (mut runs, mut draw) = (0, Draw(7));
     for count in COUNTS {
         for seed in 0..trials(0).len() {
-            let mut worst = (0.0_f64, 0.0_f64, 0.0_f64);
+            let mut worst = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
             let mut name = "";
             for start in 0..starts {
                 let trial = &trials(start)[seed];
                 let duration = if soak && start % 10 == 0 { 60.0 } else { 8.0 };
-                let (outcome, seen) = outcome_of(trial, count, &mut draw, duration);
+                let (outcome, seen) = outcome_of(trial, build(count), &mut draw, duration);
                 name = trial.name;
                 runs += 1;
                 worst = (
                     worst.0.max(seen.pin_gap),
                     worst.1.max(seen.guide_penetration),
                     worst.2.max(seen.tension),
+                    worst.3.max(seen.sprocket_slip),
                 );
                 assert_ne!(
                     outcome,
@@ -261,17 +296,62 @@ fn no_chain_leaves_its_guide() {
                     "{count} shoes, {name}, start {start}"
                 );
                 assert!(seen.pin_gap < most_gap(name), "{count}, {name}: {seen:?}");
-                assert!(seen.guide_penetration < 2e-3, "{count}, {name}: {seen:?}");
+                assert!(
+                    seen.guide_penetration < deepest,
+                    "{count}, {name}: {seen:?}"
+                );
             }
             println!(
-                "{count} shoes, {name}: pins {:.4} mm, guide {:.3} mm, tension {:.0} N",
+                "{count} shoes, {name}: pins {:.4} mm, under shoes {:.3} mm, tension {:.0} N, slip {:.3} mm",
                 1e3 * worst.0,
                 1e3 * worst.1,
-                worst.2
+                worst.2,
+                1e3 * worst.3
             );
         }
     }
-    println!("{runs} runs, none off its guide");
+    println!("{runs} runs, none off");
+}
+
+/// What the chain has run is what the sprocket has turned, but for the play of its teeth and the polygon.
+#[test]
+fn a_chain_runs_as_far_as_its_sprocket_turns() {
+    for count in COUNTS {
+        let mut scenario = toothed(count);
+        scenario.terrain = slope(0.0, 0.9);
+        let mut simulation = after(&scenario, 3.0);
+        let pitch = Model::new(&scenario.robot).expect("it can be built").chains[0]
+            .path
+            .pitch;
+        let (start, slip) = (
+            simulation.reading().track_position,
+            simulation.chain().sprocket_slip,
+        );
+        advance(&mut simulation, 10.0);
+        let run = simulation.reading().track_position - start;
+        let apart = (simulation.chain().sprocket_slip - slip).abs();
+        println!(
+            "{count} shoes: sprocket {run:.4} m, {:.3} mm apart",
+            1e3 * apart
+        );
+        assert!((run / 4.0 - 1.0).abs() < 0.005);
+        assert!(apart < 0.1 * pitch);
+    }
+}
+
+/// Only teeth hold the chain: a sprocket that stands holds the robot against a push as hard as its motors can.
+#[test]
+fn teeth_hold_a_push() {
+    let mut scenario = toothed(22);
+    scenario.terrain = slope(0.0, 0.9);
+    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    simulation.set_speed(0.0).expect("it can stand");
+    simulation.set_push(-60.0).expect("a push");
+    advance(&mut simulation, 1.0);
+    let start = simulation.reading().position.x;
+    advance(&mut simulation, 1.0);
+    assert!((simulation.reading().position.x - start).abs() < 1e-3);
+    assert!(simulation.drive_force() > 30.0);
 }
 
 /// Shoes without grousers are a belt that is stiff between its pins: the shorter they are, the less.
@@ -293,4 +373,27 @@ fn without_grousers_it_climbs_as_high_as_the_belt() {
         println!("belt {smooth:.5} m, {count} shoes {shoes:.5} m");
         assert!((shoes / smooth - 1.0).abs() < within);
     }
+}
+
+/// The shoes of a branch run as the belt ran: nothing jerks the robot.
+#[test]
+fn a_chain_takes_over_a_moving_belt_without_a_jerk() {
+    let mut scenario = chained(22);
+    scenario.terrain = slope(0.0, 0.9);
+    let mut belted = scenario.clone();
+    belted.robot.track = belt();
+    let belt = after(&belted, 4.0);
+    let mut chain = belt.branch(&scenario).expect("it fits");
+    let start = chain.reading();
+    assert!((start.velocity.x / 0.4 - 1.0).abs() < 1e-3);
+    let (mut slowest, mut fastest, mut run) = (f64::INFINITY, 0.0_f64, 0.0);
+    for _ in 0..50 {
+        chain.step().expect("finite");
+        let now = chain.reading();
+        (slowest, fastest) = (slowest.min(now.velocity.x), fastest.max(now.velocity.x));
+        run += 0.02 * now.track_speed;
+    }
+    println!("robot {slowest:.4} to {fastest:.4} m/s, chain {run:.4} m/s");
+    assert!(0.38 < slowest && fastest < 0.42);
+    assert!((run / 0.4 - 1.0).abs() < 0.03);
 }

@@ -1,8 +1,9 @@
-//! Contacts of shoes as the solver sees them: with the ground, and with the guide.
+//! Contacts of shoes as the solver sees them: with the ground, and with what they run on.
 
 use rapier2d_f64::math::Vector;
 
-use super::{Rest, RestMemory};
+use super::RestMemory;
+use super::rests::{Bearing, Rest};
 use crate::contact::{Contact, LoadedContact};
 use crate::dynamics::grip::Grip;
 use crate::dynamics::row::{Direction, Link, Row};
@@ -48,8 +49,8 @@ impl Row {
         row
     }
 
-    /// The row of a place where a shoe rests on the guide, without friction.
-    pub(in crate::dynamics) fn on_guide(
+    /// The row of a place where a shoe rests on the guide, a wheel or a tooth, without friction.
+    pub(in crate::dynamics) fn at_rest(
         rest: &Rest,
         last: RestMemory,
         state: &State,
@@ -57,15 +58,22 @@ impl Row {
         time: f64,
     ) -> Self {
         let arm = rest.point - state.shoes[shoe].after(time).center;
-        let back = rest.point - state.moved(time).0;
+        let center = state.moved(time).0;
+        let (link, borne_at) = match rest.on {
+            Bearing::Chassis(_) => (Link::Guide { shoe, chain }, rest.point),
+            Bearing::Tooth(axle) => (Link::Tooth { shoe, chain }, axle),
+        };
         let [normal, tangent] = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
             unit,
             lever: cross(arm, unit),
-            drive_lever: -unit.dot(rest.slides),
-            back: cross(back, unit),
+            drive_lever: match rest.on {
+                Bearing::Chassis(slides) => -unit.dot(slides),
+                Bearing::Tooth(axle) => -cross(rest.point - axle, unit),
+            },
+            back: cross(borne_at - center, unit),
             flipper_lever: 0.0,
         });
-        let mut row = Self::between(normal, tangent, Link::Guide { shoe, chain });
+        let mut row = Self::between(normal, tangent, link);
         row.grip = last.grip;
         row.normal_guess = last.force;
         row.place = rest.place;

@@ -1,9 +1,11 @@
-//! A chain of shoes on the guide of the chassis: pins, places where shoes rest on the guide, drive.
+//! A chain of shoes on guide or wheels of the chassis: pins, places where shoes rest on them, drive.
 
 mod contacts;
 mod pin;
 mod pull;
+mod rests;
 mod system;
+mod wheels;
 
 use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
@@ -12,15 +14,16 @@ use super::direct::Damper;
 use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
-use crate::chain::ChainOfShoes;
+use crate::chain::{ChainOfShoes, Tensioner};
 use pin::Pin;
 use pull::{Grasp, Pull, PullImpulses};
-use system::ChainSystem;
+use rests::Rest;
+pub(super) use rests::Stand;
+use system::{Beside, ChainSystem};
 
-/// Pitches by which a chain that has jumped off its guide hangs off it at least.
-const FAR_OFF: f64 = 2.0;
-/// Places at which a shoe can rest on the guide: on either end of it, and with its front pin.
-pub(super) const RESTS: usize = 3;
+/// Stiffness of the stop of an idler in units of its tensioner's: harder ones hold, but a chain that an obstacle
+/// tightens meets them with blows of kilonewtons.
+const STOP_STIFFNESS: f64 = 100.0;
 
 /// One closed chain.
 pub(super) struct Chain {
@@ -30,13 +33,18 @@ pub(super) struct Chain {
     system: ChainSystem,
     /// Unit vectors along the shoes in this piece.
     alongs: Vec<Vector>,
-    /// What the shoes' rests did last.
-    pub memory: Vec<[RestMemory; RESTS]>,
+    /// Frames of the shoes, and these in that of the chassis, when their rests were last looked for.
+    places: Vec<[Pose; 2]>,
+    /// What the shoes' rests did last, shoe by shoe.
+    memory: Vec<RestMemory>,
     /// Velocities as they are without constraints, and as they come out of a solve.
     pub free: Vec<Twist>,
     pub solved: Vec<Twist>,
-    /// [m/s] The same of the idler.
+    /// [m/s] The same of the idler, ...
     pub idler_rate: f64,
+    /// ... and [rad/s] of the sprocket.
+    pub spin: f64,
+    free_spin: f64,
     /// What holds the idler in this piece.
     idler: Damper,
     /// Whether a shoe was too far off the guide to come back when they were last looked at.
@@ -51,27 +59,12 @@ pub(super) struct RestMemory {
     pub grip: Grip,
 }
 
-/// A place where a shoe bears on the guide, or nearly.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rest {
-    /// Index in the chain, and which of its rests.
-    pub shoe: usize,
-    pub place: usize,
-    pub point: Vector,
-    /// From the guide to the shoe.
-    pub normal: Vector,
-    /// [m]
-    pub gap: f64,
-    /// How the place moves over the chassis with the idler, for each metre of its slide.
-    pub slides: Vector,
-}
-
 /// What a step hands to the next.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ChainImpulses {
     pins: Vec<Pin>,
     pull: PullImpulses,
-    memory: Vec<[RestMemory; RESTS]>,
+    memory: Vec<RestMemory>,
 }
 
 impl Chain {
@@ -82,10 +75,13 @@ impl Chain {
             pull: Pull::default(),
             system: ChainSystem::new(count),
             alongs: Vec::with_capacity(count),
-            memory: vec![Default::default(); count],
+            places: Vec::with_capacity(count),
+            memory: vec![RestMemory::default(); count * rests::of_a_shoe(&rule)],
             free: vec![Twist::default(); count],
             solved: vec![Twist::default(); count],
             idler_rate: 0.0,
+            spin: 0.0,
+            free_spin: 0.0,
             idler: Damper::default(),
             is_off: false,
             rule,
@@ -121,19 +117,45 @@ impl Chain {
             );
             pin.close(h, masses, pitch);
         }
-        let axle = chassis.transform_point(self.rule.guide[0].center);
+        let axle = chassis.transform_point(self.rule.ends[0].center);
         self.pull
             .follow(&self.rule, (shoes, &self.alongs), state, axle);
-        let tensioner = &self.rule.tensioner;
-        let travel = state.idlers[self.rule.number].travel;
-        let force = tensioner.pre_tension - tensioner.stiffness * travel;
-        let stiffness = h * (tensioner.damping + h * tensioner.stiffness);
-        self.idler = Damper::new(h * force, stiffness);
+        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h);
+        self.free_spin = state.drives[self.rule.number].spin;
+    }
+
+    /// Spring and damper of the idler when it is so far out [m], for `h` [s]; at its stop they are hard.
+    fn tensioner(&self, travel: f64, h: f64) -> Damper {
+        let Tensioner {
+            pre_tension,
+            stiffness,
+            damping,
+            stop,
+        } = self.rule.tensioner;
+        let force = pre_tension - stiffness * travel;
+        let beyond = -travel - stop;
+        if beyond <= 0.0 {
+            return Damper::new(h * force, h * (damping + h * stiffness));
+        }
+        let hard = STOP_STIFFNESS * stiffness;
+        let force = force + hard * beyond;
+        Damper::new(h * force, h * (damping + h * (stiffness + hard)))
+    }
+
+    /// What a rest did last.
+    pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
+        self.memory[rest.shoe * rests::of_a_shoe(&self.rule) + rest.place]
+    }
+
+    /// Forgets what all of them did.
+    pub(super) fn forget_rests(&mut self) {
+        self.memory.fill(RestMemory::default());
     }
 
     /// Keeps what a rest did.
     pub(super) fn remember_rest(&mut self, shoe: usize, row: &Row) {
-        self.memory[shoe][row.place] = RestMemory {
+        let place = shoe * rests::of_a_shoe(&self.rule) + row.place;
+        self.memory[place] = RestMemory {
             force: row.normal_guess,
             grip: row.grip,
         };
@@ -141,53 +163,6 @@ impl Chain {
 
     fn masses(&self) -> (f64, f64) {
         (self.rule.shoe_mass, self.rule.shoe_inertia)
-    }
-
-    /// Calls `found` for every place within `reach` [m] of the guide at which a shoe could rest.
-    pub(super) fn rests(
-        &mut self,
-        chassis: Pose,
-        travel: f64,
-        place_of: impl Fn(usize) -> Pose,
-        reach: f64,
-        mut found: impl FnMut(Rest),
-    ) {
-        let rule = &self.rule;
-        let (half, below) = (0.5 * rule.path.pitch, 0.5 * rule.plate_thickness);
-        let deepest = -0.5 * rule.guide[0].radius.min(rule.guide[1].radius);
-        self.is_off = false;
-        for i in 0..rule.path.count {
-            let place = place_of(i);
-            let on_chassis = chassis.inverse() * place;
-            for (k, end) in rule.guide.iter().enumerate() {
-                let slides = if k == 1 { Vector::X } else { Vector::ZERO };
-                let center = on_chassis.inverse_transform_point(end.center + slides * travel);
-                let gap = -below - (center.y + end.radius);
-                if center.x.abs() <= half && center.y < 0.0 && gap < reach {
-                    found(Rest {
-                        shoe: i,
-                        place: k,
-                        point: place.transform_point(Vector::new(center.x, -below)),
-                        normal: place.rotation * Vector::Y,
-                        gap,
-                        slides: chassis.rotation * slides,
-                    });
-                }
-            }
-            let corner = on_chassis.transform_point(Vector::new(half, -below));
-            let gap = -rule.hull.depth(corner);
-            self.is_off |= gap < deepest || gap > FAR_OFF * rule.path.pitch;
-            if gap < reach {
-                found(Rest {
-                    shoe: i,
-                    place: RESTS - 1,
-                    point: chassis.transform_point(corner),
-                    normal: chassis.rotation * rule.hull.outward_at(corner),
-                    gap,
-                    slides: Vector::ZERO,
-                });
-            }
-        }
     }
 
     /// The system of shoes, pins and drive; the drive gives `given` [N s] if it does not hold the speed
@@ -200,6 +175,12 @@ impl Chain {
             }
         }
         let damper = self.pull.damper().shifted(self.pull.aim(set_point));
+        if let (Some(sprocket), Some(lever)) = (&self.rule.sprocket, self.pull.lever) {
+            self.system.add_sprocket(sprocket.inertia, self.free_spin);
+            let damper = given.map_or(damper, Damper::constant);
+            self.system.turn_sprocket(lever, damper);
+            return;
+        }
         for Grasp {
             shoe,
             on_shoe,
@@ -230,6 +211,19 @@ impl Chain {
         back: [[f64; 4]; 2],
         damper: Damper,
     ) {
+        let back = (back, Beside::Idler);
+        self.system.add_between(shoe, on_shoe, back, damper);
+    }
+
+    /// Adds a pin of a shoe at a tooth of the sprocket.
+    pub(super) fn add_tooth(
+        &mut self,
+        shoe: usize,
+        on_shoe: [[f64; 3]; 2],
+        back: [[f64; 4]; 2],
+        damper: Damper,
+    ) {
+        let back = (back, Beside::Sprocket);
         self.system.add_between(shoe, on_shoe, back, damper);
     }
 
@@ -239,7 +233,7 @@ impl Chain {
 
     /// Finds the shoes' velocities from that of the chassis.
     pub(super) fn solve(&mut self, chassis: [f64; 3]) {
-        self.idler_rate = self.system.follow(chassis, &mut self.solved);
+        [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
     /// Takes the impulses that belong to the velocities; how far these are from what they should be [m/s].
@@ -266,7 +260,9 @@ impl Chain {
     /// [m/s] What the drive is ahead of its aim.
     pub(super) fn ahead(&self, state: &State, set_point: f64) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
-        self.pull.speed(state.twist(), |i| shoes[i].twist) - self.pull.aim(set_point)
+        let spin = state.drives[self.rule.number].spin;
+        let speed = self.pull.speed(state.twist(), spin, |i| shoes[i].twist);
+        speed - self.pull.aim(set_point)
     }
 
     /// [m/s] Speed of the chain: its length for every turn of its shoes over the chassis.
@@ -278,18 +274,42 @@ impl Chain {
         turns.sum::<f64>() * self.rule.path.pitch / std::f64::consts::TAU
     }
 
-    /// Keeps count of what the chain is behind the set-point, as long as the motor holds.
+    /// Keeps count of what the chain is behind its sprocket, or behind the set-point, as long as the motor
+    /// holds that.
     pub(super) fn count(&mut self, state: &State, set_point: f64, holds: bool, h: f64) {
-        if holds {
-            self.pull.impulses.behind += (set_point - self.speed(state)) * h;
+        let speed = match self.pull.lever {
+            Some(lever) => lever * (state.angular_velocity - state.drives[self.rule.number].spin),
+            None => set_point,
+        };
+        if holds || self.has_sprocket() {
+            self.pull.impulses.behind += (speed - self.speed(state)) * h;
         }
+    }
+
+    pub(super) fn has_sprocket(&self) -> bool {
+        self.rule.sprocket.is_some()
+    }
+
+    /// [m] By how much chain and sprocket have run differently far.
+    pub(super) fn sprocket_slip(&self) -> f64 {
+        if self.has_sprocket() {
+            self.pull.impulses.behind.abs()
+        } else {
+            0.0
+        }
+    }
+
+    /// [1/kg] Of the sprocket at a lever [m].
+    pub(super) fn admittance(&self, lever: f64) -> f64 {
+        let sprocket = self.rule.sprocket.as_ref();
+        sprocket.map_or(0.0, |sprocket| lever * lever / sprocket.inertia)
     }
 
     /// The slope of the potential of shoes, pins and drive along the change `solved`, a share of it further on.
     pub(super) fn slope(
         &self,
         state: &State,
-        chassis: Twist,
+        (chassis, spin): (Twist, f64),
         (set_point, given): (f64, Option<f64>),
         share: f64,
     ) -> f64 {
@@ -305,11 +325,20 @@ impl Chain {
             let of_pin = self.pins[i].speed(*change, next_change);
             slope -= self.pins[i].at(speed + of_pin * share).dot(of_pin);
         }
-        let of_drive = self.pull.speed(chassis, |i| self.solved[i]);
+        if let Some(sprocket) = &self.rule.sprocket {
+            let gained = state.drives[self.rule.number].spin + spin * share - self.free_spin;
+            slope += sprocket.inertia * gained * spin;
+        }
+        let of_drive = self.pull.speed(chassis, spin, |i| self.solved[i]);
         let ahead = self.ahead(state, set_point) + of_drive * share;
         let rate = state.idlers[self.rule.number].rate + self.idler_rate * share;
         slope -= self.idler.at(rate) * self.idler_rate;
         slope - given.unwrap_or_else(|| self.pull.damper().at(ahead)) * of_drive
+    }
+
+    /// Whether the drive has anything to act on.
+    pub(super) fn has_hold(&self) -> bool {
+        self.pull.has_hold()
     }
 
     /// [N s] What the drive gives in this piece.

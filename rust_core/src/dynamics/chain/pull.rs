@@ -1,6 +1,7 @@
-//! The drive of a chain on a guide: forces along the shoes of the driving arc, and back on the chassis.
+//! The drive of a chain: it turns the sprocket against the chassis, and teeth do the rest.
 //!
-//! It is a sprocket without teeth: what it holds is the rate at which the shoes of the arc go round, and
+//! On a guide it is a sprocket without teeth: forces along the shoes of the driving arc, and back on the
+//! chassis. What it holds then is the rate at which the shoes of the arc go round, and
 //! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
 //! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
 
@@ -22,8 +23,10 @@ const CATCHING_UP: f64 = 5.0;
 /// The drive of one chain.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pull {
-    /// The shoes of the arc.
+    /// The shoes of the arc of a guide.
     pub shoes: Vec<Grasp>,
+    /// [m] The radius at which a sprocket pulls, if there is one.
+    pub lever: Option<f64>,
     pub impulses: PullImpulses,
     /// [kg]
     stiffness: f64,
@@ -38,7 +41,7 @@ pub(super) struct PullImpulses {
     pub center: f64,
     /// ... and [N] what the next piece starts from.
     pub force: f64,
-    /// [m] What the chain is behind.
+    /// [m] What the chain is behind the set-point, or behind its sprocket.
     pub behind: f64,
 }
 
@@ -52,7 +55,8 @@ pub(super) struct Grasp {
 }
 
 impl Pull {
-    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`.
+    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`; of a
+    /// chain that has come off there may be none.
     pub(super) fn follow(
         &mut self,
         chain: &ChainOfShoes,
@@ -61,6 +65,12 @@ impl Pull {
         axle: Vector,
     ) {
         self.shoes.clear();
+        if let Some(sprocket) = &chain.sprocket {
+            let lever = chain.drive_radius();
+            self.lever = Some(lever);
+            self.stiffness = sprocket.inertia / (DAMPING * lever * lever);
+            return;
+        }
         let forwards = direction(state.angle);
         let (mut torque, mut squares) = (0.0, 0.0);
         for (i, (shoe, along)) in shoes.iter().zip(alongs).enumerate() {
@@ -79,6 +89,10 @@ impl Pull {
                 });
             }
         }
+        if torque <= 0.0 {
+            self.shoes.clear();
+            return;
+        }
         let scale = chain.drive_radius() / torque;
         for grasp in &mut self.shoes {
             grasp.on_shoe = grasp.on_shoe.map(|entry| entry * scale);
@@ -88,21 +102,89 @@ impl Pull {
         self.stiffness = 1.0 / (DAMPING * admittance);
     }
 
+    /// Whether there is a sprocket or a shoe to pull on.
+    pub(super) fn has_hold(&self) -> bool {
+        self.lever.is_some() || !self.shoes.is_empty()
+    }
+
     /// [m/s] Speed that the drive aims at.
     pub(super) fn aim(&self, set_point: f64) -> f64 {
-        set_point + CATCHING_UP * self.impulses.behind
+        match self.lever {
+            Some(_) => set_point,
+            None => set_point + CATCHING_UP * self.impulses.behind,
+        }
     }
 
     pub(super) fn damper(&self) -> Damper {
         Damper::new(self.impulses.center, self.stiffness)
     }
 
-    /// [m/s] Speed of the chain.
-    pub(super) fn speed(&self, chassis: Twist, shoe: impl Fn(usize) -> Twist) -> f64 {
+    /// [m/s] Speed of the chain on a guide, or that which the spin of its sprocket stands for.
+    pub(super) fn speed(&self, chassis: Twist, spin: f64, shoe: impl Fn(usize) -> Twist) -> f64 {
+        if let Some(lever) = self.lever {
+            return lever * (chassis.turn - spin);
+        }
         let along = |row: &[f64; 3], twist: Twist| -> f64 {
             row.iter().zip(twist.entries()).map(|(a, v)| a * v).sum()
         };
         let of = |g: &Grasp| along(&g.on_shoe, shoe(g.shoe)) + along(&g.on_chassis, chassis);
         self.shoes.iter().map(of).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::Tensioner;
+    use crate::outline::{Disc, Envelope, ShoeLoop};
+
+    #[test]
+    fn a_drive_without_a_shoe_behind_it_finds_no_hold() {
+        let end = |x| Disc {
+            center: Vector::new(x, 0.0),
+            radius: 0.05,
+        };
+        let ends = [end(-0.2), end(0.2)];
+        let chain = ChainOfShoes {
+            number: 0,
+            shoes: 0..22,
+            path: ShoeLoop::new(ends, 22).unwrap(),
+            ends,
+            wheels: Vec::new(),
+            sprocket: None,
+            plate_thickness: 0.003,
+            shoe_mass: 0.1,
+            shoe_inertia: 1e-5,
+            tensioner: Tensioner {
+                pre_tension: 8.0,
+                stiffness: 1000.0,
+                damping: 10.0,
+                stop: f64::INFINITY,
+            },
+            hull: Envelope::new(&ends),
+        };
+        let shoe = |angle: f64| Shoe {
+            center: Vector::new(-0.25, 0.0),
+            angle,
+            twist: Twist::default(),
+        };
+        let state = State {
+            center: Vector::ZERO,
+            angle: 0.0,
+            velocity: Vector::ZERO,
+            angular_velocity: 0.0,
+            drives: Vec::new(),
+            shoes: Vec::new(),
+            flippers: Vec::new(),
+            idlers: Vec::new(),
+        };
+        let mut pull = Pull::default();
+        // Upwards behind the axle is round the end; downwards faces forwards.
+        for (angle, holds) in [(1.6, true), (-1.6, false)] {
+            let shoes = [shoe(angle)];
+            let along = [shoes[0].along()];
+            pull.follow(&chain, (&shoes, &along), &state, end(-0.2).center);
+            assert_eq!(pull.has_hold(), holds);
+        }
     }
 }

@@ -12,12 +12,19 @@ use crate::dynamics::state::Twist;
 /// Rows and columns of the border: three of the closing shoe, three of the chassis, ...
 const CLOSING: usize = 0;
 const CHASSIS: usize = 3;
-/// ... one of the drive, and one of the idler; then the right-hand side.
+/// ... one of the drive, its force or the spin of its sprocket, and one of the idler; then the right-hand side.
 const DRIVE: usize = 6;
 const IDLER: usize = 7;
 const BORDER: usize = 8;
 const RIGHT: usize = 8;
 const WIDTH: usize = 9;
+
+/// What besides chassis and shoe takes part in a contact.
+#[derive(Clone, Copy)]
+pub(super) enum Beside {
+    Idler,
+    Sprocket,
+}
 
 /// What of the system belongs to one shoe.
 #[derive(Clone, Copy, Default)]
@@ -72,18 +79,18 @@ impl ChainSystem {
         right += force * damper.at(0.0);
     }
 
-    /// The same of a constraint that acts on chassis and idler, too; these are the first three and the last
-    /// of `back`.
+    /// The same of a constraint that acts on chassis and idler or sprocket, too; these are the first three and
+    /// the last of `back`.
     pub(super) fn add_between(
         &mut self,
         shoe: usize,
         on_shoe: [[f64; 3]; 2],
-        back: [[f64; 4]; 2],
+        (back, beside): ([[f64; 4]; 2], Beside),
         damper: Damper,
     ) {
         self.add(shoe, on_shoe, damper);
         let [force, action] = on_shoe.map(Vector3::from);
-        let [back_force, back_action] = back.map(of_chassis_and_idler);
+        let [back_force, back_action] = back.map(|back| of_border(back, beside));
         let entry = &mut self.shoes[shoe];
         let mut beside = entry.beside.fixed_columns_mut::<BORDER>(0);
         beside += force * back_action.transpose() * damper.stiffness;
@@ -117,6 +124,22 @@ impl ChainSystem {
     pub(super) fn set_drive(&mut self, damper: Damper) {
         self.border[(DRIVE, DRIVE)] = -1.0 / damper.stiffness;
         self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.stiffness;
+    }
+
+    /// Gives the drive a sprocket of an inertia [kg m^2] and a spin [rad/s] that it would have by itself.
+    pub(super) fn add_sprocket(&mut self, inertia: f64, spin: f64) {
+        self.border[(DRIVE, DRIVE)] = inertia;
+        self.border[(DRIVE, RIGHT)] = inertia * spin;
+    }
+
+    /// Turns chassis and sprocket against each other with a damper at a lever [m]; its speed is that of the
+    /// chassis over the sprocket.
+    pub(super) fn turn_sprocket(&mut self, lever: f64, damper: Damper) {
+        let entries = of_border([0.0, 0.0, lever, -lever], Beside::Sprocket);
+        let mut border = self.border.fixed_columns_mut::<BORDER>(0);
+        border += entries * entries.transpose() * damper.stiffness;
+        let mut right = self.border.column_mut(RIGHT);
+        right += entries * damper.at(0.0);
     }
 
     /// A constant impulse on a shoe and on the chassis.
@@ -189,8 +212,8 @@ impl ChainSystem {
         Some(())
     }
 
-    /// The velocities of the shoes with those of the chassis; returns that of the idler.
-    pub(super) fn follow(&self, chassis: [f64; 3], shoes: &mut [Twist]) -> f64 {
+    /// The velocities of the shoes with those of the chassis; returns those of idler and sprocket.
+    pub(super) fn follow(&self, chassis: [f64; 3], shoes: &mut [Twist]) -> [f64; 2] {
         let mut known = SVector::<f64, WIDTH>::zeros();
         known.fixed_rows_mut::<3>(CHASSIS).copy_from_slice(&chassis);
         known[RIGHT] = -1.0;
@@ -207,17 +230,21 @@ impl ChainSystem {
             behind = -(beside * known + next * behind);
             shoes[k] = Twist::from(<[f64; 3]>::from(behind));
         }
-        known[IDLER]
+        [known[IDLER], known[DRIVE]]
     }
 }
 
-/// Entries of the border of what acts on chassis and idler.
-fn of_chassis_and_idler([x, y, turn, slide]: [f64; 4]) -> SVector<f64, BORDER> {
+/// Entries of the border of what acts on the chassis and beside it.
+fn of_border([x, y, turn, last]: [f64; 4], beside: Beside) -> SVector<f64, BORDER> {
     let mut entries = SVector::<f64, BORDER>::zeros();
     entries
         .fixed_rows_mut::<3>(CHASSIS)
         .copy_from_slice(&[x, y, turn]);
-    entries[IDLER] = slide;
+    let place = match beside {
+        Beside::Idler => IDLER,
+        Beside::Sprocket => DRIVE,
+    };
+    entries[place] = last;
     entries
 }
 

@@ -56,7 +56,7 @@ fn sums(dynamics: &mut Dynamics, state: &State) -> (Vector, f64, f64) {
     );
     for (arm, turn) in dynamics.flippers.iter().zip(&state.flippers) {
         let (velocity, mass) = (arm.velocity(state.twist(), turn.rate), arm.rule.mass);
-        let center = state.center + arm.pivot + arm.arm;
+        let center = state.center + arm.pivot + arm.center;
         let inertia = arm.rule.moment_of_inertia;
         sums.0 += velocity * mass;
         sums.1 += crate::plane::cross(center, velocity) * mass + inertia * turn.rate;

@@ -1,0 +1,139 @@
+//! Where the shoes of a chain bear on what they run on: the guide, or wheels and teeth.
+
+use rapier2d_f64::math::{Pose, Vector};
+
+use super::Chain;
+use crate::chain::ChainOfShoes;
+use crate::outline::Disc;
+
+/// Pitches by which a chain that has jumped off its guide hangs off it at least.
+const FAR_OFF: f64 = 2.0;
+
+/// A place where a shoe bears on the guide, on a wheel or on a tooth, or nearly.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::dynamics) struct Rest {
+    /// Index in the chain, and which of its rests.
+    pub shoe: usize,
+    pub place: usize,
+    pub point: Vector,
+    /// From there to the shoe.
+    pub normal: Vector,
+    /// [m]
+    pub gap: f64,
+    pub on: Bearing,
+}
+
+/// What a shoe bears on.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::dynamics) enum Bearing {
+    /// The guide or a wheel, and how it moves over the chassis with the idler, for each metre of its slide.
+    Chassis(Vector),
+    /// A tooth of the sprocket, and where the axle of that is.
+    Tooth(Vector),
+}
+
+/// Where chassis, idler and sprocket are when rests are looked for.
+#[derive(Clone, Copy)]
+pub(in crate::dynamics) struct Stand {
+    pub chassis: Pose,
+    /// [m] How far the idler is out, ...
+    pub travel: f64,
+    /// ... and what the sprocket has moved the chain by.
+    pub run: f64,
+}
+
+/// Places at which a shoe can rest: on either end of a guide and with its front pin on it; or on each wheel,
+/// with its front pin on each wheel, and between two teeth.
+pub(super) fn of_a_shoe(rule: &ChainOfShoes) -> usize {
+    match rule.sprocket {
+        None => 3,
+        Some(_) => 2 * (2 + rule.wheels.len()) + 2,
+    }
+}
+
+impl Chain {
+    /// Calls `found` for every place within `reach` [m] at which a shoe could rest.
+    pub(in crate::dynamics) fn rests(
+        &mut self,
+        stand: Stand,
+        place_of: impl Fn(usize) -> Pose,
+        reach: f64,
+        mut found: impl FnMut(&Self, Rest),
+    ) {
+        let back = stand.chassis.inverse();
+        self.places.clear();
+        let places = (0..self.rule.path.count).map(place_of);
+        self.places
+            .extend(places.map(|place| [place, back * place]));
+        self.is_off = if self.rule.sprocket.is_some() {
+            self.rests_on_wheels(stand, reach, &mut found);
+            self.is_off_wheels(stand)
+        } else {
+            self.rests_on_guide(stand, reach, &mut found)
+        };
+    }
+
+    /// Those on a guide; whether a shoe is too far off it to come back.
+    fn rests_on_guide(
+        &self,
+        stand: Stand,
+        reach: f64,
+        found: &mut impl FnMut(&Self, Rest),
+    ) -> bool {
+        let rule = &self.rule;
+        let (half, below) = (0.5 * rule.path.pitch, 0.5 * rule.plate_thickness);
+        let deepest = -0.5 * rule.ends[0].radius.min(rule.ends[1].radius);
+        let mut is_off = false;
+        for (shoe, [_, place]) in self.places.iter().enumerate() {
+            for (k, end) in rule.ends.iter().enumerate() {
+                let slides = if k == 1 { Vector::X } else { Vector::ZERO };
+                self.rest_on_disc((shoe, k), (*end, slides), stand, reach, found);
+            }
+            let corner = place.transform_point(Vector::new(half, -below));
+            let gap = -rule.hull.depth(corner);
+            is_off |= gap < deepest || gap > FAR_OFF * rule.path.pitch;
+            if gap < reach {
+                found(
+                    self,
+                    Rest {
+                        shoe,
+                        place: 2,
+                        point: stand.chassis.transform_point(corner),
+                        normal: stand.chassis.rotation * rule.hull.outward_at(corner),
+                        gap,
+                        on: Bearing::Chassis(Vector::ZERO),
+                    },
+                );
+            }
+        }
+        is_off
+    }
+
+    /// A rest of a plate's inner face on a disc that slides with the idler.
+    pub(super) fn rest_on_disc(
+        &self,
+        (shoe, place): (usize, usize),
+        (disc, slides): (Disc, Vector),
+        stand: Stand,
+        reach: f64,
+        found: &mut impl FnMut(&Self, Rest),
+    ) {
+        let (half, below) = (0.5 * self.rule.path.pitch, 0.5 * self.rule.plate_thickness);
+        let [place_now, on_chassis] = self.places[shoe];
+        let center = on_chassis.inverse_transform_point(disc.center + slides * stand.travel);
+        let gap = -below - (center.y + disc.radius);
+        if center.x.abs() <= half && center.y < 0.0 && gap < reach {
+            found(
+                self,
+                Rest {
+                    shoe,
+                    place,
+                    point: place_now.transform_point(Vector::new(center.x, -below)),
+                    normal: place_now.rotation * Vector::Y,
+                    gap,
+                    on: Bearing::Chassis(stand.chassis.rotation * slides),
+                },
+            );
+        }
+    }
+}

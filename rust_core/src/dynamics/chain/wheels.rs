@@ -1,0 +1,135 @@
+//! Where a chain bears on wheels: the drum of the sprocket, its teeth, idler, road wheels, rollers.
+
+use rapier2d_f64::math::{Rotation, Vector};
+
+use super::Chain;
+use super::rests::{Bearing, Rest, Stand};
+use crate::outline::Disc;
+
+impl Chain {
+    /// Rests of plates and pins on wheels, and of pins on the teeth.
+    pub(super) fn rests_on_wheels(
+        &self,
+        stand: Stand,
+        reach: f64,
+        found: &mut impl FnMut(&Self, Rest),
+    ) {
+        let rule = &self.rule;
+        let [rear, front] = rule.ends.map(|end| [end]);
+        let idle = Disc {
+            center: front[0].center + Vector::X * stand.travel,
+            ..front[0]
+        };
+        let wheels = rear.iter().chain(&front).chain(&rule.wheels);
+        for shoe in 0..self.places.len() {
+            for (k, wheel) in wheels.clone().enumerate() {
+                let slides = if k == 1 { Vector::X } else { Vector::ZERO };
+                self.rest_on_disc((shoe, k), (*wheel, slides), stand, reach, found);
+                let wheel = if k == 1 { idle } else { *wheel };
+                self.rest_of_pin((shoe, k), (wheel, slides), stand, reach, found);
+            }
+            self.rest_on_teeth(shoe, stand, reach, found);
+        }
+    }
+
+    /// A rest of the edge between two plates on a wheel, where that meets neither face.
+    fn rest_of_pin(
+        &self,
+        (shoe, wheel): (usize, usize),
+        (disc, slides): (Disc, Vector),
+        stand: Stand,
+        reach: f64,
+        found: &mut impl FnMut(&Self, Rest),
+    ) {
+        let (half, below) = (0.5 * self.rule.path.pitch, 0.5 * self.rule.plate_thickness);
+        let [_, place] = self.places[shoe];
+        let center = place.inverse_transform_point(disc.center);
+        let corner = Vector::new(half, -below);
+        let away = corner - center;
+        let near = disc.radius + reach;
+        if center.x <= half || center.y >= 0.0 || away.length_squared() >= near * near {
+            return;
+        }
+        let [_, next] = self.places[(shoe + 1) % self.places.len()];
+        if next.inverse_transform_point(disc.center).x >= -half {
+            return;
+        }
+        let length = away.length();
+        found(
+            self,
+            Rest {
+                shoe,
+                place: 2 + self.rule.wheels.len() + wheel,
+                point: stand.chassis.transform_point(place.transform_point(corner)),
+                normal: stand.chassis.rotation * (place.rotation * (away / length)),
+                gap: length - disc.radius,
+                on: Bearing::Chassis(stand.chassis.rotation * slides),
+            },
+        );
+    }
+
+    /// Rests of the front pin of a shoe on the tooth behind it and on the one ahead.
+    fn rest_on_teeth(
+        &self,
+        shoe: usize,
+        stand: Stand,
+        reach: f64,
+        found: &mut impl FnMut(&Self, Rest),
+    ) {
+        let rule = &self.rule;
+        let Some(sprocket) = &rule.sprocket else {
+            return;
+        };
+        let axle = rule.ends[0].center;
+        let pin = self.pin(shoe);
+        let most = sprocket.teeth.tip_radius + reach;
+        if (pin - axle).length_squared() > most * most {
+            return;
+        }
+        let turned = Rotation::new(sprocket.angle(stand.run));
+        let seen = turned.inverse() * (pin - axle);
+        let flanks = sprocket.teeth.flanks(seen, reach);
+        for (side, flank) in flanks.into_iter().flatten().enumerate() {
+            if flank.gap < reach {
+                found(
+                    self,
+                    Rest {
+                        shoe,
+                        place: 2 * (2 + rule.wheels.len()) + side,
+                        point: stand.chassis.transform_point(pin),
+                        normal: stand.chassis.rotation * (turned * flank.normal),
+                        gap: flank.gap,
+                        on: Bearing::Tooth(stand.chassis.transform_point(axle)),
+                    },
+                );
+            }
+        }
+    }
+
+    /// The front pin of a shoe in the frame of the chassis.
+    fn pin(&self, shoe: usize) -> Vector {
+        let [_, place] = self.places[shoe];
+        place.transform_point(Vector::new(0.5 * self.rule.path.pitch, 0.0))
+    }
+
+    /// Whether it no longer goes round sprocket and idler: what is left behind one of them is no loop.
+    pub(super) fn is_off_wheels(&self, stand: Stand) -> bool {
+        let [rear, front] = self.rule.ends.map(|end| end.center);
+        let goes_round = |center: Vector, outwards: f64| {
+            let mut crossings = 0;
+            let mut last = self.pin(self.places.len() - 1) - center;
+            for shoe in 0..self.places.len() {
+                let pin = self.pin(shoe) - center;
+                if (last.y > 0.0) != (pin.y > 0.0) {
+                    let share = last.y / (last.y - pin.y);
+                    let at = last.x + share * (pin.x - last.x);
+                    crossings += i32::from(at * outwards > 0.0);
+                }
+                last = pin;
+            }
+            crossings % 2 == 1
+        };
+        let idler = front + Vector::X * stand.travel;
+        !(goes_round(rear, -1.0) && goes_round(idler, 1.0))
+    }
+}
