@@ -2,7 +2,7 @@
 
 Run it with ``python -m crawler2d.experiments``; ``--help`` lists the options. With
 ``chains`` it sets chains of shoes beside what stands in for them, on steps; with ``chain-steps`` it
-asks how fine a chain must be stepped.
+asks how fine a chain must be stepped; with ``flippers`` how high the Engineer gets with its arms.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from crawler2d.experiments import report, stops_report
 from crawler2d.experiments import tables as rows
 from crawler2d.experiments.chain_steps import chain_steps, chain_steps_text
 from crawler2d.experiments.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.experiments.flippers import HEIGHTS, highest_steps, highest_steps_text
 from crawler2d.experiments.models import gear_pairs
 from crawler2d.experiments.public_model import posts, public_wheel_model
 from crawler2d.experiments.replays import write_replays
@@ -37,9 +38,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("seizure", "chains", "chain-steps"),
+        choices=("seizure", "chains", "chain-steps", "flippers"),
         default="seizure",
-        help="the seizure study (default), or chains beside belt and gears, or how finely to step",
+        help="the seizure study (default), or chains beside belt and gears, or how finely to step"
+        " them, or the highest step with flippers",
     )
     parser.add_argument("--quick", action="store_true", help="few heights and repeats")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the results")
@@ -58,6 +60,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             text = f"{chain_steps_text(steps)}\n"
             print(f"\n{text}")
             (options.out / "chain_steps.txt").write_text(text, encoding="utf-8")
+        elif options.what == "flippers":
+            heights, repeats = (HEIGHTS[1::4], 2) if options.quick else (HEIGHTS, 6)
+            highest = highest_steps(
+                heights, repeats=repeats, seed=options.seed, threads=options.threads
+            )
+            text = f"{highest_steps_text(highest)}\n"
+            print(f"\n{text}")
+            (options.out / "flippers.txt").write_text(text, encoding="utf-8")
         else:
             design = QUICK if options.quick else FULL
             study = Study(design=design, seed=options.seed, threads=options.threads)

