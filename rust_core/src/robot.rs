@@ -174,20 +174,20 @@ impl Model {
         let radius = robot.outline.rear_radius;
         let flippers = Flipper::of(robot);
         // A chain is all of the track's mass and has all of its force; beside it, only flippers have drives.
-        let (sharers, mut drive_masses) = if track.chains.is_empty() {
-            let share = robot.track_mass / track.drives as f64;
-            (track.motors, vec![share; track.drives])
+        let has_chain = !track.chains.is_empty();
+        let (sharers, of_track) = if has_chain {
+            (1, 1)
         } else {
-            (1, vec![robot.track_mass])
+            (track.motors, track.drives)
         };
+        let mut drive_masses = vec![robot.track_mass / of_track as f64; of_track];
         let beside = flippers.iter().map(Flipper::mass_of_track);
-        drive_masses.extend(beside.take(track.drives - drive_masses.len()));
-        let of_others: f64 = drive_masses[sharers..].iter().sum();
-        let circulating = (robot.track_mass + of_others) * radius * radius;
+        drive_masses.extend(beside.take(track.drives - of_track));
+        let circulating = robot.track_mass + drive_masses[of_track..].iter().sum::<f64>();
         Ok(Self {
             mass: robot.mass,
             center_of_mass: Vector::from(robot.center_of_mass),
-            moment_of_inertia: robot.moment_of_inertia - circulating,
+            moment_of_inertia: robot.moment_of_inertia - circulating * radius * radius,
             parts,
             drives: track.drives,
             motors: track.motors,
