@@ -111,9 +111,11 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
         ax.fill(x, y, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
         ax.plot(x, y, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
     for carrier in carriers(run, geometry):
-        # What shoes slide on is no more than a hint behind them.
-        color = _GUIDE if carrier.track.get("shoes") else _BLACK
-        for outline in outlines(carrier, sample):
+        # What shoes run on is no more than a hint behind them, but for the sprocket.
+        usual = _GUIDE if carrier.track.get("shoes") else _BLACK
+        first = _BLACK if carrier.track.get("sprocket") else usual
+        for k, outline in enumerate(outlines(carrier, sample)):
+            color = usual if k else first
             ax.plot(*outline.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
     _draw_shoes(run, geometry, sample, ax, alpha=alpha)
     center = placed(run, sample, mass_center(run, geometry, sample)[None])

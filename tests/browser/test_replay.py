@@ -20,6 +20,7 @@ from crawler2d._shapes import carriers, outlines
 STEP = c2d.terrains.step(0.075)
 ROUND = c2d.LineOfWheels(4, wheel_radius=0.0608)
 GEARED = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
+SPROCKET = c2d.SegmentalTrack(mechanism="sprocket")
 HOSTILE = "</script><img src=x onerror=\"document.title='broken'\">`${document.title='broken'}`"
 RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "round wheels that stop": (ROBOT.with_track(ROUND), STEP),
@@ -31,6 +32,12 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
         ROBOT.with_track(c2d.SegmentalTrack(shoe_shape="trapezoid")),
         c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03)),
     ),
+    "sprocket": (ROBOT.with_track(SPROCKET), c2d.terrains.step(0.05)),
+    "sprockets on two lanes": (
+        ROBOT.with_track(SPROCKET),
+        c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03)),
+    ),
+    "sprocket with flippers": (with_flippers(SPROCKET), c2d.terrains.step(0.2)),
     "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
     "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
     "circumferential": (
@@ -296,6 +303,23 @@ def test_the_shoes_of_the_page_lie_where_the_run_has_them(open_page: Open, name:
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
     for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
         assert has_frame(frames, place, angle)
+
+
+@pytest.mark.parametrize(
+    "name", ["sprocket", "sprockets on two lanes", "sprocket with flippers"]
+)
+def test_what_is_in_a_chain_turns_as_far_as_the_run_has_it(open_page: Open, name: str) -> None:
+    run = simulated(name)
+    sample = 170
+    frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
+    geometry = _core.geometry(run.scenario.to_json())
+    sprocket, chassis = geometry["sprocket"], carriers(run, geometry)[0]
+    way = run.drive_positions[sample, sprocket["drive"]]
+    wheels = geometry["circles"].copy()
+    wheels[0, 2] = sprocket["radius"]
+    places = chassis.placed(sample, wheels[:, :2])
+    for place, radius in zip(places, wheels[:, 2], strict=True):
+        assert has_frame(frames, place, run.chassis_angle[sample] - way / radius)
 
 
 @pytest.mark.parametrize("sample", [120, 200, 260])
