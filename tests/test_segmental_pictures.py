@@ -153,8 +153,9 @@ def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
 @pytest.mark.parametrize("terrain", [c2d.terrains.flat(), LANES], ids=["one lane", "two lanes"])
 @pytest.mark.parametrize("flippers", [False, True], ids=["bare", "flippers"])
 def test_teeth_stand_between_the_pins_that_are_drawn(terrain: Any, flippers: bool) -> None:
-    robot = c2d.robots.engineer(track=SPROCKET)
-    run = c2d.simulate(robot if flippers else robot.replace(flippers=None), terrain, duration=4.0)
+    bare = c2d.robots.engineer(flippers=None, track=SPROCKET)
+    robot = c2d.robots.engineer(track=SPROCKET) if flippers else bare
+    run = c2d.simulate(robot, terrain, duration=4.0)
     geometry = _core.geometry(run.scenario.to_json())
     chassis, *arms = carriers(run, geometry)
     assert bool(arms) == flippers
@@ -189,6 +190,18 @@ def test_the_picture_has_sprocket_idler_and_wheels_and_no_guide() -> None:
         assert any(np.array_equal(outline, line) for line in lines)
     corners = len(geometry["root_envelope"])
     assert all(len(line) != corners + 1 for line in lines)
+
+
+def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
+    run = simulated(SPROCKET)
+    row = next(row for row, bodies in enumerate(run.events["bodies"]) if len(set(bodies)) == 2)
+    _, ax = plt.subplots()
+    run.plot(0.5 * (run.events["start"][row] + run.events["end"][row]), axes=ax)
+    (told,) = [
+        str(line.get_label()) for line in ax.get_lines() if "inside" in str(line.get_label())
+    ]
+    plt.close("all")
+    assert re.fullmatch(r"edge inside the track: \d+\.\d mm", told)
 
 
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
