@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d._shapes import pins, shoes, turned
+from crawler2d._shapes import carriers, outlines, pins, shoes
 from crawler2d.track import Track
 
 mpl.use("Agg")
@@ -21,12 +21,14 @@ from matplotlib.collections import PolyCollection
 GROUSER, SHOE = 4, 5
 STEP = c2d.terrains.step(0.06)
 LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
+SPROCKET = c2d.SegmentalTrack(mechanism="sprocket")
 RUNS: dict[str, tuple[c2d.SegmentalTrack, Any]] = {
     "plates": (c2d.SegmentalTrack(), STEP),
     "trapezoids": (c2d.SegmentalTrack(shoe_shape="trapezoid"), STEP),
     "short shoes": (c2d.SegmentalTrack(shoe_count=44), STEP),
     "two lanes": (c2d.SegmentalTrack(), LANES),
-    "sprocket": (c2d.SegmentalTrack(mechanism="sprocket"), STEP),
+    "sprocket": (SPROCKET, STEP),
+    "sprockets on two lanes": (SPROCKET, LANES),
 }
 
 
@@ -58,9 +60,10 @@ def distance(point: Any, outline: Any) -> float:
 def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
     table = chain.contacts
     near = table["lane"].max()
-    # Of two tracks the right one is in front; behind the parts of each comes its guide.
-    pieces = len(_core.geometry(chain.scenario.to_json())["shoes"])
-    first = pieces + 1 if near else 0
+    # Of two tracks the right one is in front; after the shoes of each comes what they run on.
+    geometry = _core.geometry(chain.scenario.to_json())
+    pieces = len(geometry["shoes"])
+    first = int(geometry["bodies"][0]) - pieces
     distances = []
     for sample in range(20, chain.time.size, 8):
         _, ax = plt.subplots()
@@ -147,17 +150,21 @@ def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
     assert "wheel" not in told
 
 
-def test_teeth_stand_between_the_pins_that_are_drawn() -> None:
-    run = simulated(c2d.SegmentalTrack(mechanism="sprocket"), c2d.terrains.flat(), duration=4.0)
+@pytest.mark.parametrize("terrain", [c2d.terrains.flat(), LANES], ids=["one lane", "two lanes"])
+@pytest.mark.parametrize("flippers", [False, True], ids=["bare", "flippers"])
+def test_teeth_stand_between_the_pins_that_are_drawn(terrain: Any, flippers: bool) -> None:
+    bare = c2d.robots.engineer(flippers=None, track=SPROCKET)
+    robot = c2d.robots.engineer(track=SPROCKET) if flippers else bare
+    run = c2d.simulate(robot, terrain, duration=4.0)
     geometry = _core.geometry(run.scenario.to_json())
-    sprocket = geometry["sprocket"]
+    chassis, *arms = carriers(run, geometry)
+    assert bool(arms) == flippers
+    rear = np.array(geometry["sprocket"]["center"])[None]
     for sample in range(100, run.time.size, 25):
-        teeth = turned(sprocket, run.drive_positions[sample])
-        places = (pins(run, geometry)[sample] - run.position[sample]) @ rotation(
-            run.chassis_angle[sample]
-        )
-        from_axle = np.hypot(*(places - sprocket["center"]).T)
-        seated = places[(places[:, 0] < sprocket["center"][0]) & (from_axle < 0.0575)]
+        teeth, places = outlines(chassis, sample)[0], pins(run, geometry)[sample]
+        axle = chassis.placed(sample, rear)[0]
+        behind = (places - axle) @ directed(run.chassis_angle[sample]) < 0.0
+        seated = places[behind & (np.hypot(*(places - axle).T) < 0.0575)]
         assert len(seated) >= 1
         # A pin is as thick as the plates, some 3 mm, and keeps its play to the flanks.
         clear = [distance(place, teeth) for place in seated]
@@ -165,17 +172,51 @@ def test_teeth_stand_between_the_pins_that_are_drawn() -> None:
         assert max(clear) < 4e-3
 
 
-def rotation(angle: float) -> Any:
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])
+def directed(angle: float) -> Any:
+    return np.array([np.cos(angle), np.sin(angle)])
 
 
-def test_the_page_has_sprocket_idler_and_wheels() -> None:
-    run = simulated(c2d.SegmentalTrack(mechanism="sprocket"), duration=0.5)
-    robot = page_of(run)["robot"]
-    assert robot["rolling"]
-    assert len(robot["ends"]) == 2 + 7 + 3
-    assert "outline" in robot["ends"][0]
+def test_the_picture_has_sprocket_idler_and_wheels_and_no_guide() -> None:
+    run = simulated(SPROCKET, duration=0.5)
+    geometry = _core.geometry(run.scenario.to_json())
+    (chassis,) = carriers(run, geometry)
+    _, ax = plt.subplots()
+    run.plot(0.3, axes=ax)
+    lines = [np.array(line.get_xydata()) for line in ax.get_lines()]
+    plt.close("all")
+    drawn = outlines(chassis, int(np.abs(run.time - 0.3).argmin()))
+    assert len(drawn) == 2 + 7 + 3
+    for outline in drawn:
+        assert any(np.array_equal(outline, line) for line in lines)
+    corners = len(geometry["root_envelope"])
+    assert all(len(line) != corners + 1 for line in lines)
+
+
+def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
+    run = simulated(SPROCKET)
+    row = next(row for row, bodies in enumerate(run.events["bodies"]) if len(set(bodies)) == 2)
+    _, ax = plt.subplots()
+    run.plot(0.5 * (run.events["start"][row] + run.events["end"][row]), axes=ax)
+    (told,) = [
+        str(line.get_label()) for line in ax.get_lines() if "inside" in str(line.get_label())
+    ]
+    plt.close("all")
+    assert re.fullmatch(r"edge inside the track: \d+\.\d mm", told)
+
+
+@pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
+def test_the_page_has_sprocket_idler_and_wheels(terrain: Any) -> None:
+    run = simulated(SPROCKET, terrain, duration=0.5)
+    robot, geometry = page_of(run)["robot"], _core.geometry(run.scenario.to_json())
+    sprocket = geometry["sprocket"]
+    first, *others = robot["wheels"]
+    assert len(others) == 1 + 7 + 3
+    assert (robot["hull"], robot["ends"], robot["envelope"]) == (None, [], None)
+    assert first["radius"] == sprocket["radius"]
+    assert np.abs(unpacked(first["outline"]).reshape(-1, 2) - sprocket["outline"]).max() < 1e-5
+    assert not any("outline" in wheel for wheel in others)
+    # Of two tracks the right one is in front.
+    assert {wheel["drive"] for wheel in robot["wheels"]} == {run.drive_positions.shape[1] - 1}
 
 
 def test_the_guide_is_called_by_its_name() -> None:

@@ -165,9 +165,16 @@ def _directed(angles: NDArray[np.float64], vector: Any) -> NDArray[np.float64]:
 
 
 def outlines(carrier: Carrier, sample: int) -> list[NDArray[np.float64]]:
-    """[m] What runs round a carrier, where it is: gears, or a belt with grousers, or wheels."""
+    """[m] What runs round a carrier, where it is: gears, or a belt with grousers, or wheels.
+
+    Of what a chain runs on, the sprocket comes first.
+    """
     track, ways = carrier.track, carrier.ways[sample]
-    if track["gears"]:
+    sprocket = track.get("sprocket")
+    if sprocket:
+        others = [circle(x, y, radius) for x, y, radius in track["circles"][1:]]
+        lines = [_turned(sprocket, ways), *others]
+    elif track["gears"]:
         lines = [_turned(gear, ways) for gear in track["gears"]]
     elif track["hull"]:
         belt = closed(track["root_envelope"])

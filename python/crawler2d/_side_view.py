@@ -10,6 +10,7 @@ from crawler2d import _core
 from crawler2d._extras import extra
 from crawler2d._shapes import (
     SLIVER,
+    carrier_of,
     carriers,
     closed,
     extent,
@@ -79,7 +80,7 @@ def side_view(run: Run, times: NDArray[np.float64], ax: Axes) -> None:
     shown = int(samples[-1])
     _draw_contacts(run, shown, ax)
     _draw_envelopes(run, geometry, shown, ax)
-    _draw_intrusions(run, shown, ax)
+    _draw_intrusions(run, geometry, shown, ax)
     if left < geometry["goal"] < right:
         ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
@@ -111,9 +112,11 @@ def _draw_robot(run: Run, geometry: dict[str, Any], sample: int, ax: Axes, *, al
         ax.fill(x, y, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
         ax.plot(x, y, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
     for carrier in carriers(run, geometry):
-        # What shoes slide on is no more than a hint behind them.
-        color = _GUIDE if carrier.track.get("shoes") else _BLACK
-        for outline in outlines(carrier, sample):
+        # What shoes run on is no more than a hint behind them, but for the sprocket.
+        usual = _GUIDE if carrier.track.get("shoes") else _BLACK
+        first = _BLACK if carrier.track.get("sprocket") else usual
+        for k, outline in enumerate(outlines(carrier, sample)):
+            color = usual if k else first
             ax.plot(*outline.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
     _draw_shoes(run, geometry, sample, ax, alpha=alpha)
     center = placed(run, sample, mass_center(run, geometry, sample)[None])
@@ -218,7 +221,7 @@ def _draw_envelopes(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -
             soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
 
 
-def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
+def _draw_intrusions(run: Run, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
     """Mark the edges that are inside the track at one sample."""
     events, time = run.events, run.time[sample]
     inside = events["kind"] == "intrusion"
@@ -234,7 +237,9 @@ def _draw_intrusions(run: Run, sample: int, ax: Axes) -> None:
     most_loaded = rows[events["force"][rows].argmax()]
     depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
     label = f"edge inside the track: {1e3 * depth:.1f} mm"
-    if one != other:
+    # Not those in a chain: the edge is between two of its shoes.
+    in_chain = geometry["shoes"] and not carrier_of(geometry, one)
+    if one != other and not in_chain:
         label += f" between wheels {one} and {other}"
     ax.plot(
         run.edges["x"][edges],

@@ -18,8 +18,11 @@ from crawler2d import _core
 from crawler2d._shapes import carriers, outlines
 
 STEP = c2d.terrains.step(0.075)
+LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
 ROUND = c2d.LineOfWheels(4, wheel_radius=0.0608)
 GEARED = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
+RING = c2d.CircumferentialWheels(24, wheel_radius=0.015)
+SPROCKET = c2d.SegmentalTrack(mechanism="sprocket")
 HOSTILE = "</script><img src=x onerror=\"document.title='broken'\">`${document.title='broken'}`"
 RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "round wheels that stop": (ROBOT.with_track(ROUND), STEP),
@@ -27,16 +30,12 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "belt": (ROBOT, STEP),
     "belt with grousers": (ROBOT.with_track(c2d.GrouserBeltTrack()), STEP),
     "shoes": (ROBOT.with_track(c2d.SegmentalTrack()), c2d.terrains.step(0.05)),
-    "shoes on two lanes": (
-        ROBOT.with_track(c2d.SegmentalTrack(shoe_shape="trapezoid")),
-        c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03)),
-    ),
+    "shoes on two lanes": (ROBOT.with_track(c2d.SegmentalTrack(shoe_shape="trapezoid")), LANES),
+    "sprockets on two lanes": (ROBOT.with_track(SPROCKET), LANES),
+    "sprocket with flippers": (with_flippers(SPROCKET), c2d.terrains.step(0.2)),
     "skids": (ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1)),
     "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
-    "circumferential": (
-        ROBOT.with_track(c2d.CircumferentialWheels(24, wheel_radius=0.015)),
-        c2d.terrains.barrier(0.1, 0.02),
-    ),
+    "circumferential": (ROBOT.with_track(RING), c2d.terrains.barrier(0.1, 0.02)),
     "flippers with grousers": (with_flippers(c2d.GrouserBeltTrack()), c2d.terrains.step(0.2)),
     "flippers with gear wheels": (with_flippers(GEARED), c2d.terrains.step(0.2)),
 }
@@ -284,18 +283,25 @@ def has_frame(frames: list[Any], place: Any, angle: float) -> bool:
     """Whether one of some frames is at a place [m] and angle [rad], to 0.1 mm and 1 mrad."""
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     pose = np.column_stack([turn, place])
-    misses = [np.abs(pose - frame) for frame in frames]
-    nearest = min(misses, key=lambda miss: float(miss.max()))
+    nearest = min((np.abs(pose - frame) for frame in frames), key=lambda miss: float(miss.max()))
     return bool(nearest[:, 2].max() < 1e-4 and nearest[:, :2].max() < 1e-3)
 
 
-@pytest.mark.parametrize("name", ["shoes", "shoes on two lanes"])
-def test_the_shoes_of_the_page_lie_where_the_run_has_them(open_page: Open, name: str) -> None:
+@pytest.mark.parametrize("name", [name for name in RUNS if "shoe" in name or "sprocket" in name])
+def test_a_chain_and_its_wheels_lie_where_the_run_has_them(open_page: Open, name: str) -> None:
     run = simulated(name)
     sample = 170  # the front is on the step
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
     for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
         assert has_frame(frames, place, angle)
+    geometry = _core.geometry(run.scenario.to_json())
+    sprocket, chassis = geometry["sprocket"], carriers(run, geometry)[0]
+    if sprocket:
+        way = run.drive_positions[sample, sprocket["drive"]]
+        radii = [sprocket["radius"], *geometry["circles"][1:, 2]]
+        places = chassis.placed(sample, geometry["circles"][:, :2])
+        for place, radius in zip(places, radii, strict=True):
+            assert has_frame(frames, place, run.chassis_angle[sample] - way / radius)
 
 
 @pytest.mark.parametrize("sample", [120, 200, 260])

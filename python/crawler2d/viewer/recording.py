@@ -223,13 +223,21 @@ def _track(run: Run, track: dict[str, Any], *, moving: bool) -> dict[str, Any]:
     ]
     for wheel, gear in zip(wheels, gears, strict=False):
         wheel["outline"] = packed(gear["outline"], _SHAPE)
-    hull = bool(track["hull"])
+    sprocket = track.get("sprocket")
+    if sprocket:  # the first of the wheels in its chain, which all turn with it
+        for wheel in wheels:
+            wheel["drive"] = int(sprocket["drive"])
+        outline = packed(sprocket["outline"], _SHAPE)
+        wheels[0] |= {"radius": _number(sprocket["radius"]), "outline": outline}
+    # Nothing gets inside a belt or a chain; wheels in a chain are seen in place of a hull.
+    closed = bool(track["hull"])
+    hull = closed and not sprocket
     envelope = track["envelope"]
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     shapes = {
         "hull": track["root_envelope"] if hull else None,
-        "envelope": None if hull else envelope,  # nothing gets inside a belt
-        "inner": None if hull else inset(envelope, depth),
+        "envelope": None if closed else envelope,
+        "inner": None if closed else inset(envelope, depth),
         "root": track["root_envelope"] if gears else None,
     }
     return {

@@ -26,7 +26,8 @@ class Track {
   draw(ctx, colors, pixel, way, jammed) {
     if (this.hull) this.drawHull(ctx, colors, pixel, way);
     for (const wheel of this.wheels) {
-      const color = jammed.includes(wheel.body) ? colors.intrusion : colors.track;
+      // Without an envelope the wheels are in a chain: the edge is between its shoes.
+      const color = this.envelope && jammed.includes(wheel.body) ? colors.intrusion : colors.track;
       ctx.save();
       ctx.translate(wheel.x, wheel.y);
       ctx.rotate(-way(wheel.drive) / wheel.radius);
