@@ -42,8 +42,8 @@ class Flippers(Parameters):
     track : Track, optional
         How their tracks are modelled: any model but a chain of shoes. Places of `HybridWheels` are
         counted from midway between the arm's axles. None takes the model of the robot's track, a
-        belt with grousers where that is a chain; it must be given where that has its wheels placed
-        by hand.
+        belt with grousers where that is a chain, more small wheels all round where a tip needs
+        them; it must be given where that has its wheels placed by hand.
 
     Examples
     --------

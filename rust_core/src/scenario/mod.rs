@@ -18,6 +18,7 @@ pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
+pub(crate) use track::MAX_WHEELS;
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
     HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,

@@ -8,7 +8,7 @@ use super::wheel::{MAX_GROUSERS, Wheel};
 use crate::error::ScenarioError;
 
 /// Most wheels of one side.
-const MAX_WHEELS: u32 = 200;
+pub(crate) const MAX_WHEELS: u32 = 200;
 /// Most shoes of a chain.
 const MAX_SHOES: u32 = 400;
 const PLATE: Range = Range::between(1e-4, 1.0, "m");

@@ -3,7 +3,7 @@
 use super::{TrackModel, build};
 use crate::error::ScenarioError;
 use crate::robot::{Mount, Part};
-use crate::scenario::{End, Flippers, Robot, TorqueSharing};
+use crate::scenario::{End, Flippers, MAX_WHEELS, Robot, TorqueSharing, Track};
 
 /// Adds the tracks of the arms to the track of a robot, whose motors drive them.
 pub(super) fn add(
@@ -12,8 +12,7 @@ pub(super) fn add(
     track: &mut TrackModel,
 ) -> Result<(), ScenarioError> {
     for (number, end) in flippers.ends().enumerate() {
-        let arm = arm_as_robot(robot, flippers, end);
-        let own = build(&arm).map_err(|error| ScenarioError {
+        let own = of_arm(robot, flippers, end).map_err(|error| ScenarioError {
             path: error
                 .path
                 .replacen("robot.track", "robot.flippers.track", 1),
@@ -41,6 +40,23 @@ pub(super) fn add(
         track.motors += own.motors - shared;
     }
     Ok(())
+}
+
+/// The track of the arms at an end. Where small wheels all round are the robot's and not given for the arms,
+/// there are as many as these need, at least: they are smaller at a tip.
+fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, ScenarioError> {
+    let mut arm = arm_as_robot(robot, flippers, end);
+    loop {
+        let built = build(&arm);
+        match &mut arm.track {
+            Track::Circumferential(wheels)
+                if flippers.track.is_none() && built.is_err() && wheels.count < MAX_WHEELS =>
+            {
+                wheels.count += 1;
+            }
+            _ => return built,
+        }
+    }
 }
 
 /// An arm as if it were a robot, to build its track.
