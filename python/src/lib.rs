@@ -3,6 +3,7 @@
 mod convert;
 mod diagnosis;
 mod errors;
+mod pictures;
 mod stepwise;
 
 use pyo3::prelude::*;
@@ -21,6 +22,7 @@ mod _core {
     use crate::convert;
     use crate::diagnosis;
     use crate::errors;
+    use crate::pictures;
 
     #[pymodule_export]
     use crate::stepwise::Simulation;
@@ -46,7 +48,7 @@ mod _core {
             let model = Model::on(&scenario.robot, &ground)?;
             Ok((scenario, model, ground))
         })?;
-        convert::geometry(py, &scenario, &model, &ground)
+        pictures::of(py, &scenario, &model, &ground)
     }
 
     /// One run.

@@ -31,6 +31,7 @@ mod gait;
 mod monitor;
 mod outcome;
 mod outline;
+mod part;
 mod plane;
 mod reading;
 mod robot;

@@ -7,7 +7,7 @@
 
 use super::Dynamics;
 use super::chain::Chain;
-use super::direct::Damper;
+use super::damper::Damper;
 use super::row::Row;
 use super::solve::{AGREEMENT, Phase};
 use super::state::{State, Twist};

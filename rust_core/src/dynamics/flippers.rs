@@ -11,10 +11,12 @@ mod tests;
 use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
-use super::direct::{Acts, Damper};
+use super::action::Action;
+use super::damper::Damper;
 use super::motors::{AT_LIMIT, Motor, PAST};
-use super::solve::{Action, Phase};
+use super::solve::Phase;
 use super::state::{State, Twist};
+use super::system::Acts;
 use crate::flipper::Flipper;
 use crate::plane::left_of;
 use crate::scenario::End;

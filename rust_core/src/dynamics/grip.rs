@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::direct::{DAMPING, Damper};
+use super::damper::Damper;
+use super::direct::DAMPING;
 use super::row::Row;
 use super::state::State;
 

@@ -6,16 +6,20 @@
 //! the soft step of Erin Catto's 2D solvers (2024). A surface speed is found together with the contact
 //! forces, so that the force limit of its motor acts on the net traction inside the step.
 
+mod action;
 mod chain;
 mod chains;
+mod damper;
 mod descent;
 mod direct;
 mod flippers;
 mod grip;
+mod levers;
 mod motors;
 mod row;
 mod solve;
 mod state;
+mod system;
 #[cfg(test)]
 mod tests;
 
@@ -28,17 +32,17 @@ use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
 use chain::{Chain, ChainImpulses};
 pub use chains::ChainReading;
-use direct::System;
 use flippers::Arm;
 pub(crate) use grip::Grip;
+pub(crate) use levers::{Direction, Levers};
 use motors::Motor;
 pub(crate) use motors::push_axis;
 use row::Row;
-pub(crate) use row::{Direction, Levers};
 use solve::{Phase, Push, Softness};
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
+use system::System;
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.

@@ -8,7 +8,7 @@ use rapier2d_f64::math::{Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
-use super::row::Direction;
+use super::levers::Direction;
 use super::solve::Phase;
 use super::state::State;
 use crate::plane::cross;

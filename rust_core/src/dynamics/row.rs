@@ -2,13 +2,13 @@
 
 use rapier2d_f64::math::{Rotation, Vector};
 
-use super::direct::Damper;
+use super::action::Action;
+use super::damper::Damper;
 use super::grip::Grip;
-use super::solve::{Action, Admittance, Softness};
+use super::levers::{Carried, Direction, Levers};
+use super::solve::{Admittance, Softness};
 use super::state::{Carrier, State, Twist};
 use crate::contact::{Contact, LoadedContact};
-use crate::outline::Motion;
-use crate::plane::{cross, left_of, right_of};
 use crate::robot::{Model, Mount};
 
 /// Compliance of the contacts of shoes in units of what goes with the contact frequency: shoes are light, but
@@ -76,20 +76,6 @@ pub(super) struct Row {
     start: Place,
 }
 
-/// A direction at a contact, and how the velocities of body and drive add up along it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Direction {
-    pub unit: Vector,
-    /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
-    pub lever: f64,
-    /// [m] Lever of the spin of the drive or sprocket; of a place on an idler, the share of its slide.
-    pub drive_lever: f64,
-    /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
-    pub back: f64,
-    /// [m] Lever of a flipper's turn; that of the chassis is then its pivot's.
-    pub flipper_lever: f64,
-}
-
 /// The touching point of the robot at the start of the step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Place {
@@ -103,107 +89,6 @@ struct Place {
     carried: Carried,
     /// [m] Position of the drive.
     drive_position: f64,
-}
-
-impl Carried {
-    /// [m] From the end of the arm to the contact when the chassis has turned and the drive has run so
-    /// far since.
-    fn offset(&self, turned: Rotation, run: f64) -> Vector {
-        let spoke = turned * self.spoke;
-        let spoke = if self.turn == 0.0 {
-            spoke
-        } else {
-            Rotation::new(-self.turn * run) * spoke
-        };
-        spoke + turned * self.along * run
-    }
-
-    /// As it was before that.
-    fn before(&self, turned: Rotation, run: f64) -> Self {
-        let back = turned.inverse();
-        Self {
-            spoke: self.offset(back, -run),
-            along: back * self.along,
-            ..*self
-        }
-    }
-}
-
-impl Direction {
-    /// `arm` leads from the carrier's centre to the contact; `motion` is the velocity of the surface over
-    /// the carrier for a surface speed of 1.
-    pub(crate) fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
-        // The surface speed is the drive radius times the spin over the chassis, clockwise.
-        let drive_lever = -model.drive_radius * unit.dot(motion);
-        Self {
-            unit,
-            lever: cross(arm, unit) - drive_lever,
-            drive_lever,
-            back: 0.0,
-            flipper_lever: 0.0,
-        }
-    }
-
-    /// The same of a contact of a flipper whose pivot lies so far from the chassis' centre of mass [m].
-    fn on_flipper(self, pivot: Vector) -> Self {
-        Self {
-            lever: cross(pivot, self.unit),
-            flipper_lever: self.lever,
-            ..self
-        }
-    }
-}
-
-/// Where a contact lies on the robot, and its directions.
-pub(crate) struct Levers {
-    pub normal: Direction,
-    pub tangent: Direction,
-    /// [m] From the carrier's centre to the contact.
-    arm: Vector,
-    carried: Carried,
-}
-
-/// How the touching point moves over its carrier for each metre of its drive.
-#[derive(Clone, Copy, Debug, Default)]
-struct Carried {
-    /// [m] To it from the axle that it turns about, or from where it began.
-    spoke: Vector,
-    /// [1/m] Turn about that axle.
-    turn: f64,
-    /// Motion along a line, besides.
-    along: Vector,
-}
-
-impl Levers {
-    /// Those of a contact of a part that its drive moves so over what carries it.
-    pub(crate) fn new(
-        contact: &Contact,
-        carrier: &Carrier,
-        over_carrier: Motion,
-        model: &Model,
-    ) -> Self {
-        let part = &model.parts[contact.part];
-        let arm = contact.point - carrier.center;
-        let mut carried = Carried::default();
-        let motion = if part.is_carried() {
-            let (motion, rotation) = (over_carrier, Rotation::new(carrier.angle));
-            (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
-            if motion.turn != 0.0 {
-                carried.spoke = arm - rotation * (motion.center - carrier.origin);
-            }
-            right_of(carried.spoke) * motion.turn + carried.along
-        } else if part.drive.is_some() {
-            left_of(contact.normal) // the surface moves along itself
-        } else {
-            Vector::ZERO
-        };
-        Self {
-            normal: Direction::new(contact.normal, arm, motion, model),
-            tangent: Direction::new(right_of(contact.normal), arm, motion, model),
-            arm,
-            carried,
-        }
-    }
 }
 
 impl Row {

@@ -10,7 +10,7 @@ mod wheels;
 use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
-use super::direct::Damper;
+use super::damper::Damper;
 use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};

@@ -3,7 +3,7 @@
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::direct::Damper;
+use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 use crate::plane::left_of;
 

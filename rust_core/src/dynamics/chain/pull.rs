@@ -9,7 +9,7 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::chain::ChainOfShoes;
-use crate::dynamics::direct::Damper;
+use crate::dynamics::damper::Damper;
 use crate::dynamics::state::{Shoe, State, Twist};
 use crate::plane::{cross, direction, left_of};
 

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use crate::dynamics::direct::Damper;
+use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 
 /// Rows and columns of the border: three of the closing shoe, three of the chassis, ...

@@ -1,0 +1,124 @@
+//! Where a contact lies on the robot, and how the velocities of body, flipper and drive add up along it.
+
+use rapier2d_f64::math::{Rotation, Vector};
+
+use super::state::Carrier;
+use crate::contact::Contact;
+use crate::outline::Motion;
+use crate::plane::{cross, left_of, right_of};
+use crate::robot::Model;
+
+/// A direction at a contact, and how the velocities of body and drive add up along it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Direction {
+    pub unit: Vector,
+    /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
+    pub lever: f64,
+    /// [m] Lever of the spin of the drive or sprocket; of a place on an idler, the share of its slide.
+    pub drive_lever: f64,
+    /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
+    pub back: f64,
+    /// [m] Lever of a flipper's turn; that of the chassis is then its pivot's.
+    pub flipper_lever: f64,
+}
+
+impl Carried {
+    /// [m] From the end of the arm to the contact when the chassis has turned and the drive has run so
+    /// far since.
+    pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
+        let spoke = turned * self.spoke;
+        let spoke = if self.turn == 0.0 {
+            spoke
+        } else {
+            Rotation::new(-self.turn * run) * spoke
+        };
+        spoke + turned * self.along * run
+    }
+
+    /// As it was before that.
+    pub(super) fn before(&self, turned: Rotation, run: f64) -> Self {
+        let back = turned.inverse();
+        Self {
+            spoke: self.offset(back, -run),
+            along: back * self.along,
+            ..*self
+        }
+    }
+}
+
+impl Direction {
+    /// `arm` leads from the carrier's centre to the contact; `motion` is the velocity of the surface over
+    /// the carrier for a surface speed of 1.
+    pub(crate) fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
+        // The surface speed is the drive radius times the spin over the chassis, clockwise.
+        let drive_lever = -model.drive_radius * unit.dot(motion);
+        Self {
+            unit,
+            lever: cross(arm, unit) - drive_lever,
+            drive_lever,
+            back: 0.0,
+            flipper_lever: 0.0,
+        }
+    }
+
+    /// The same of a contact of a flipper whose pivot lies so far from the chassis' centre of mass [m].
+    pub(super) fn on_flipper(self, pivot: Vector) -> Self {
+        Self {
+            lever: cross(pivot, self.unit),
+            flipper_lever: self.lever,
+            ..self
+        }
+    }
+}
+
+/// Where a contact lies on the robot, and its directions.
+pub(crate) struct Levers {
+    pub normal: Direction,
+    pub tangent: Direction,
+    /// [m] From the carrier's centre to the contact.
+    pub(super) arm: Vector,
+    pub(super) carried: Carried,
+}
+
+/// How the touching point moves over its carrier for each metre of its drive.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Carried {
+    /// [m] To it from the axle that it turns about, or from where it began.
+    pub spoke: Vector,
+    /// [1/m] Turn about that axle.
+    turn: f64,
+    /// Motion along a line, besides.
+    along: Vector,
+}
+
+impl Levers {
+    /// Those of a contact of a part that its drive moves so over what carries it.
+    pub(crate) fn new(
+        contact: &Contact,
+        carrier: &Carrier,
+        over_carrier: Motion,
+        model: &Model,
+    ) -> Self {
+        let part = &model.parts[contact.part];
+        let arm = contact.point - carrier.center;
+        let mut carried = Carried::default();
+        let motion = if part.is_carried() {
+            let (motion, rotation) = (over_carrier, Rotation::new(carrier.angle));
+            (carried.turn, carried.along) = (motion.turn, rotation * motion.along);
+            if motion.turn != 0.0 {
+                carried.spoke = arm - rotation * (motion.center - carrier.origin);
+            }
+            right_of(carried.spoke) * motion.turn + carried.along
+        } else if part.drive.is_some() {
+            left_of(contact.normal) // the surface moves along itself
+        } else {
+            Vector::ZERO
+        };
+        Self {
+            normal: Direction::new(contact.normal, arm, motion, model),
+            tangent: Direction::new(right_of(contact.normal), arm, motion, model),
+            arm,
+            carried,
+        }
+    }
+}
