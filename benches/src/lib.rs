@@ -25,8 +25,9 @@ macro_rules! scene {
 }
 
 /// A robot of 20 kg on 5 wheels in line or 24 round the outline, round or with 12 or 10 grousers,
-/// before a step of 0.15 m or on a field of 20 blocks; and a belt.
-pub const SCENES: [Scene; 9] = [
+/// before a step of 0.15 m or on a field of 20 blocks; and the Engineer before a step: a belt, without and with
+/// grousers, chains of 22 shoes on a guide and round a sprocket, and with its flippers.
+pub const SCENES: [Scene; 13] = [
     scene!("peer_lwa5_round_step"),
     scene!("peer_lwa5_gear_step"),
     scene!("peer_cwa24_round_step"),
@@ -36,6 +37,10 @@ pub const SCENES: [Scene; 9] = [
     scene!("peer_cwa24_round_field"),
     scene!("peer_cwa24_gear_field"),
     scene!("engineer_belt_step"),
+    scene!("engineer_grouser_belt_step"),
+    scene!("engineer_chain_step"),
+    scene!("engineer_sprocket_step"),
+    scene!("engineer_flippers_step"),
 ];
 
 impl Scene {
