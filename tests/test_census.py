@@ -248,5 +248,7 @@ def test_the_census_holds_every_kind(census: list[Case], say: Callable[[str], No
         assert sum(outcomes[Outcome(stop)] for stop in STOPS) >= 5_000
     assert {outcome for outcome in reachable if outcomes[outcome] < least} == set()
     if whole:
-        assert {each for each in Mechanism if mechanisms[each] < least} == set()
+        of_chains = {Mechanism.PINCHED, Mechanism.FOULED}
+        told = set(Mechanism) - of_chains
+        assert {each for each in told if mechanisms[each] < least} == set()
     assert set(SIZES) == set(STRATA)

@@ -45,6 +45,13 @@ _MOVES = {
 }
 
 
+# What the mechanism adds to who bears.
+_HELD = {
+    "interlocked": ", a grouser's flank against it",
+    "pinched": ", which close the gap that it is in",
+}
+
+
 def sentence(diagnosis: Diagnosis) -> str:
     """Say what a diagnosis found, most telling first.
 
@@ -108,7 +115,7 @@ def _on_it(d: Diagnosis) -> str:
         said += f" and {names[1]} {does[1]}s on it {with_force[1]}"
     elif len(told) == 2:
         said += f", {names[1]} {with_force[1]}"
-    return said + (", a grouser's flank against it" if d.mechanism == "interlocked" else "")
+    return said + _HELD.get(str(d.mechanism), "")
 
 
 def _name(d: Diagnosis, body: int) -> str:

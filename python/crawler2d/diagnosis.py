@@ -18,6 +18,8 @@ class Mechanism(StrEnum):
     """How the ground inside the track is held; the first that fits."""
 
     BELLIED = "bellied"
+    FOULED = "fouled"
+    PINCHED = "pinched"
     INTERLOCKED = "interlocked"
     BLOCKED = "blocked"
     STRADDLED = "straddled"

@@ -62,7 +62,7 @@ pub struct Tensioner {
     pub stiffness: f64,
     /// [N s/m] Damping.
     pub damping: f64,
-    /// [m] How far it can be pressed in before it meets a stop; a guide bears what goes beyond.
+    /// [m] How far it can be pressed in before it meets a stop.
     pub stop: f64,
 }
 

@@ -17,6 +17,10 @@ pub enum Mechanism {
     Blocked,
     /// The motors stand at their limit with a grouser's flank against it.
     Interlocked,
+    /// It is in the gap between two shoes of a chain, which closes as they go on.
+    Pinched,
+    /// It has got through a chain of shoes to what that runs on.
+    Fouled,
 }
 
 impl Mechanism {
@@ -28,6 +32,8 @@ impl Mechanism {
             Self::Bellied => "bellied",
             Self::Blocked => "blocked",
             Self::Interlocked => "interlocked",
+            Self::Pinched => "pinched",
+            Self::Fouled => "fouled",
         }
     }
 
@@ -54,6 +60,10 @@ impl Mechanism {
         let bearing = track.iter().filter(|b| force_of(**b) > 0.5 * least).count();
         if belly.iter().any(|b| force_of(*b) > least) {
             Some(Self::Bellied)
+        } else if on_it().any(|c| c.kind.is_in_chain() && force_of(c.body) > 0.5 * least) {
+            Some(Self::Fouled)
+        } else if facts.pinched {
+            Some(Self::Pinched)
         } else if facts.stalled_share >= 0.5 {
             Some(if facts.flank {
                 Self::Interlocked
@@ -82,4 +92,6 @@ pub(super) struct Facts {
     pub stalled_share: f64,
     /// A grouser's flank bears on the ground inside the track.
     pub flank: bool,
+    /// Two shoes bear on one edge inside the track, and go on to close the gap between them.
+    pub pinched: bool,
 }

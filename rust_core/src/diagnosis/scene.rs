@@ -134,6 +134,7 @@ impl Scene<'_> {
             sliding_share: sum(&|c| on(c.slides, c.normal_force)) / normal,
             stalled_share: stalled as f64 / motors.len().max(1) as f64,
             flank: self.bears_on_a_flank(stance, &contacts),
+            pinched: self.pinches(&contacts),
             contacts,
         }
     }
@@ -150,6 +151,30 @@ impl Scene<'_> {
             let into_ground = self.levers(stance, &bearing.contact).normal.drive_lever;
             contact.in_pocket
                 && self.direction() * into_ground > INTO_GROUND * self.model.drive_radius
+        })
+    }
+
+    /// Whether two shoes bear on one edge inside the track where the gap between them closes: bent apart,
+    /// as round an end of the track, and about to be straightened, as at the end that goes ahead.
+    fn pinches(&self, contacts: &[StopContact]) -> bool {
+        /// [rad] Two shoes on a straight run are less bent.
+        const BENT: f64 = 0.05;
+
+        let shoes: Vec<(i32, usize)> = contacts
+            .iter()
+            .filter(|c| c.in_pocket && c.edge >= 0)
+            .filter_map(|c| Some((c.edge, self.model.parts[c.body].mount.shoe()?)))
+            .collect();
+        let closes = |a: usize, b: usize| {
+            let [one, other] = [a, b].map(|i| self.running.shoes[i]);
+            let bent = (one.rotation.inverse() * other.rotation).angle().abs();
+            let ahead = self.direction() * one.translation.x;
+            bent > BENT && ahead > 0.0
+        };
+        let pairs = shoes.iter().enumerate();
+        pairs.into_iter().any(|(i, (edge, shoe))| {
+            let others = shoes[..i].iter().filter(|(e, s)| e == edge && s != shoe);
+            others.clone().any(|(_, other)| closes(*shoe, *other))
         })
     }
 

@@ -18,6 +18,8 @@ const GRAVITY: f64 = 9.81;
 const SOFTNESS: f64 = 0.1;
 /// Pitches by which an idler can be pressed in.
 const STOP: f64 = 0.06;
+/// The same with what its stop gives way by.
+const PRESSED_IN: f64 = 0.07;
 
 /// Shoes on a guide or on wheels.
 pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
@@ -79,11 +81,14 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     let beyond = plate_thickness + outline.grouser_height;
     let (ends, wheels) = match track.mechanism {
         ChainMechanism::Guide => {
+            // The ground meets it where it is built, and its front end may be pressed in: it must not be met
+            // under plates that lie where they should.
+            let inside = PRESSED_IN * path.pitch;
             parts.push(Part {
                 kind: BodyKind::Guide,
                 shape: Shape::Hull {
-                    discs: guide.to_vec(),
-                    grouser_height: beyond,
+                    discs: guide.map(|end| shrunk(end, inside)).to_vec(),
+                    grouser_height: beyond + inside,
                 },
                 drive: None,
                 friction_limit: f64::INFINITY,
@@ -120,6 +125,14 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     })
 }
 
+/// A disc that lies so far [m] inside another, if there is room for it.
+fn shrunk(disc: Disc, inside: f64) -> Disc {
+    Disc {
+        radius: (disc.radius - inside).max(0.5 * disc.radius),
+        ..disc
+    }
+}
+
 /// The tensioners of both tracks together.
 fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
     let pre_tension = track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
@@ -133,10 +146,7 @@ fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
         pre_tension: 2.0 * pre_tension,
         stiffness: 2.0 * stiffness,
         damping: 2.0 * damping,
-        stop: match track.mechanism {
-            ChainMechanism::Guide => f64::INFINITY,
-            ChainMechanism::Sprocket => STOP * pitch,
-        },
+        stop: STOP * pitch,
     }
 }
 
