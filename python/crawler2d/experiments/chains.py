@@ -19,9 +19,6 @@ CHAINS = replace(FULL, heights={"step": tuple(0.01 * tens for tens in range(3, 1
 """Steps of 30 to 160 mm."""
 CHAINS_QUICK = replace(QUICK, heights={"step": (0.06, 0.10)}, repeats=4)
 
-TAUT = 50.0
-"""[N] Pre-tension of a track, a quarter of the robot's weight; the default is a tenth of it."""
-
 
 def chain_models() -> Mapping[str, StudyModel]:
     """List the models: every one has the grousers of the Engineer.
@@ -32,12 +29,10 @@ def chain_models() -> Mapping[str, StudyModel]:
         Tracks first, then wheels.
     """
     models = study_models(engineer(flippers=None).outline.axle_distance)
-    taut = StudyModel(track=SegmentalTrack(shoe_count=22, pre_tension=TAUT), source="ours")
     finer = StudyModel(track=SegmentalTrack(shoe_count=44), source="ours")
     return {
         "belt with grousers": models["belt with grousers"],
         "chain of 22 shoes": models["chain of 22 shoes"],
-        "22 shoes, taut": taut,
         "chain of 44 shoes": finer,
         "line of 3 gears": models["line of 3 gears"],
         "24 gears all round": models["24 gears all round"],
