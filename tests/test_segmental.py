@@ -121,8 +121,9 @@ def test_bad_fields_are_refused_by_name(options: dict[str, object], path: str, r
 
 
 def test_the_closed_belt_of_a_stop_weighs_as_much() -> None:
-    scenario = Scenario(chain(), c2d.terrains.step(0.1), duration=6.0)
-    run = c2d.simulate(scenario, counterfactual=True)
+    scenario = Scenario(chain(), c2d.terrains.step(0.16), duration=6.0)
+    weak = scenario.replace({"robot.drivetrain.max_torque": 2.0})
+    run = c2d.simulate(weak, counterfactual=True)
     assert run.diagnosis is not None
     assert run.diagnosis.counterfactual is not None
 
