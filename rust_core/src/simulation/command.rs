@@ -80,19 +80,6 @@ impl Simulation {
         Ok(())
     }
 
-    /// [rad] Angles of the flippers over the chassis, the front first, upwards > 0.
-    pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
-        let flippers = self.dynamics.model().flippers.iter().enumerate();
-        flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
-    }
-
-    /// [N m] Torques of their motors, the means over the last step, upwards > 0.
-    pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
-        let flippers = self.dynamics.model().flippers.iter();
-        let turns = flippers.zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign() * turn.torque)
-    }
-
     /// Gives commands of all kinds at once: all or, if one is refused, none.
     ///
     /// # Errors
