@@ -169,17 +169,6 @@ impl Dynamics {
         Some((velocity, turn))
     }
 
-    /// Gives the shoes the velocities of the last solve.
-    pub(super) fn take_shoes(&self, state: &mut State) {
-        let solved = self.chains.iter().flat_map(|chain| &chain.solved);
-        for (shoe, twist) in state.shoes.iter_mut().zip(solved) {
-            shoe.twist = *twist;
-        }
-        for (idler, chain) in state.idlers.iter_mut().zip(&self.chains) {
-            idler.rate = chain.idler_rate;
-        }
-    }
-
     /// Turns the velocities of the last solve into changes.
     pub(super) fn change_shoes(&mut self, state: &State) {
         let solved = self.chains.iter_mut().flat_map(|chain| &mut chain.solved);

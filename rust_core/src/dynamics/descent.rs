@@ -6,7 +6,6 @@
 //! energy.
 
 use super::Dynamics;
-use super::chain::Chain;
 use super::damper::Damper;
 use super::row::Row;
 use super::solve::{AGREEMENT, Phase};
@@ -96,29 +95,11 @@ impl Dynamics {
         self.choose_dampers(state);
         for _ in 0..STEPS {
             self.assemble_frozen(phase);
-            let Some((velocity, turn)) = self.solve_system() else {
+            let Some(change) = self.solve_for_change(state) else {
                 break;
             };
-            let change = Twist { velocity, turn }.less(state.twist());
-            self.change_shoes(state);
-            self.change_flippers(state, &change);
-            for (k, spin) in self.system.spins.iter_mut().enumerate() {
-                let of_sprocket = self.chains.get(k).is_some_and(Chain::has_sprocket);
-                let is_free = self.motors[k].share().is_some() || of_sprocket;
-                spin.change = if is_free {
-                    spin.value - state.drives[k].spin
-                } else {
-                    0.0
-                };
-            }
             let share = self.share_that_falls(state, &change, phase);
-            state.velocity += change.velocity * share;
-            state.angular_velocity += change.turn * share;
-            self.move_shoes(state, share);
-            self.move_flippers(state, share);
-            for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
-                drive.spin += spin.change * share;
-            }
+            self.move_by(state, &change, share);
             let same = self.choose_dampers(state);
             if (same && share >= 1.0) || share * self.largest(&change) < ROUNDING {
                 break;
@@ -134,18 +115,6 @@ impl Dynamics {
         self.chains_follow_velocities(state, phase);
         self.turn_with_chassis(state, phase);
         off
-    }
-
-    /// [m/s] A bound of what a change moves anything by, to the order.
-    fn largest(&self, change: &Twist) -> f64 {
-        let spins = self.system.spins.iter();
-        let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
-        let of_flippers = self.system.changes.iter().map(|change| change.abs());
-        let of_spins = of_spins.chain(of_flippers);
-        let of_spins = of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max);
-        let shoes = self.chains.iter().flat_map(|chain| &chain.solved);
-        let of_shoes = shoes.map(|change| change.velocity.length() + change.turn.abs());
-        of_shoes.fold(of_spins, f64::max)
     }
 
     /// Gives each contact the dampers that it is at these velocities; whether they are those that it had.
@@ -201,14 +170,6 @@ impl Dynamics {
         } else {
             low
         }
-    }
-
-    /// [m/s] What a change of the velocities changes along a contact's normal and tangent.
-    fn changes_of(&self, row: &Row, change: &Twist) -> [f64; 2] {
-        let shoe = |i: usize| self.chains[i / self.shoes_a_chain].solved[i % self.shoes_a_chain];
-        let idler = |k: usize| self.chains[k].idler_rate;
-        let spin = |k: usize| self.system.spins[k].change;
-        row.count(*change, shoe, spin, idler, |k| self.system.changes[k])
     }
 
     /// The slope of the potential along a change, a share of it further on.

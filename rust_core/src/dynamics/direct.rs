@@ -22,19 +22,12 @@ pub(super) const DAMPING: f64 = 1e-6;
 /// Solutions of the system in search of one that fits, with all misfits mended at once: they can chase each
 /// other for ever.
 const AT_ONCE: u32 = 4;
-/// The same of a chain, whose many contacts are then mended one by one, the worst first.
-const MENDINGS: u32 = 12;
 
 impl Dynamics {
     /// Finds the impulses that all constraints agree on, if a guess can be mended to fit.
     pub(super) fn solve_at_once(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
-        let most = if self.chains.is_empty() {
-            AT_ONCE
-        } else {
-            MENDINGS
-        };
-        for mendings in 1..=most {
+        for _ in 0..AT_ONCE {
             self.assemble(phase);
             let Some((velocity, turn)) = self.solve_system() else {
                 return false;
@@ -43,14 +36,12 @@ impl Dynamics {
             for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
                 drive.spin = spin.value;
             }
-            self.take_shoes(state);
             self.take_flippers(state);
             let mut change = self.rows_follow_velocities(state);
-            let fits = self.mend(state, mendings > AT_ONCE);
+            let fits = self.mend();
             if let Some(push) = &mut self.push {
                 change = change.max(push.follow_velocities(state));
             }
-            change = change.max(self.chains_follow_velocities(state, phase));
             if !fits {
                 continue;
             }
@@ -65,7 +56,6 @@ impl Dynamics {
             }
         }
         self.rows.iter_mut().for_each(Row::unsettle);
-        self.chains.iter_mut().for_each(Chain::unsettle);
         false
     }
 
@@ -73,27 +63,18 @@ impl Dynamics {
     /// [m/s].
     fn rows_follow_velocities(&mut self, state: &State) -> f64 {
         let bearing = self.rows.iter_mut().filter(|row| row.bears);
-        bearing.fold(0.0, |off, row| off.max(row.follow_velocities(state)))
+        bearing.fold(0.0, |off, row| {
+            off.max(row.follow_speeds(row.speeds(state)))
+        })
     }
 
-    /// Changes the grips that do not fit, or the worst `one` of them; whether all fitted.
-    fn mend(&mut self, state: &State, one: bool) -> bool {
-        let (mut fits, mut worst) = (true, (0.0, None));
-        for (i, row) in self.rows.iter_mut().enumerate() {
+    /// Changes the grips that do not fit; whether all fitted.
+    fn mend(&mut self) -> bool {
+        let mut fits = true;
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
             let next = row.grip.towards(row.fitting);
-            if !row.bears || next == row.grip {
-                continue;
-            }
-            fits = false;
-            if !one {
-                row.grip = next;
-            } else if row.misfit(state) >= worst.0 {
-                worst = (row.misfit(state), Some(i));
-            }
-        }
-        if let Some(i) = worst.1 {
-            let row = &mut self.rows[i];
-            row.grip = row.grip.towards(row.fitting);
+            fits &= next == row.grip;
+            row.grip = next;
         }
         fits
     }
@@ -130,7 +111,7 @@ impl Dynamics {
     }
 
     /// The system of the constraints as they are guessed.
-    fn assemble(&mut self, phase: &Phase) {
+    pub(super) fn assemble(&mut self, phase: &Phase) {
         self.assemble_bodies(phase);
         for i in 0..self.rows.len() {
             let row = &self.rows[i];

@@ -85,21 +85,25 @@ impl Row {
         [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 
-    /// [m/s] By how much its grip does not fit these velocities.
-    pub(super) fn misfit(&self, state: &State) -> f64 {
-        let ([approach, slip], [n, t]) = (self.speeds(state), self.dampers());
-        let load = n.at(approach) * self.admittance.normal;
-        match self.grip {
-            _ if self.grip == Grip::Open || load <= 0.0 => load.abs(),
-            Grip::Sticks => (t.at(slip) * self.admittance.tangent).abs() - self.friction * load,
-            _ => slip.abs(),
-        }
+    /// Takes the impulses that belong to speeds along normal and tangent [m/s], and the grip that fits them; how
+    /// far the velocities are from what they should be [m/s].
+    pub(super) fn follow_speeds(&mut self, speeds: [f64; 2]) -> f64 {
+        let (grip, [normal, friction]) = self.law(speeds);
+        self.fitting = grip;
+        self.normal_impulse = normal;
+        self.friction_impulse = friction;
+        let off_normal = (normal - self.center.0).abs() * self.admittance.normal;
+        let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
+        let off = match grip {
+            Grip::Open => 0.0,
+            Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
+            _ => off_normal,
+        };
+        DAMPING * off
     }
 
-    /// Takes the impulses that belong to the velocities, and the grip that fits them; how far the velocities
-    /// are from what they should be [m/s].
-    pub(super) fn follow_velocities(&mut self, state: &State) -> f64 {
-        let [approach, slip] = self.speeds(state);
+    /// What it does at such speeds, and its impulses along normal and tangent [N s].
+    pub(super) fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
         let [n, t] = self.dampers();
         let (normal, friction) = (n.at(approach), t.at(slip));
         let limit = self.friction * normal;
@@ -113,16 +117,6 @@ impl Row {
         } else {
             (Grip::Sticks, friction)
         };
-        self.fitting = grip;
-        self.normal_impulse = normal.max(0.0);
-        self.friction_impulse = friction;
-        let off_normal = (self.normal_impulse - self.center.0).abs() * self.admittance.normal;
-        let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
-        let off = match grip {
-            Grip::Open => 0.0,
-            Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
-            _ => off_normal,
-        };
-        DAMPING * off
+        (grip, [normal.max(0.0), friction])
     }
 }

@@ -9,6 +9,7 @@
 mod action;
 mod chain;
 mod chains;
+mod change;
 mod damper;
 mod descent;
 mod direct;
@@ -16,6 +17,7 @@ mod flippers;
 mod grip;
 mod levers;
 mod motors;
+mod newton;
 mod row;
 mod solve;
 mod state;

@@ -6,6 +6,7 @@ use super::action::Action;
 use super::damper::Damper;
 use super::grip::Grip;
 use super::levers::{Carried, Direction, Levers};
+use super::newton::Way;
 use super::solve::{Admittance, Softness};
 use super::state::{Carrier, State, Twist};
 use crate::contact::{Contact, LoadedContact};
@@ -58,6 +59,8 @@ pub(super) struct Row {
     pub grip: Grip,
     /// ... and what would fit the last velocities.
     pub fitting: Grip,
+    /// Where a step of a search leads it.
+    pub way: Way,
     /// [N s] Largest friction in a descent, ...
     pub limit: f64,
     /// ... and what normal and tangent are below it.
@@ -165,6 +168,7 @@ impl Row {
             friction_impulse: 0.0,
             grip: Grip::Open,
             fitting: Grip::Open,
+            way: Way::default(),
             limit: 0.0,
             frozen: [Damper::default(); 2],
             center: (0.0, 0.0),

@@ -12,8 +12,6 @@ use crate::robot::Model;
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
 pub(super) const AGREEMENT: f64 = 1e-7;
-/// Rounds of a chain at most: of the one solve in a hundred that two do not settle, more settle few.
-const ROUNDS_OF_CHAINS: u32 = 2;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -89,14 +87,14 @@ impl Dynamics {
     /// Finds the impulses that all constraints agree on.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
         self.set_actions(state, phase);
-        let rounds = if self.chains.is_empty() {
-            self.solver.iterations
+        let agreed = if self.chains.is_empty() {
+            // What they agree on with limits of friction is a better guess of what grips and what slides.
+            (0..self.solver.iterations)
+                .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
         } else {
-            self.solver.iterations.min(ROUNDS_OF_CHAINS)
+            self.solve_in_steps(state, phase) || self.descend(state, phase)
         };
-        // What they agree on with limits of friction is a better guess of what grips and what slides.
-        let agree = |_| self.solve_at_once(state, phase) || self.descend(state, phase);
-        if !(0..rounds).any(agree) {
+        if !agreed {
             self.end_search(state, phase);
         }
         if self.model.is_one_body() {

@@ -357,11 +357,6 @@ impl Chain {
         self.pull.impulses.center = self.pull.impulses.impulse;
     }
 
-    pub(super) fn unsettle(&mut self) {
-        self.pins.iter_mut().for_each(Pin::unsettle);
-        self.pull.impulses.impulse = self.pull.impulses.center;
-    }
-
     /// Starts a piece from the forces of the last one, in its time [s].
     pub(super) fn guess(&mut self, h: f64) {
         for pin in &mut self.pins {

@@ -85,10 +85,6 @@ impl Pin {
         self.center = self.impulse;
     }
 
-    pub(super) fn unsettle(&mut self) {
-        self.impulse = self.center;
-    }
-
     /// Starts from the force of the last piece in a time [s].
     pub(super) fn guess(&mut self, h: f64) {
         self.impulse = self.force * h;

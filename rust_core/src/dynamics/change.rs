@@ -1,0 +1,58 @@
+//! A change of all velocities: from those of a state to those that come out of a solve.
+
+use super::Dynamics;
+use super::chain::Chain;
+use super::row::Row;
+use super::state::{State, Twist};
+
+impl Dynamics {
+    /// Solves the system; the chassis' part of the change that leads there, with those of all else behind. None
+    /// if the constraints contradict each other.
+    pub(super) fn solve_for_change(&mut self, state: &State) -> Option<Twist> {
+        let (velocity, turn) = self.solve_system()?;
+        let change = Twist { velocity, turn }.less(state.twist());
+        self.change_shoes(state);
+        self.change_flippers(state, &change);
+        for (k, spin) in self.system.spins.iter_mut().enumerate() {
+            let of_sprocket = self.chains.get(k).is_some_and(Chain::has_sprocket);
+            let is_free = self.motors[k].share().is_some() || of_sprocket;
+            spin.change = if is_free {
+                spin.value - state.drives[k].spin
+            } else {
+                0.0
+            };
+        }
+        Some(change)
+    }
+
+    /// Moves all velocities by a share of the change.
+    pub(super) fn move_by(&self, state: &mut State, change: &Twist, share: f64) {
+        state.velocity += change.velocity * share;
+        state.angular_velocity += change.turn * share;
+        self.move_shoes(state, share);
+        self.move_flippers(state, share);
+        for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
+            drive.spin += spin.change * share;
+        }
+    }
+
+    /// [m/s] What the change is worth along a contact's normal and tangent.
+    pub(super) fn changes_of(&self, row: &Row, change: &Twist) -> [f64; 2] {
+        let shoe = |i: usize| self.chains[i / self.shoes_a_chain].solved[i % self.shoes_a_chain];
+        let idler = |k: usize| self.chains[k].idler_rate;
+        let spin = |k: usize| self.system.spins[k].change;
+        row.count(*change, shoe, spin, idler, |k| self.system.changes[k])
+    }
+
+    /// [m/s] A bound of what the change moves anything by, to the order.
+    pub(super) fn largest(&self, change: &Twist) -> f64 {
+        let spins = self.system.spins.iter();
+        let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
+        let of_flippers = self.system.changes.iter().map(|change| change.abs());
+        let of_spins = of_spins.chain(of_flippers);
+        let of_spins = of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max);
+        let shoes = self.chains.iter().flat_map(|chain| &chain.solved);
+        let of_shoes = shoes.map(|change| change.velocity.length() + change.turn.abs());
+        of_shoes.fold(of_spins, f64::max)
+    }
+}

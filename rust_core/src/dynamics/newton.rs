@@ -1,0 +1,165 @@
+//! The solve of a robot with chains: Newton's method, with steps no longer than the contacts agree better.
+//!
+//! The dozens of contacts of a chain, guessed and mended all at once, throw each other about. Here the
+//! velocities go towards those of the next guess only so far as that pays. On the way between two solutions
+//! of the linear system velocities change in straight lines, and so do the impulses that balance them; what
+//! the contacts' laws give at the velocities differs from these impulses by a misfit. Newton's method
+//! has each law start along the way that the guess follows, so that at first every contact's misfit shrinks
+//! in proportion: a step that is short enough always pays, but for kinks on the spot.
+
+use super::Dynamics;
+use super::grip::Grip;
+use super::row::Row;
+use super::solve::{AGREEMENT, Phase};
+use super::state::{State, Twist};
+
+/// Steps at most; a typical solve takes three.
+const STEPS: u32 = 16;
+/// A step is halved so often at most; ...
+const HALVINGS: u32 = 4;
+/// ... and this often it may have come to that before the search is left to the descent.
+const STALLS: u32 = 2;
+/// The least share of what a step promises that it has to keep.
+const PAYS: f64 = 0.1;
+
+/// A row on the way between two solutions: its speeds along normal and tangent [m/s], and the impulses
+/// along them that balance these velocities [N s].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Way {
+    speeds: [f64; 2],
+    held: [f64; 2],
+    /// The same at its end.
+    to_speeds: [f64; 2],
+    to_held: [f64; 2],
+}
+
+impl Way {
+    /// Speeds and impulses after a share of it.
+    fn after(&self, share: f64) -> [[f64; 2]; 2] {
+        let between =
+            |from: [f64; 2], to: [f64; 2]| [0, 1].map(|i| from[i] + (to[i] - from[i]) * share);
+        [
+            between(self.speeds, self.to_speeds),
+            between(self.held, self.to_held),
+        ]
+    }
+}
+
+impl Dynamics {
+    /// Finds the impulses that all constraints agree on, if steps lead there.
+    pub(super) fn solve_in_steps(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.settle();
+        self.set_out(state);
+        let mut stalls = 0;
+        for step in 0..STEPS {
+            self.assemble(phase);
+            let Some(change) = self.solve_for_change(state) else {
+                return false;
+            };
+            self.look_ahead(&change);
+            // What balances the velocities that the solve starts from is not known.
+            let share = if step == 0 {
+                1.0
+            } else {
+                self.share_that_pays()
+            };
+            self.move_by(state, &change, share);
+            let (change, fits) = self.arrive(state, phase, share);
+            if !fits || share < 1.0 {
+                stalls += u32::from(share <= 0.5_f64.powi(HALVINGS as i32));
+                if stalls > STALLS {
+                    return false;
+                }
+                continue;
+            }
+            self.turn_with_chassis(state, phase);
+            if self.switch_motors(state, phase) {
+                self.set_actions(state, phase);
+                self.set_out(state);
+            } else {
+                if change < AGREEMENT {
+                    return true;
+                }
+                self.settle();
+            }
+        }
+        false
+    }
+
+    /// Starts the ways of all contacts at these velocities.
+    fn set_out(&mut self, state: &State) {
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            row.way.speeds = row.speeds(state);
+        }
+    }
+
+    /// Finds where a whole step leads.
+    fn look_ahead(&mut self, change: &Twist) {
+        for i in 0..self.rows.len() {
+            if self.rows[i].bears {
+                let [n, t] = self.changes_of(&self.rows[i], change);
+                let row = &mut self.rows[i];
+                let [approach, slip] = row.way.speeds;
+                row.way.to_speeds = [approach + n, slip + t];
+                row.way.to_held = row.guessed(row.way.to_speeds);
+            }
+        }
+    }
+
+    /// The share of a step after which the misfits are smaller, about as much as it promises.
+    fn share_that_pays(&self) -> f64 {
+        let now = self.misfit_after(0.0);
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            if self.misfit_after(share) <= (1.0 - PAYS * share) * now {
+                break;
+            }
+            share *= 0.5;
+        }
+        share
+    }
+
+    /// [m/s] By what the impulses that balance the velocities differ from those of the contacts' laws, after
+    /// a share of the step.
+    fn misfit_after(&self, share: f64) -> f64 {
+        let of_row = |row: &Row| {
+            let [speeds, held] = row.way.after(share);
+            let (_, law) = row.law(speeds);
+            let normal = (law[0] - held[0]) * row.admittance.normal;
+            let tangent = (law[1] - held[1]) * row.admittance.tangent;
+            normal * normal + tangent * tangent
+        };
+        let bearing = self.rows.iter().filter(|row| row.bears);
+        bearing.map(of_row).sum::<f64>().sqrt()
+    }
+
+    /// Ends a step; how far the velocities are from what they should be [m/s], and whether the guess fits
+    /// them. If not, the next one does.
+    fn arrive(&mut self, state: &mut State, phase: &Phase, share: f64) -> (f64, bool) {
+        let (mut change, mut fits): (f64, _) = (0.0, true);
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            [row.way.speeds, row.way.held] = row.way.after(share);
+            change = change.max(row.follow_speeds(row.way.speeds));
+            fits &= row.grip == row.fitting;
+            row.grip = row.fitting;
+        }
+        (
+            change.max(self.chains_follow_velocities(state, phase)),
+            fits,
+        )
+    }
+}
+
+impl Row {
+    /// [N s] Along normal and tangent as its grip has them at such speeds.
+    fn guessed(&self, [approach, slip]: [f64; 2]) -> [f64; 2] {
+        let [n, t] = self.dampers();
+        let normal = n.at(approach);
+        match self.grip {
+            Grip::Open => [0.0, 0.0],
+            Grip::Sticks => [normal, t.at(slip)],
+            Grip::Forwards => [normal, self.friction * normal],
+            Grip::Backwards => [normal, -self.friction * normal],
+        }
+    }
+}
