@@ -209,7 +209,7 @@ impl Row {
     /// What normal and tangent are at such speeds while the limit of friction is frozen: beyond a limit,
     /// an impulse that no speed changes.
     fn frozen_dampers(&self, [approach, slip]: [f64; 2]) -> [Damper; 2] {
-        let [normal, tangent] = self.dampers();
+        let [normal, tangent] = self.dampers;
         let stuck = tangent.at(slip);
         [
             if normal.at(approach) > 0.0 {
@@ -230,7 +230,7 @@ impl Row {
     /// Calls `found` with the shares of a change at which its dampers begin or end.
     fn kinks(&self, state: &State, changes: [f64; 2], mut found: impl FnMut(f64)) {
         let [approach, slip] = self.speeds(state);
-        let [normal, tangent] = self.dampers();
+        let [normal, tangent] = self.dampers;
         found((normal.speed_for(0.0) - approach) / changes[0]);
         for limit in [-self.limit, self.limit] {
             found((tangent.speed_for(limit) - slip) / changes[1]);

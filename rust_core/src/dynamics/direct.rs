@@ -119,7 +119,7 @@ impl Dynamics {
                 continue;
             }
             let [normal, tangent] = row.actions;
-            let [n, t] = row.dampers();
+            let [n, t] = row.dampers;
             match row.grip {
                 Grip::Open => {}
                 Grip::Sticks => {

@@ -38,6 +38,7 @@ impl Row {
         if self.give == 0.0 {
             self.center.1 = self.friction_impulse;
         }
+        self.place_dampers();
     }
 
     /// Takes these back.
@@ -59,18 +60,18 @@ impl Row {
         };
     }
 
-    /// Those of normal and tangent while nothing limits them.
-    pub(super) fn dampers(&self) -> [Damper; 2] {
+    /// Finds its dampers, about the impulses that they are centred on.
+    pub(super) fn place_dampers(&mut self) {
         let (normal, friction) = self.center;
         let damping = DAMPING * self.admittance.normal;
         let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
-        [
+        self.dampers = [
             Damper::new(stiffness * (damping * normal - self.bias), stiffness),
             Damper::new(
                 friction,
                 1.0 / ((self.give + DAMPING) * self.admittance.tangent),
             ),
-        ]
+        ];
     }
 
     /// [m/s] Along normal and tangent.
@@ -104,7 +105,7 @@ impl Row {
 
     /// What it does at such speeds, and its impulses along normal and tangent [N s].
     pub(super) fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
-        let [n, t] = self.dampers();
+        let [n, t] = self.dampers;
         let (normal, friction) = (n.at(approach), t.at(slip));
         let limit = self.friction * normal;
         let (grip, friction) = if normal <= 0.0 {

@@ -153,7 +153,7 @@ impl Dynamics {
 impl Row {
     /// [N s] Along normal and tangent as its grip has them at such speeds.
     fn guessed(&self, [approach, slip]: [f64; 2]) -> [f64; 2] {
-        let [n, t] = self.dampers();
+        let [n, t] = self.dampers;
         let normal = n.at(approach);
         match self.grip {
             Grip::Open => [0.0, 0.0],

@@ -59,6 +59,8 @@ pub(super) struct Row {
     pub grip: Grip,
     /// ... and what would fit the last velocities.
     pub fitting: Grip,
+    /// Normal and tangent while nothing limits them, in this solve.
+    pub dampers: [Damper; 2],
     /// Where a step of a search leads it.
     pub way: Way,
     /// [N s] Largest friction in a descent, ...
@@ -168,6 +170,7 @@ impl Row {
             friction_impulse: 0.0,
             grip: Grip::Open,
             fitting: Grip::Open,
+            dampers: [Damper::default(); 2],
             way: Way::default(),
             limit: 0.0,
             frozen: [Damper::default(); 2],

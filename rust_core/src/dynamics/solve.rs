@@ -128,6 +128,7 @@ impl Dynamics {
             };
             let row = &mut self.rows[i];
             (row.actions, row.admittance) = ([n, t], admittance);
+            row.place_dampers();
         }
         if self.push.is_some() {
             let held = motors[0].share().is_none();

@@ -117,6 +117,7 @@ impl Chain {
             );
             pin.close(h, masses, pitch);
         }
+        self.system.link(masses, &self.free, &self.pins);
         let axle = chassis.transform_point(self.rule.ends[0].center);
         self.pull
             .follow(&self.rule, (shoes, &self.alongs), state, axle);
@@ -168,12 +169,7 @@ impl Chain {
     /// The system of shoes, pins and drive; the drive gives `given` [N s] if it does not hold the speed
     /// `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
-        self.system.start(self.masses(), &self.free, self.idler);
-        for (i, pin) in self.pins.iter().enumerate() {
-            for (rows, damper) in pin.rows().into_iter().zip(pin.dampers()) {
-                self.system.add_pin(i, rows, damper);
-            }
-        }
+        self.system.start(&self.pins, self.idler);
         let damper = self.pull.damper().shifted(self.pull.aim(set_point));
         if let (Some(sprocket), Some(lever)) = (&self.rule.sprocket, self.pull.lever) {
             self.system.add_sprocket(sprocket.inertia, self.free_spin);

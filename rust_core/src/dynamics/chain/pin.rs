@@ -1,9 +1,9 @@
 //! A pin between two shoes: two directions in which neither moves over the other.
 
+use nalgebra::Matrix2x3;
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 use crate::plane::left_of;
 
@@ -21,7 +21,7 @@ pub(super) struct Pin {
     /// [m/s] Speed that the gap closes with.
     bias: Vector,
     /// [kg]
-    stiffness: f64,
+    pub stiffness: f64,
     /// [N s] On the next shoe, in this piece; ...
     pub impulse: Vector,
     /// ... what a direct solve starts from, ...
@@ -50,22 +50,12 @@ impl Pin {
         self.center - (speed + self.bias) * self.stiffness
     }
 
-    /// The damper along x and along y.
-    pub(super) fn dampers(&self) -> [Damper; 2] {
-        let damper =
-            |center: f64, bias: f64| Damper::new(center - self.stiffness * bias, self.stiffness);
-        [
-            damper(self.center.x, self.bias.x),
-            damper(self.center.y, self.bias.y),
-        ]
-    }
-
     /// How the velocities of the two shoes count along x and along y.
-    pub(super) fn rows(&self) -> [[[f64; 3]; 2]; 2] {
+    pub(super) fn rows(&self) -> [Matrix2x3<f64>; 2] {
         let [a, b] = self.arms.map(left_of);
         [
-            [[-1.0, 0.0, -a.x], [1.0, 0.0, b.x]],
-            [[0.0, -1.0, -a.y], [0.0, 1.0, b.y]],
+            Matrix2x3::new(-1.0, 0.0, -a.x, 0.0, -1.0, -a.y),
+            Matrix2x3::new(1.0, 0.0, b.x, 0.0, 1.0, b.y),
         ]
     }
 

@@ -4,14 +4,17 @@
 //! once round the chain. The last shoe closes it: like the chassis, the drive and the idler it is carried
 //! along as a border.
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
+use rapier2d_f64::math::Vector;
 
+use super::pin::Pin;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 
 /// Rows and columns of the border: three of the closing shoe, three of the chassis, ...
 const CLOSING: usize = 0;
 const CHASSIS: usize = 3;
+const TURN: usize = 5;
 /// ... one of the drive, its force or the spin of its sprocket, and one of the idler; then the right-hand side.
 const DRIVE: usize = 6;
 const IDLER: usize = 7;
@@ -24,6 +27,17 @@ const WIDTH: usize = 9;
 pub(super) enum Beside {
     Idler,
     Sprocket,
+}
+
+impl Beside {
+    /// Rows of the border that it takes: three of the chassis and its own.
+    fn places(self) -> [usize; 4] {
+        let own = match self {
+            Beside::Idler => IDLER,
+            Beside::Sprocket => DRIVE,
+        };
+        [CHASSIS, CHASSIS + 1, TURN, own]
+    }
 }
 
 /// What of the system belongs to one shoe.
@@ -41,6 +55,8 @@ struct Entry {
 /// The system of one chain.
 pub(super) struct ChainSystem {
     shoes: Vec<Entry>,
+    /// The shoes as they are in this piece without anything but their pins.
+    bare: Vec<Entry>,
     /// Columns of the next shoe and of the border once those of a shoe itself are eliminated.
     solved: Vec<(Matrix3<f64>, SMatrix<f64, 3, WIDTH>)>,
     border: SMatrix<f64, BORDER, WIDTH>,
@@ -50,19 +66,41 @@ impl ChainSystem {
     pub(super) fn new(count: usize) -> Self {
         Self {
             shoes: vec![Entry::default(); count],
+            bare: vec![Entry::default(); count],
             solved: vec![Default::default(); count],
             border: SMatrix::zeros(),
         }
     }
 
-    /// Shoes of a mass and inertia that nothing acts on, with such velocities, and an idler on a damper.
-    pub(super) fn start(&mut self, (mass, inertia): (f64, f64), free: &[Twist], idler: Damper) {
+    /// Takes shoes of a mass and inertia that have such velocities without constraints, and how stiffly their
+    /// pins hold.
+    pub(super) fn link(&mut self, (mass, inertia): (f64, f64), free: &[Twist], pins: &[Pin]) {
         let masses = Vector3::new(mass, mass, inertia);
-        for (shoe, twist) in self.shoes.iter_mut().zip(free) {
-            *shoe = Entry::default();
-            shoe.own.set_diagonal(&masses);
+        for (bare, twist) in self.bare.iter_mut().zip(free) {
+            *bare = Entry::default();
+            bare.own.set_diagonal(&masses);
             let momentum = masses.component_mul(&Vector3::from(twist.entries()));
-            shoe.beside.set_column(RIGHT, &momentum);
+            bare.beside.set_column(RIGHT, &momentum);
+        }
+        for (i, pin) in pins.iter().enumerate() {
+            let next = (i + 1) % self.bare.len();
+            let [own, of_next] = pin.rows();
+            self.bare[i].own += own.tr_mul(&own) * pin.stiffness;
+            self.bare[i].next = own.tr_mul(&of_next) * pin.stiffness;
+            self.bare[next].own += of_next.tr_mul(&of_next) * pin.stiffness;
+        }
+    }
+
+    /// Starts from the linked shoes, with the impulses of their pins at rest, and an idler on a damper.
+    pub(super) fn start(&mut self, pins: &[Pin], idler: Damper) {
+        self.shoes.copy_from_slice(&self.bare);
+        for (i, pin) in pins.iter().enumerate() {
+            let impulse = pin.at(Vector::ZERO);
+            let next = (i + 1) % self.shoes.len();
+            for (shoe, rows) in [i, next].into_iter().zip(pin.rows()) {
+                let mut right = self.shoes[shoe].beside.column_mut(RIGHT);
+                right += rows.tr_mul(&Vector2::new(impulse.x, impulse.y));
+            }
         }
         self.border = SMatrix::zeros();
         self.border[(DRIVE, DRIVE)] = 1.0;
@@ -89,24 +127,20 @@ impl ChainSystem {
         damper: Damper,
     ) {
         self.add(shoe, on_shoe, damper);
-        let [force, action] = on_shoe.map(Vector3::from);
-        let [back_force, back_action] = back.map(|back| of_border(back, beside));
+        let (stiffness, impulse) = (damper.stiffness, damper.at(0.0));
+        let ([force, action], [back_force, back_action]) = (on_shoe, back);
         let entry = &mut self.shoes[shoe];
-        let mut beside = entry.beside.fixed_columns_mut::<BORDER>(0);
-        beside += force * back_action.transpose() * damper.stiffness;
-        entry.below += back_force * action.transpose() * damper.stiffness;
-        let mut border = self.border.fixed_columns_mut::<BORDER>(0);
-        border += back_force * back_action.transpose() * damper.stiffness;
-        let mut right = self.border.column_mut(RIGHT);
-        right += back_force * damper.at(0.0);
-    }
-
-    /// Adds a pin between a shoe and the next: one row `[of the shoe, of the next]` of its velocity.
-    pub(super) fn add_pin(&mut self, shoe: usize, [a, b]: [[f64; 3]; 2], damper: Damper) {
-        self.add(shoe, [a, a], damper);
-        self.add((shoe + 1) % self.shoes.len(), [b, b], damper);
-        let link = Vector3::from(a) * Vector3::from(b).transpose();
-        self.shoes[shoe].next += link * damper.stiffness;
+        for (i, at) in beside.places().into_iter().enumerate() {
+            let (force_there, action_there) = (stiffness * back_force[i], back_action[i]);
+            for (k, there) in beside.places().into_iter().enumerate() {
+                self.border[(there, at)] += stiffness * back_force[k] * action_there;
+            }
+            for k in 0..3 {
+                entry.beside[(k, at)] += stiffness * force[k] * action_there;
+                entry.below[(at, k)] += force_there * action[k];
+            }
+            self.border[(at, RIGHT)] += back_force[i] * impulse;
+        }
     }
 
     /// Joins a shoe to the drive: how the drive's speed counts its velocity, and that of the chassis.
@@ -135,11 +169,13 @@ impl ChainSystem {
     /// Turns chassis and sprocket against each other with a damper at a lever [m]; its speed is that of the
     /// chassis over the sprocket.
     pub(super) fn turn_sprocket(&mut self, lever: f64, damper: Damper) {
-        let entries = of_border([0.0, 0.0, lever, -lever], Beside::Sprocket);
-        let mut border = self.border.fixed_columns_mut::<BORDER>(0);
-        border += entries * entries.transpose() * damper.stiffness;
-        let mut right = self.border.column_mut(RIGHT);
-        right += entries * damper.at(0.0);
+        let levers = [(TURN, lever), (DRIVE, -lever)];
+        for (row, of_row) in levers {
+            for (column, of_column) in levers {
+                self.border[(row, column)] += of_row * of_column * damper.stiffness;
+            }
+            self.border[(row, RIGHT)] += of_row * damper.at(0.0);
+        }
     }
 
     /// A constant impulse on a shoe and on the chassis.
@@ -232,20 +268,6 @@ impl ChainSystem {
         }
         [known[IDLER], known[DRIVE]]
     }
-}
-
-/// Entries of the border of what acts on the chassis and beside it.
-fn of_border([x, y, turn, last]: [f64; 4], beside: Beside) -> SVector<f64, BORDER> {
-    let mut entries = SVector::<f64, BORDER>::zeros();
-    entries
-        .fixed_rows_mut::<3>(CHASSIS)
-        .copy_from_slice(&[x, y, turn]);
-    let place = match beside {
-        Beside::Idler => IDLER,
-        Beside::Sprocket => DRIVE,
-    };
-    entries[place] = last;
-    entries
 }
 
 fn add_block<const R: usize, const C: usize>(
