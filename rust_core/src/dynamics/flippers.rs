@@ -179,6 +179,16 @@ impl Dynamics {
         self.turn_flippers_with_chassis(state);
     }
 
+    /// [1/kg] What a flipper adds to the admittance of its contacts.
+    pub(super) fn admittance_of_flipper(&self, k: usize, action: &Action) -> f64 {
+        // It bears beside shoes, and as softly: as one of many contacts it would chase their grips.
+        if let Some(chain) = self.chains.first() {
+            return action.unit.length_squared() / chain.rule.shoe_mass;
+        }
+        let lever = action.flipper_lever;
+        lever * lever / self.flippers[k].inertia_about_pivot()
+    }
+
     /// Turns those that their motors hold with the chassis.
     pub(super) fn turn_flippers_with_chassis(&self, state: &mut State) {
         for (turn, arm) in state.flippers.iter_mut().zip(&self.flippers) {

@@ -75,6 +75,7 @@ impl Dynamics {
             self.turn_with_chassis(state, phase);
             if self.switch_motors(state, phase) {
                 self.set_actions(state, phase);
+                self.rows.iter_mut().for_each(Row::place_dampers);
                 self.set_out(state);
             } else {
                 if change < AGREEMENT {

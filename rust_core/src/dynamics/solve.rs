@@ -4,6 +4,7 @@ use rapier2d_f64::math::Vector;
 
 use super::Dynamics;
 use super::action::Action;
+use super::chain::Chain;
 use super::motors::{Motor, push_axis};
 use super::row::Link;
 use super::state::State;
@@ -128,7 +129,6 @@ impl Dynamics {
             };
             let row = &mut self.rows[i];
             (row.actions, row.admittance) = ([n, t], admittance);
-            row.place_dampers();
         }
         if self.push.is_some() {
             let held = motors[0].share().is_none();
@@ -212,34 +212,27 @@ impl Dynamics {
         let of_body = |mass: f64, inertia: f64, lever: f64| {
             action.unit.length_squared() / mass + lever * lever / inertia
         };
-        let of_flipper = match link {
-            // It bears beside shoes, and as softly: as one of many contacts it would chase their grips.
-            Link::Flipper(_) if !self.chains.is_empty() => {
-                action.unit.length_squared() / self.chains[0].rule.shoe_mass
-            }
-            Link::Flipper(k) => {
-                let lever = action.flipper_lever;
-                lever * lever / self.flippers[k].inertia_about_pivot()
-            }
-            _ => 0.0,
+        let of_shoe = |chain: &Chain| {
+            let rule = &chain.rule;
+            of_body(rule.shoe_mass, rule.shoe_inertia, action.lever)
         };
-        if let Link::Shoe(shoe) | Link::Guide { shoe, .. } | Link::Tooth { shoe, .. } = link {
-            let rule = &self.chains[shoe / self.shoes_a_chain].rule;
-            let of_shoe = of_body(rule.shoe_mass, rule.shoe_inertia, action.lever);
-            return match link {
-                Link::Guide { .. } => of_shoe + of_body(self.model.mass, self.inertia, action.back),
-                Link::Tooth { chain, .. } => {
-                    let of_sprocket = self.chains[chain].admittance(action.spin_lever);
-                    let of_chassis = of_body(self.model.mass, self.inertia, action.back);
-                    of_shoe + of_chassis + of_sprocket
-                }
-                _ => of_shoe,
-            };
+        let of_reaction = || of_body(self.model.mass, self.inertia, action.back);
+        let of_chassis_and_drive = || {
+            let of_spin = drive.map_or(0.0, |k| {
+                action.spin_lever * action.spin_lever / self.model.drive_inertia(k)
+            });
+            of_body(self.model.mass, self.inertia, action.lever) + of_spin
+        };
+        match link {
+            Link::Chassis => of_chassis_and_drive(),
+            Link::Flipper(k) => of_chassis_and_drive() + self.admittance_of_flipper(k, action),
+            Link::Shoe(shoe) => of_shoe(&self.chains[shoe / self.shoes_a_chain]),
+            Link::Guide { chain, .. } => of_shoe(&self.chains[chain]) + of_reaction(),
+            Link::Tooth { chain, .. } => {
+                let chain = &self.chains[chain];
+                of_shoe(chain) + of_reaction() + chain.admittance(action.spin_lever)
+            }
         }
-        let of_spin = drive.map_or(0.0, |k| {
-            action.spin_lever * action.spin_lever / self.model.drive_inertia(k)
-        });
-        of_body(self.model.mass, self.inertia, action.lever) + of_spin + of_flipper
     }
 
     /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.

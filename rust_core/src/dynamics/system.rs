@@ -145,30 +145,38 @@ impl System {
 
     /// Velocity and angular velocity; none if the constraints contradict each other.
     pub(super) fn solve(&mut self) -> Option<(Vector, f64)> {
-        let count = CHASSIS + self.flippers;
+        match self.flippers {
+            0 => self.solve_for::<CHASSIS>(),
+            1 => self.solve_for::<{ CHASSIS + 1 }>(),
+            _ => self.solve_for::<UNKNOWNS>(),
+        }
+    }
+
+    /// The same for as many unknowns: most robots have three, and the compiler knows what that is.
+    fn solve_for<const COUNT: usize>(&mut self) -> Option<(Vector, f64)> {
         for spin in self.spins.iter().filter(|spin| spin.acts) {
-            for i in 0..count {
+            for i in 0..COUNT {
                 let share = spin.rows[i] / spin.inertia;
-                for j in 0..count {
+                for j in 0..COUNT {
                     self.rows[i][j] -= share * spin.columns[j];
                 }
                 self.rows[i][RIGHT] -= share * spin.moment;
             }
         }
-        for own in (CHASSIS..count).rev() {
+        for own in (CHASSIS..COUNT).rev() {
             self.eliminate_flipper(own)?;
         }
         let body = eliminate(self.of_chassis())?;
-        let mut known = [0.0; UNKNOWNS];
+        let mut known = [0.0; COUNT];
         known[..CHASSIS].copy_from_slice(&body);
-        for own in CHASSIS..count {
+        for own in CHASSIS..COUNT {
             let row = &self.rows[own];
             let of_known: f64 = (0..own).map(|j| row[j] * known[j]).sum();
             known[own] = (row[RIGHT] - of_known) / row[own];
             self.turns[own - CHASSIS] = known[own];
         }
         for spin in &mut self.spins {
-            let of_body: f64 = (0..count).map(|i| spin.columns[i] * known[i]).sum();
+            let of_body: f64 = (0..COUNT).map(|i| spin.columns[i] * known[i]).sum();
             spin.value = (spin.moment - of_body) / spin.inertia;
         }
         let [x, y, turn] = body;
