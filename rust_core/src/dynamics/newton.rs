@@ -164,3 +164,50 @@ impl Row {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use rapier2d_f64::math::Vector;
+
+    use super::*;
+    use crate::robot::Model;
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn at_first_a_step_takes_its_share_of_the_misfit() {
+        let text = include_str!("../../../tests/scenarios/engineer_chain_step.json");
+        let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let model = Model::new(&scenario.robot).expect("the robot can be built");
+        let mut state = State::at_rest(&model, Vector::new(0.0, 1.0), 0.0, 0.0);
+        let mut dynamics = Dynamics::new(model, vec![0.9], scenario.gravity, scenario.solver);
+        for step in 0..20 {
+            let advanced = dynamics.advance(&mut state, &[], 0.4, step);
+            advanced.expect("a chain that spins up in the air");
+        }
+        // All its rests on the guide are guessed wrong.
+        for row in &mut dynamics.rows {
+            row.grip = Grip::Open;
+        }
+        let phase = std::mem::take(&mut dynamics.phase);
+        let look_ahead = |dynamics: &mut Dynamics, state: &State| {
+            dynamics.assemble(&phase);
+            let change = dynamics.solve_for_change(state).expect("a solution");
+            dynamics.look_ahead(&change);
+            change
+        };
+        dynamics.set_out(&state);
+        let change = look_ahead(&mut dynamics, &state);
+        dynamics.move_by(&mut state, &change, 1.0);
+        let (_, fits) = dynamics.arrive(&mut state, &phase, 1.0);
+        assert!(!fits);
+        look_ahead(&mut dynamics, &state);
+        let now = dynamics.misfit_after(0.0);
+        assert!(now > 1e-3);
+        for share in [1e-6, 1e-4] {
+            // Linear until the first contact opens or closes; what is left is rounding.
+            let after = dynamics.misfit_after(share);
+            assert_relative_eq!(after, (1.0 - share) * now, max_relative = 1e-9);
+        }
+    }
+}
