@@ -2,7 +2,7 @@
 
 use rapier2d_f64::math::Vector;
 
-use super::search::bisect;
+use super::search::zero;
 use super::{Disc, Envelope, end_discs};
 use crate::error::ScenarioError;
 use crate::scenario::{
@@ -94,7 +94,7 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
         );
         return Err(ScenarioError::new("robot.track.count", count, rule));
     }
-    let radius = bisect(0.0, largest, overlap);
+    let radius = zero(0.0, largest, overlap);
     let path = path_of_centers(outline, radius);
     let mut at = 0.0;
     let centers = (0..count).map(|_| {

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
-use super::search::bisect;
+use super::search::zero;
 use super::stretch::Form;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
 use crate::plane::{direction, right_of};
@@ -63,7 +63,7 @@ impl ShoeLoop {
     fn taut_between(self, least: f64, most: f64) -> Self {
         let taut = |phase: u32| {
             let share = f64::from(phase) / f64::from(PHASES);
-            bisect(least, most, |p: f64| self.excess(p, share * p, 0.0))
+            zero(least, most, |p: f64| self.excess(p, share * p, 0.0))
         };
         let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
         Self { pitch, ..self }
@@ -103,7 +103,7 @@ impl ShoeLoop {
     pub(crate) fn travel(&self, run: f64) -> f64 {
         let phase = run.rem_euclid(self.pitch);
         let reach = 0.5 * self.pitch;
-        bisect(-reach, reach, |out| -self.excess(self.pitch, phase, out))
+        zero(-reach, reach, |out| -self.excess(self.pitch, phase, out))
     }
 
     /// Frames of the shoes in that of the chassis when the chain has run so far [m] and is taut: x along its
