@@ -67,19 +67,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         ChainMechanism::Sprocket => path.on_sprocket(),
     };
     let tensioner = tensioner(robot, track, path.pitch);
-    let shoe_mass = robot.track_mass / count as f64;
-    let rest = robot.mass - robot.track_mass;
-    if rest > HEAVIEST * shoe_mass {
-        let least = robot.mass * count as f64 / (HEAVIEST + count as f64);
-        let rule = format!(
-            "must be at least {least:.4} kg for {count} shoes: pins of shoes that weigh less than 1/{HEAVIEST} of the rest of the robot open"
-        );
-        return Err(ScenarioError::new(
-            "robot.track_mass",
-            robot.track_mass,
-            rule,
-        ));
-    }
+    let shoe_mass = shoe_mass(robot, count)?;
     let mut parts = Vec::new();
     for shoe in 0..count {
         let shapes = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
@@ -137,6 +125,19 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             path,
         }],
     })
+}
+
+/// [kg] Mass of a shoe of so many.
+fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
+    let (given, shoes) = (robot.track_mass, count as f64);
+    if (robot.mass - given) * shoes <= HEAVIEST * given {
+        return Ok(given / shoes);
+    }
+    let least = robot.mass * shoes / (HEAVIEST + shoes);
+    let rule = format!(
+        "must be at least {least:.4} kg for {count} shoes: pins of shoes that weigh less than 1/{HEAVIEST} of the rest of the robot open"
+    );
+    Err(ScenarioError::new("robot.track_mass", given, rule))
 }
 
 /// Shoes of a chain of `count` are too long: which counts are not.

@@ -91,10 +91,13 @@ fn no_robot_begins_inside_the_ground() {
     assert!(deepest < 1e-4);
 }
 
+/// What makes a scene of another.
+type Change = fn(&mut Scenario);
+
 /// Gravity none or that of a star, motors of 10,000 N m, ground of needles and walls: legal all the same.
 #[test]
 fn extreme_but_legal_scenes_run_with_finite_numbers() {
-    let extremes: [(&str, fn(&mut Scenario)); 8] = [
+    let extremes: [(&str, Change); 8] = [
         ("no gravity", |s| s.gravity = 0.0),
         ("gravity of 1000 m/s2", |s| s.gravity = 1e3),
         ("motors of 10,000 N m", |s| {
