@@ -33,17 +33,10 @@ GEAR = c2d.GearWheel(
 
 def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -> c2d.Robot:
     """Give the robot raised flippers, with tracks of their own model if `arms` is one."""
-    flippers = c2d.Flippers(
-        length=0.34,
-        root_radius=0.064,
-        tip_radius=0.037,
-        mass=0.775,
-        torque_limit=30.0,
-        ends=ends,
-        angle=0.8,
-        track=arms,
-    )
-    return dataclasses.replace(ROBOT.with_track(track), flippers=flippers)
+    built = c2d.robots.engineer().flippers
+    assert built is not None
+    flippers = dataclasses.replace(built, ends=ends, track=arms)
+    return c2d.robots.engineer(flippers=flippers, track=track)
 
 
 VARIANTS = {

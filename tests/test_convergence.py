@@ -37,6 +37,14 @@ CELLS: list[tuple[Track, float, float]] = [
     (c2d.LineOfWheels(5, wheel=GEAR), 0.9, 0.090),
     (c2d.LineOfWheels(5, wheel=GEAR), 0.9, 0.110),
     (c2d.CircumferentialWheels(24, wheel=GEAR), 0.6, 0.050),
+    (c2d.GrouserBeltTrack(), 0.9, 0.080),
+    (c2d.GrouserBeltTrack(), 0.9, 0.090),
+]
+
+# The same with the arms in front: higher than any robot gets without.
+ON_ARMS: list[tuple[Track, float, float]] = [
+    (c2d.BeltTrack(), 0.6, 0.105),
+    (c2d.BeltTrack(), 0.9, 0.115),
 ]
 
 # [s] Small gear wheels turn by a degree in a step of 1 ms, and get over far too often with it.
@@ -45,14 +53,17 @@ FINE_STEP = 0.25e-3
 
 def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -> list[c2d.Run]:
     """Runs with the same draws of approach, phase, speed and friction for every solver."""
+    has_arms = (track, friction, height) in ON_ARMS
+    robot = c2d.robots.engineer(flippers="built" if has_arms else None, track=track)
+    gait = c2d.Climb() if has_arms else None
     scenarios = []
     for repeat in range(RUNS):
         draw = np.random.default_rng([0, repeat]).random(4)
         scenarios.append(
             c2d.Scenario(
-                robot=c2d.robots.engineer(flippers=None, track=track),
+                robot=robot,
                 terrain=c2d.terrains.step(height, friction=friction * (0.98 + 0.04 * draw[3])),
-                drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * draw[2])),
+                drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * draw[2]), gait=gait),
                 start=c2d.Start(approach=0.05 + 0.1 * draw[0], track_phase=0.048 * draw[1]),
                 duration=12.0,
                 solver=solver,
@@ -65,10 +76,11 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
 def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
     names = ("half the time step", "twice the substeps")
     # One of them moves beyond its interval by chance in one of twenty such tests.
-    confidence = 1.0 - 0.05 / (len(names) * len(CELLS))
+    cells = CELLS + ON_ARMS
+    confidence = 1.0 - 0.05 / (len(names) * len(cells))
     shifts: dict[str, list[float]] = {name: [] for name in names}
     holds = []
-    for track, friction, height in CELLS:
+    for track, friction, height in cells:
         solver = c2d.Solver()
         if isinstance(track, c2d.CircumferentialWheels):
             solver = replace(solver, time_step=FINE_STEP)

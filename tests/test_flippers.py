@@ -148,6 +148,15 @@ def test_ground_between_wheels_of_a_flipper_is_a_pocket() -> None:
         ({"rate_limit": 0.0}, "robot.flippers.rate_limit"),
         ({"angle": np.inf}, "robot.flippers.angle"),
         ({"ends": "left"}, "robot.flippers.ends"),
+        ({"mass": 0.0}, "robot.flippers.mass"),
+        ({"rate_limit": 101.0}, "robot.flippers.rate_limit"),
+        ({"torque_limit": np.nan}, "robot.flippers.torque_limit"),
+        ({"track": "belt"}, "robot.flippers.track"),
+        ({"track": c2d.LineOfWheels(1)}, "robot.flippers.track.count"),
+        (
+            {"track": c2d.CircumferentialWheels(12, wheel_radius=0.05)},
+            "robot.flippers.track.wheel_radius",
+        ),
         ({"track": c2d.SegmentalTrack()}, "robot.flippers.track"),
         ({"track": c2d.ForceTrack()}, "robot.flippers.track"),
         ({"track": c2d.CircumferentialWheels(5)}, "robot.flippers.track.count"),
@@ -158,9 +167,41 @@ def test_bad_flippers_are_refused_by_path(changes: dict[str, Any], path: str) ->
     assert error.path == path
 
 
-def test_bad_commands_are_refused_by_path() -> None:
+@pytest.mark.parametrize(
+    ("gait", "path"),
+    [
+        (c2d.Hold(np.nan), "drive.gait.angle"),
+        (c2d.Hold(9.0), "drive.gait.angle"),
+        (c2d.Hold(0.0, ((2.0, 0.1), (1.0, 0.2))), "drive.gait.schedule[1][0]"),
+        (c2d.Hold(0.0, ((1.0, 9.0),)), "drive.gait.schedule[0][1]"),
+        (c2d.Climb(level_angle=0.0), "drive.gait.level_angle"),
+        (c2d.Climb(reach_angle="up"), "drive.gait.reach_angle"),  # type: ignore[arg-type]
+        ("climb", "drive.gait"),
+    ],
+)
+def test_a_bad_gait_is_refused_by_path(gait: Any, path: str) -> None:
+    assert refusal(ENGINEER, drive=c2d.Drive(gait=gait)).path == path
+
+
+def test_arms_that_turn_too_far_in_a_step_are_refused_not_slowed() -> None:
+    fast = replace(ENGINEER, flippers=replace(ARMS, rate_limit=100.0))
+    error = refusal(fast, solver=c2d.Solver(time_step=8e-3))
+    assert error.path == "solver.time_step"
+    assert "robot.flippers.rate_limit x time_step <= 0.7 rad a step, here 0.800" in error.rule
+
+
+def test_a_sweep_may_leave_the_flippers_off_and_keep_the_gait() -> None:
+    drive = c2d.Drive(gait=c2d.Climb())
+    base = Scenario(ENGINEER, c2d.terrains.step(0.05), drive=drive, duration=3.0)
     bare = c2d.robots.engineer(flippers=None)
-    assert refusal(bare, drive=c2d.Drive(gait=c2d.Climb())).path == "drive.gait"
+    over = {"robot": {"arms": ENGINEER, "none": bare}}
+    table = c2d.sweep(base, over, repeats=1, vary={}, progress=False)
+    alone = c2d.simulate(Scenario(bare, c2d.terrains.step(0.05), duration=3.0))
+    found = table["final_x"].sel(robot="none").item()
+    assert found == alone.metrics["final_x"]
+
+
+def test_bad_commands_are_refused_by_path() -> None:
     late = c2d.Drive(schedule=((2.0, 0.1), (1.0, 0.2)))
     assert refusal(ENGINEER, drive=late).path == "drive.schedule[1][0]"
     fast = c2d.Drive(schedule=((2.0, 5.0),))

@@ -145,6 +145,15 @@ def test_a_misspelt_choice_lists_the_names_and_the_nearest() -> None:
         ("line-barrier", "terrain.kind", "barier", "barrier"),
         ("circumferential-half-round", "terrain.kind", "half-round", "half_round"),
         ("force-stairs", "terrain.kind", "STAIRS", "stairs"),
+        ("grousers-gap", "robot.track.kind", "grouser-belt", "grouser_belt"),
+        ("segmental-step", "robot.track.kind", "Segmental", "segmental"),
+        ("segmental-step", "robot.track.shoe_shape", "trapezium", "trapezoid"),
+        ("sprocket-step", "robot.track.mechanism", "Sprocket", "sprocket"),
+        ("flippers-climb", "robot.flippers.ends", "Front", "front"),
+        ("flippers-climb", "drive.gait.kind", "clim", "climb"),
+        ("flippers-hold", "drive.gait.kind", "Hold", "hold"),
+        ("flippers-hold", "robot.flippers.track.kind", "lin", "line"),
+        ("belt-lanes", "terrain.left.kind", "Step", "step"),
     ]:
         error = refusal(changed(name, tuple(path.split(".")), value))
         assert error.path == path
@@ -159,6 +168,12 @@ def test_a_misspelt_key_names_the_nearest() -> None:
         ("circumferential-ridge", "terrain.edge_angel", "edge_angle"),
         ("hybrid-gap", "robot.track.placement", "placements"),
         ("force-stairs", "terrain.riser", "rise"),
+        ("sprocket-step", "robot.track.roadwheel_count", "road_wheel_count"),
+        ("grousers-gap", "robot.track.grousers_count", "grouser_count"),
+        ("flippers-climb", "robot.flippers.tipradius", "tip_radius"),
+        ("flippers-climb", "drive.shedule", "schedule"),
+        ("flippers-climb", "drive.gait.sweep_angel", "sweep_angle"),
+        ("belt-lanes", "terrain.midle", "middle"),
     ]:
         error = refusal(changed(name, tuple(path.split(".")), 1))
         assert error.path == path

@@ -1,9 +1,12 @@
 """A chain of shoes as Python users meet it: shapes, figures, errors, variants."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import crawler2d as c2d
+from conftest import refusal
 from crawler2d.scenario import Scenario
 
 ENGINEER = c2d.robots.engineer(flippers=None)
@@ -94,7 +97,13 @@ def test_the_same_bits_again_and_from_a_snapshot(mechanism: str) -> None:
     ("options", "path", "rule"),
     [
         ({"shoe_count": 2}, "robot.track.shoe_count", "from 3 to 400"),
-        ({"shoe_count": 5}, "robot.track.shoe_count", "half as long as the distance of the axles"),
+        ({"shoe_count": 0}, "robot.track.shoe_count", "from 3 to 400"),
+        ({"shoe_count": 1}, "robot.track.shoe_count", "from 3 to 400"),
+        ({"shoe_count": 10_000}, "robot.track.shoe_count", "from 3 to 400"),
+        ({"shoe_count": 5}, "robot.track.shoe_count", "must be from 12 to 400 here"),
+        ({"shoe_count": 11}, "robot.track.shoe_count", "no longer than the smaller end is thick"),
+        ({"mechanism": "Sproket"}, "robot.track.mechanism", "did you mean sprocket?"),
+        ({"shoe_shape": "trapez"}, "robot.track.shoe_shape", "did you mean trapezoid?"),
         ({"shoe_count": 22.5}, "robot.track.shoe_count", "integer"),
         ({"shoe_shape": "round"}, "robot.track.shoe_shape", "rectangle"),
         ({"plate_thickness": 0.06}, "robot.track.plate_thickness", "leave a guide"),
@@ -118,6 +127,36 @@ def test_bad_fields_are_refused_by_name(options: dict[str, object], path: str, r
         c2d.simulate(Scenario(chain(**options), c2d.terrains.flat(), duration=0.1))
     assert path in str(caught.value)
     assert rule in str(caught.value)
+
+
+def test_the_fewest_shoes_that_are_allowed_run() -> None:
+    run = c2d.simulate(Scenario(chain(shoe_count=12), c2d.terrains.flat(), duration=4.0))
+    assert run.metrics["max_pin_gap"] < 1e-4
+    assert run.metrics["distance"] > 0.5
+
+
+def test_ends_too_small_for_any_shoe_say_so() -> None:
+    outline = replace(ENGINEER.outline, axle_distance=3.0, front_radius=0.013, grouser_height=0.012)
+    error = refusal(replace(chain(plate_thickness=1e-4), outline=outline, belly=None))
+    assert error.path == "robot.track.shoe_count"
+    assert "beyond 400" in error.rule
+
+
+def test_a_shoe_may_weigh_a_three_thousandth_of_the_rest() -> None:
+    """Beyond, pins open by millimetres; up to there they hold as those of heavier shoes do."""
+    light = replace(chain(), track_mass=0.16)
+    run = c2d.simulate(Scenario(light, c2d.terrains.step(0.06), duration=8.0))
+    assert run.outcome == "cleared"
+    assert run.metrics["max_pin_gap"] < 2e-4
+    error = refusal(replace(light, track_mass=0.15))
+    assert error.path == "robot.track_mass"
+    assert "at least 0.1543 kg for 22 shoes" in error.rule
+
+
+def test_shoes_must_leave_the_chassis_a_moment_of_inertia() -> None:
+    error = refusal(replace(chain(), moment_of_inertia=0.03))
+    assert error.path == "robot.moment_of_inertia"
+    assert error.value == "0.03"
 
 
 def test_the_closed_belt_of_a_stop_weighs_as_much() -> None:

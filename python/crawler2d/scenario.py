@@ -30,7 +30,8 @@ class Drive(Parameters):
     schedule : array_like, shape (n, 2), optional
         Times [s], rising, and the speeds [m/s] that hold from then on.
     gait : Hold or Climb, optional
-        How the flippers move; None holds them where they start.
+        How the flippers move; None holds them where they start. A robot without flippers has
+        nothing to move, so that a sweep may leave them off and keep the gait.
 
     Examples
     --------

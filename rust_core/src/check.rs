@@ -43,10 +43,6 @@ impl Scenario {
             let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
             return Err(ScenarioError::new(path, speed, rule));
         }
-        if self.drive.gait.is_some() && self.robot.flippers.is_none() {
-            let rule = "must be null: the robot has no flippers";
-            return Err(ScenarioError::new("drive.gait", "a gait", rule));
-        }
         let model = Model::new(&self.robot)?;
         let (tip, root) = model.parts.iter().flat_map(Part::discs).fold(
             (f64::INFINITY, f64::INFINITY),
@@ -54,18 +50,9 @@ impl Scenario {
                 (tip.min(circumscribed.radius), root.min(inner.radius))
             },
         );
-        // A surface that turns further than this between two collision checks rolls over corners unseen.
-        let turn = limit * self.solver.time_step / tip;
-        if turn > 0.7 {
-            let rule = format!(
-                "must keep max_speed x time_step / radius <= 0.7 rad a step, here {turn:.3}"
-            );
-            return Err(ScenarioError::new(
-                "solver.time_step",
-                self.solver.time_step,
-                rule,
-            ));
-        }
+        let rate_of_arms = self.robot.flippers.as_ref().map_or(0.0, |f| f.rate_limit);
+        self.check_turn("max_speed / radius", limit / tip)?;
+        self.check_turn("robot.flippers.rate_limit", rate_of_arms)?;
         if self.criteria.intrusion_depth >= root {
             let rule = format!("must be below the smallest radius of the track model, {root} m");
             return Err(ScenarioError::new(
@@ -77,5 +64,17 @@ impl Scenario {
         let ground = Ground::new(&self.terrain, self.robot.gauge)?;
         start_position(self, &model.placed_on(&ground), &ground)?;
         Ok(())
+    }
+
+    /// What turns farther than this between two collision checks passes over corners unseen.
+    fn check_turn(&self, name: &str, rate: f64) -> Result<(), ScenarioError> {
+        const FARTHEST: f64 = 0.7; // [rad]
+        let (path, step) = ("solver.time_step", self.solver.time_step);
+        let turn = rate * step;
+        if turn <= FARTHEST {
+            return Ok(());
+        }
+        let rule = format!("must keep {name} x time_step <= {FARTHEST} rad a step, here {turn:.3}");
+        Err(ScenarioError::new(path, step, rule))
     }
 }

@@ -155,7 +155,7 @@ impl Model {
     /// built robot's, whatever the track model.
     ///
     /// # Errors
-    /// Wheels that do not fit the robot.
+    /// Wheels that do not fit the robot; shoes and arms that leave no chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
         let mut parts = track.parts;
@@ -184,7 +184,7 @@ impl Model {
         let beside = flippers.iter().map(Flipper::mass_of_track);
         drive_masses.extend(beside.take(track.drives - of_track));
         let circulating = robot.track_mass + drive_masses[of_track..].iter().sum::<f64>();
-        Ok(Self {
+        let model = Self {
             mass: robot.mass,
             center_of_mass: Vector::from(robot.center_of_mass),
             moment_of_inertia: robot.moment_of_inertia - circulating * radius * radius,
@@ -198,8 +198,17 @@ impl Model {
             chains: Vec::new(),
             flippers: Vec::new(),
         }
-        .with_flippers(flippers)?
-        .with_chains(track.chains))
+        .with_flippers(flippers)
+        .with_chains(track.chains);
+        let left = model.moment_of_inertia;
+        if left <= 0.0 {
+            let rule = format!(
+                "must exceed that of all that moves over the chassis, which is left {left} kg m^2"
+            );
+            let path = "robot.moment_of_inertia";
+            return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
+        }
+        Ok(model)
     }
 
     /// [kg m^2] Moment of inertia of one drive.

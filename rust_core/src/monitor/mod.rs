@@ -133,7 +133,8 @@ impl Monitor {
                     TrackEnvelope::new(&model.parts, track, scenario.criteria.intrusion_depth)
                 })
                 .collect(),
-            may_change: scenario.drive.schedule.is_some() || scenario.drive.gait.is_some(),
+            may_change: scenario.drive.schedule.is_some()
+                || (scenario.drive.gait.is_some() && !model.flippers.is_empty()),
             parts: model.parts.clone(),
             has_grousers: model.parts.iter().any(Part::is_carried),
             seen: Seen::from(0.0),

@@ -15,6 +15,8 @@ use crate::plane::{direction, right_of};
 
 /// Places of the chain along its path over which its length is averaged.
 const PHASES: u32 = 16;
+/// A polygon of shoes round the discs is longer than the belt by at most this.
+const LENGTHENED: f64 = 1.1;
 /// Share of what the pins on a sprocket go out and in by which that is lifted off the lower run: shoes that it
 /// turns down would else lift the robot.
 const LIFT: f64 = 0.5;
@@ -34,11 +36,13 @@ pub struct ShoeLoop {
 
 impl ShoeLoop {
     /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
-    /// a shoe would be longer than half a run.
+    /// a shoe would be longer than half a run, or than the smaller disc is thick, for it would not go round.
     pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
         let least = Envelope::new(&discs).length() / count as f64;
-        let most = 1.1 * least;
-        if count < 3 || 2.0 * most > (discs[1].center - discs[0].center).length() {
+        let most = LENGTHENED * least;
+        let [rear, front] = discs;
+        let half_a_run = 0.5 * (front.center - rear.center).length();
+        if most > half_a_run.min(2.0 * rear.radius.min(front.radius)) {
             return None;
         }
         let chain = Self {

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::fields::{Fields, Range, one_of};
+use super::flippers::ANGLE;
 use crate::error::ScenarioError;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
-const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
 /// Entries of a schedule at most.
 const MOST: usize = 10_000;
 

@@ -7,7 +7,8 @@ use super::robot::{LENGTH, MASS, Robot, TrackOutline};
 use super::track::Track;
 use crate::error::ScenarioError;
 
-const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
+/// [rad] Of an arm over the chassis: a turn either way.
+pub(super) const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
 
 /// Arms of one form at one end of the robot or at both; one on either side of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -18,11 +18,11 @@ pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
-pub(crate) use track::MAX_WHEELS;
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
     HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,
 };
+pub(crate) use track::{MAX_SHOES, MAX_WHEELS};
 pub(crate) use wheel::MAX_GROUSERS;
 pub use wheel::{GearWheel, Wheel};
 

@@ -10,7 +10,7 @@ use crate::error::ScenarioError;
 /// Most wheels of one side.
 pub(crate) const MAX_WHEELS: u32 = 200;
 /// Most shoes of a chain.
-const MAX_SHOES: u32 = 400;
+pub(crate) const MAX_SHOES: u32 = 400;
 const PLATE: Range = Range::between(1e-4, 1.0, "m");
 const PRE_TENSION: Range = Range::between(1e-3, 1e6, "N");
 const STIFFNESS: Range = Range::between(1e-3, 1e9, "N/m");

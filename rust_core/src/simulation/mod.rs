@@ -3,6 +3,7 @@
 mod branch;
 mod command;
 mod snapshot;
+mod whole;
 
 use rapier2d_f64::math::Vector;
 
@@ -203,6 +204,13 @@ impl Simulation {
         flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
     }
 
+    /// [rad/s] Their rates.
+    pub fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
+        let flippers = self.dynamics.model().flippers.iter();
+        let turns = flippers.zip(&self.state.flippers);
+        turns.map(|(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
+    }
+
     /// [N m] Torques of their motors, the means over the last step, upwards > 0.
     pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter();
@@ -324,6 +332,11 @@ impl Simulation {
     /// [N] Force of all motors at the surface, the mean over the last step.
     pub fn drive_force(&self) -> f64 {
         self.state.drives.iter().map(|drive| drive.force).sum()
+    }
+
+    /// [N] The same of each drive.
+    pub fn drive_forces(&self) -> impl Iterator<Item = f64> + '_ {
+        self.state.drives.iter().map(|drive| drive.force)
     }
 
     pub(crate) fn drive_states(&self) -> &[DriveState] {

@@ -9,11 +9,13 @@ use crate::chain::{ChainOfShoes, Tensioner};
 use crate::error::ScenarioError;
 use crate::outline::{self, Disc, Envelope, ShoeLoop};
 use crate::robot::{BodyKind, Mount, Part, Shape};
-use crate::scenario::{ChainMechanism, Robot, SegmentalTrack, ShoeShape};
+use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, SegmentalTrack, ShoeShape};
 use rapier2d_f64::math::Vector;
 
 /// [m/s^2] By which the default pre-tension is a share of the weight; that of the scenario may be none.
 const GRAVITY: f64 = 9.81;
+/// Shoes that the rest of the robot weighs at most: docs/decisions/0008 has the gaps of pins beyond.
+const HEAVIEST: f64 = 3000.0;
 /// Pitches by which the tensioner moves from its pre-tension to none.
 const SOFTNESS: f64 = 0.1;
 /// Pitches by which an idler can be pressed in.
@@ -35,9 +37,11 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         .shoe_count
         .unwrap_or_else(|| (roots.length() / outline.grouser_pitch).round().max(3.0) as u32);
     let count = count as usize;
-    let plate_thickness = track
-        .plate_thickness
-        .unwrap_or(roots.length() / count as f64 / 16.0);
+    let plate = |count: usize| {
+        let default = roots.length() / count as f64 / 16.0;
+        track.plate_thickness.unwrap_or(default)
+    };
+    let plate_thickness = plate(count);
     let guide = ends(outline.grouser_height + plate_thickness);
     if let Some(end) = guide.iter().find(|end| end.radius <= 0.0) {
         let rule = format!(
@@ -51,21 +55,19 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             rule,
         ));
     }
-    let pins = ends(outline.grouser_height + 0.5 * plate_thickness);
-    let Some(path) = ShoeLoop::new(pins, count) else {
-        let rule = format!(
-            "must be enough that a shoe is at most half as long as the distance of the axles, {} m",
-            outline.axle_distance
-        );
-        let value = count as f64;
-        return Err(ScenarioError::new("robot.track.shoe_count", value, rule));
+    let loop_of = |count: usize| {
+        let pins = ends(outline.grouser_height + 0.5 * plate(count));
+        ShoeLoop::new(pins, count)
+    };
+    let Some(path) = loop_of(count) else {
+        return Err(too_long(count, |count| loop_of(count).is_some()));
     };
     let path = match track.mechanism {
         ChainMechanism::Guide => path,
         ChainMechanism::Sprocket => path.on_sprocket(),
     };
     let tensioner = tensioner(robot, track, path.pitch);
-    let shoe_mass = robot.track_mass / count as f64;
+    let shoe_mass = shoe_mass(robot, count)?;
     let mut parts = Vec::new();
     for shoe in 0..count {
         let shapes = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
@@ -123,6 +125,32 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             path,
         }],
     })
+}
+
+/// [kg] Mass of a shoe of so many.
+fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
+    let (given, shoes) = (robot.track_mass, count as f64);
+    if (robot.mass - given) * shoes <= HEAVIEST * given {
+        return Ok(given / shoes);
+    }
+    let least = robot.mass * shoes / (HEAVIEST + shoes);
+    let rule = format!(
+        "must be at least {least:.4} kg for {count} shoes: pins of shoes that weigh less than 1/{HEAVIEST} of the rest of the robot open"
+    );
+    Err(ScenarioError::new("robot.track_mass", given, rule))
+}
+
+/// Shoes of a chain of `count` are too long: which counts are not.
+fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
+    let most = MAX_SHOES as usize;
+    let allowed = match (count..=most).find(|count| goes_round(*count)) {
+        Some(least) => format!("must be from {least} to {most} here"),
+        None => format!("must be beyond {most} here, the most there can be"),
+    };
+    let rule = format!(
+        "{allowed}: a shoe must be no longer than the smaller end is thick, nor than half the distance of the axles"
+    );
+    ScenarioError::new("robot.track.shoe_count", count, rule)
 }
 
 /// A disc that lies so far [m] inside another, if there is room for it.

@@ -1,11 +1,12 @@
 //! Weight, balance, equal robots, energy: what holds for every model.
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Model, Scenario, Simulation, TorqueSharing, Track, Vector, Wheel};
+use crawler2d_core::{Model, Scenario, TorqueSharing, Track, Vector, Wheel};
 
 use crate::common::*;
 
-fn models() -> Vec<(&'static str, Track)> {
+/// Models that are one body with its wheels or its belt, which need no more than a track.
+fn one_body() -> Vec<(&'static str, Track)> {
     vec![
         ("belt", belt()),
         ("force", force()),
@@ -24,15 +25,29 @@ fn models() -> Vec<(&'static str, Track)> {
     ]
 }
 
+/// Every model, those of which more moves over the chassis, too.
+pub(crate) fn models() -> impl Iterator<Item = (&'static str, Scenario)> {
+    let one_body = one_body().into_iter();
+    one_body
+        .map(|(name, track)| (name, engineer_on(track)))
+        .chain(articulated())
+}
+
 #[test]
 fn robot_at_rest_carries_its_weight() {
-    for (name, track) in models() {
-        let mut scenario = engineer();
-        scenario.robot.track = track;
+    for (name, mut scenario) in models() {
         scenario.drive.speed = 0.0;
-        let (_, fy, _) = contact_sums(&after(&scenario, 2.0), 0.0, 0.0);
-        println!("{name}: {:+.1e} of the weight", fy / (21.2 * G) - 1.0);
-        assert_relative_eq!(fy, 21.2 * G, max_relative = 1e-4);
+        let mut simulation = after(&scenario, 2.0);
+        let steps = 500;
+        let mut lift = 0.0;
+        for _ in 0..steps {
+            simulation.step().expect("finite");
+            lift += contact_sums(&simulation, 0.0, 0.0).1 / f64::from(steps);
+        }
+        println!("{name}: {:+.1e} of the weight", lift / (21.2 * G) - 1.0);
+        // Shoes settle on their guide for seconds.
+        let limit = if is_on_chain(&scenario) { 1e-3 } else { 1e-4 };
+        assert_relative_eq!(lift, 21.2 * G, max_relative = limit);
     }
 }
 
@@ -51,9 +66,7 @@ fn two_axles_share_the_weight_by_their_levers() {
 
 #[test]
 fn resting_penetration_is_below_a_fifth_of_a_millimetre() {
-    for (name, track) in models() {
-        let mut scenario = engineer();
-        scenario.robot.track = track;
+    for (name, mut scenario) in models() {
         scenario.drive.speed = 0.0;
         let deepest = after(&scenario, 2.0)
             .contact_table()
@@ -70,7 +83,7 @@ fn resting_penetration_is_below_a_fifth_of_a_millimetre() {
 fn every_model_is_the_same_robot() {
     let reference = Model::new(&engineer().robot).expect("it can be built");
     let turning = |m: &Model| m.drive_masses.iter().sum::<f64>() * m.drive_radius * m.drive_radius;
-    for (name, track) in models() {
+    for (name, track) in one_body() {
         for sharing in [TorqueSharing::Track, TorqueSharing::Wheel] {
             let mut robot = engineer().robot;
             let driven = !matches!(track, Track::Belt(_) | Track::Force(_));
@@ -101,7 +114,7 @@ fn every_model_is_the_same_robot() {
 
 #[test]
 fn chassis_and_wheels_together_are_the_robot() {
-    for (name, track) in models() {
+    for (name, track) in one_body() {
         let mut robot = engineer().robot;
         robot.track = track;
         let (chassis, wheels) = Model::new(&robot).expect("it can be built").bodies();
@@ -131,98 +144,81 @@ fn chassis_and_wheels_together_are_the_robot() {
     }
 }
 
-/// Contact forces against weight and inertia over a stretch of driving.
-fn check_balance(scenario: &Scenario, name: &str) {
-    let mut simulation = after(scenario, 0.5);
-    let dt = simulation.time_step();
-    let (mut worst, mut steps) = (0.0_f64, 0);
-    let com = |s: &Simulation| {
-        let (r, c) = (s.reading(), s.scenario().robot.center_of_mass);
-        let (sine, cosine) = libm::sincos(r.chassis_angle);
-        let arm = [cosine * c[0] - sine * c[1], sine * c[0] + cosine * c[1]];
-        [
-            r.velocity.x - r.angular_velocity * arm[1],
-            r.velocity.y + r.angular_velocity * arm[0],
-        ]
-    };
-    while simulation.time() < 1.5 {
-        let before = com(&simulation);
-        simulation.step().unwrap();
-        let now = com(&simulation);
-        let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
-        let mass = scenario.robot.mass;
-        let (ax, ay) = ((now[0] - before[0]) / dt, (now[1] - before[1]) / dt);
-        worst = worst
-            .max((fx - mass * ax).abs())
-            .max((fy - mass * (ay + G)).abs());
-        steps += 1;
+/// Arms and shoes have their masses and moments of inertia from the robot's: together with the chassis they are
+/// the robot with its arms at angle 0; arms that turn move its centre of mass.
+#[test]
+fn every_robot_weighs_what_it_is_given_where_it_is_given() {
+    for (name, mut scenario) in models() {
+        let robot = scenario.robot.clone();
+        let given = Vector::from(robot.center_of_mass);
+        let mass = Model::new(&robot).expect("it can be built").total_mass();
+        assert_relative_eq!(mass, robot.mass, max_relative = 1e-12);
+        let angles = if robot.flippers.is_some() {
+            vec![0.0, 0.7, -0.4]
+        } else {
+            vec![0.0]
+        };
+        for angle in angles {
+            let mut moved = Vector::ZERO;
+            if let Some(arms) = &mut scenario.robot.flippers {
+                arms.angle = angle;
+                let (s, c) = libm::sincos(angle);
+                // Those in front and those at the rear move towards each other, and all upwards.
+                let both = Vector::new(0.0, 2.0 * s) * 0.5 * arms.length;
+                moved = both * (2.0 * arms.mass / robot.mass);
+                assert!(c > 0.0);
+            }
+            let simulation = after(&scenario, 0.0);
+            let center = simulation.center_of_mass() - simulation.reading().position;
+            println!(
+                "{name} at {angle} rad: centre of mass {center}, inertia {:.6}",
+                simulation.moment_of_inertia()
+            );
+            assert!((center - given - moved).length() < 1e-9);
+            if angle == 0.0 {
+                let inertia = simulation.moment_of_inertia();
+                assert_relative_eq!(inertia, robot.moment_of_inertia, max_relative = 1e-9);
+            }
+        }
     }
-    println!(
-        "{name}: worst residual {:.1e} of the weight over {steps} steps",
-        worst / (21.2 * G)
-    );
-    assert!(worst < 1e-3 * 21.2 * G);
+}
+
+/// Contact forces against weight and inertia over a second of driving: the worst step and the mean, as shares
+/// of the weight.
+fn imbalance(scenario: &Scenario) -> (f64, f64) {
+    let mut simulation = after(scenario, 1.0);
+    let (dt, weight) = (simulation.time_step(), scenario.robot.mass * G);
+    let (mut worst, mut sum) = (0.0_f64, Vector::ZERO);
+    let steps = 1000;
+    for _ in 0..steps {
+        let before = simulation.momentum();
+        simulation.step().expect("finite");
+        let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
+        let off = Vector::new(fx, fy - weight) - (simulation.momentum() - before) / dt;
+        worst = worst.max(off.x.abs()).max(off.y.abs());
+        sum += off;
+    }
+    let mean = sum / f64::from(steps);
+    (worst / weight, mean.x.abs().max(mean.y.abs()) / weight)
 }
 
 #[test]
 fn contact_forces_sum_to_weight_and_inertia_on_flat_and_ramp() {
-    for (name, track) in models() {
-        if matches!(track, Track::Force(_)) {
+    for (name, mut scenario) in models() {
+        if matches!(scenario.robot.track, Track::Force(_)) {
             continue; // its push is no contact force
         }
         for angle in [0.0, 0.2] {
-            let mut scenario = engineer();
-            scenario.robot.track = track.clone();
             scenario.terrain = slope(angle, 0.9);
             scenario.start.angle = angle;
-            scenario.drive.speed = 0.4;
-            check_balance(&scenario, &format!("{name} at {angle} rad"));
+            let (worst, mean) = imbalance(&scenario);
+            println!(
+                "{name} at {angle} rad: {worst:.1e} of the weight at worst, {mean:.1e} in the mean"
+            );
+            // In a step, forty shoes agree to some hundredths of the weight, and an arm that turns is taken as
+            // it is in the middle.
+            let is_one_body = scenario.robot.flippers.is_none() && !is_on_chain(&scenario);
+            assert!(mean < 1e-3 && (worst < 1e-3 || !is_one_body), "{name}");
         }
-    }
-}
-
-#[test]
-fn unpowered_robot_never_gains_energy() {
-    let (mut draw, models) = (Draw(7), models());
-    for case in 0..3 * models.len() {
-        let mut scenario = engineer();
-        scenario.robot.drivetrain.max_torque = 0.0;
-        scenario.robot.track = models[case % models.len()].1.clone();
-        let angle = draw.between(-0.4, 0.4);
-        scenario.terrain = slope(angle, draw.between(0.0, 1.2));
-        scenario.start.angle = angle;
-        let mut simulation = after(&scenario, 0.0);
-        let energy = |s: &Simulation| {
-            let (r, robot) = (s.reading(), &s.scenario().robot);
-            let model = Model::new(robot).expect("it can be built");
-            let (sine, cosine) = libm::sincos(r.chassis_angle);
-            let c = robot.center_of_mass;
-            let arm = [cosine * c[0] - sine * c[1], sine * c[0] + cosine * c[1]];
-            let v = [
-                r.velocity.x - r.angular_velocity * arm[1],
-                r.velocity.y + r.angular_velocity * arm[0],
-            ];
-            let spins: f64 = (0..s.drives())
-                .map(|k| {
-                    let spin = r.angular_velocity - s.drive_speed(k) / model.drive_radius;
-                    0.5 * model.drive_masses[k] * (model.drive_radius * spin).powi(2)
-                })
-                .sum();
-            0.5 * robot.mass * (v[0] * v[0] + v[1] * v[1])
-                + 0.5 * model.moment_of_inertia * r.angular_velocity.powi(2)
-                + spins
-                + robot.mass * G * (r.position.y + arm[1])
-        };
-        let start = energy(&simulation);
-        let mut highest = f64::NEG_INFINITY;
-        while simulation.time() < 2.0 {
-            simulation.step().unwrap();
-            highest = highest.max(energy(&simulation));
-        }
-        // A tenth of a per cent of what it can fall: 21.2 kg through 1 m.
-        assert!(
-            highest <= start + 1e-3 * 21.2 * G,
-            "case {case}: {start} J grew to {highest} J"
-        );
     }
 }

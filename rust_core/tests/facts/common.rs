@@ -1,9 +1,10 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GearWheel, Ground,
-    GrouserBeltTrack, HybridWheels, LineOfWheels, Profile, Record, Run, Scenario, SegmentalTrack,
-    ShoeShape, Simulation, Terrain, Track, Wheel, simulate,
+    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, Ends, Flippers, ForceSupport,
+    ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
+    Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation, Terrain, Track, Wheel,
+    simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -13,6 +14,99 @@ pub(crate) const G: f64 = 9.81;
 pub(crate) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
     Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+/// The same on a track.
+pub(crate) fn engineer_on(track: Track) -> Scenario {
+    let mut scenario = engineer();
+    scenario.robot.track = track;
+    scenario
+}
+
+/// The same with its arms, along the chassis, in place of as much of its mass. Their moment of inertia is added:
+/// the chassis alone has hardly as much as arms and shoes together.
+pub(crate) fn with_flippers(ends: Ends, track: Track) -> Scenario {
+    let mut scenario = engineer_on(track);
+    let pairs = if ends == Ends::Both { 2.0 } else { 1.0 };
+    let about = 0.34 * 0.34 / 12.0 + (0.1825 + 0.17) * (0.1825 + 0.17) + 0.02 * 0.02;
+    scenario.robot.moment_of_inertia += pairs * 2.0 * 0.775 * about;
+    scenario.robot.flippers = Some(Flippers {
+        length: 0.34,
+        root_radius: 0.064,
+        tip_radius: 0.037,
+        mass: 0.775,
+        ends,
+        angle: 0.0,
+        rate_limit: 1.0,
+        torque_limit: 30.0,
+        track: None,
+    });
+    scenario
+}
+
+/// The same with arms at both ends at an angle [rad].
+pub(crate) fn on_arms(angle: f64, track: Track) -> Scenario {
+    let mut scenario = with_flippers(Ends::Both, track);
+    flippers(&mut scenario).angle = angle;
+    scenario
+}
+
+pub(crate) fn hold(angle: f64) -> Gait {
+    Gait::Hold(Hold {
+        angle,
+        schedule: None,
+    })
+}
+
+/// The gait that the studies use.
+pub(crate) fn climb() -> Gait {
+    Gait::Climb(Climb {
+        reach_angle: 0.8,
+        sweep_angle: 0.0,
+        push_angle: -0.8,
+        level_angle: 0.1,
+    })
+}
+
+pub(crate) fn flippers(scenario: &mut Scenario) -> &mut Flippers {
+    scenario.robot.flippers.as_mut().expect("it has flippers")
+}
+
+/// Robots of which more moves over the chassis than wheels and a smooth belt: grousers, shoes, arms. Arms
+/// stand up, or the robot stands on them.
+pub(crate) fn articulated() -> Vec<(&'static str, Scenario)> {
+    let (up, down) = (0.6, -0.3);
+    vec![
+        ("belt with grousers", engineer_on(grouser_belt())),
+        ("chain", engineer_on(segmental(None))),
+        ("chain on a sprocket", engineer_on(sprocketed(None))),
+        ("belt, arms up", on_arms(up, belt())),
+        ("belt, on arms", on_arms(down, belt())),
+        ("line of 5, on arms", on_arms(down, line(5))),
+        (
+            "gear wheels, on arms",
+            on_arms(down, line_of(3, paper_gear())),
+        ),
+        ("belt with grousers, on arms", on_arms(down, grouser_belt())),
+        ("chain, arms up", on_arms(up, segmental(None))),
+        ("chain, on arms", on_arms(down, segmental(None))),
+        (
+            "chain on a sprocket, on arms",
+            on_arms(down, sprocketed(None)),
+        ),
+        ("force, on arms", on_arms(down, force())),
+    ]
+}
+
+/// Whether grousers or shoes of a robot of that name strike the ground: blows pass differences of rounding on.
+pub(crate) fn strikes(name: &str) -> bool {
+    ["gear", "grousers", "chain"]
+        .iter()
+        .any(|word| name.contains(word))
+}
+
+pub(crate) fn is_on_chain(scenario: &Scenario) -> bool {
+    matches!(scenario.robot.track, Track::Segmental(_))
 }
 
 /// The same without a belly, slow and strong: what the quasi-static oracles assume.
@@ -220,6 +314,24 @@ pub(crate) fn contact_sums(simulation: &Simulation, x: f64, y: f64) -> (f64, f64
         moment += (c.x[i] - x) * py - (c.y[i] - y) * px;
     }
     (fx, fy, moment)
+}
+
+/// How far [m, rad] two equal lanes kept apart and the lumped robot are from each other at most, over half a
+/// second: at 0.2 m/s^2 it ends 0.02 m before the step is reached. In pose, and in the speed of the track.
+pub(crate) fn equal_lanes_off(scenario: &Scenario) -> (f64, f64) {
+    let ground = equal_lanes(&scenario.terrain);
+    let mut apart = Simulation::on_ground(scenario, ground).expect("it fits");
+    let mut lumped = Simulation::new(scenario).expect("it fits");
+    let (mut pose, mut speed) = (0.0_f64, 0.0_f64);
+    for _ in 0..500 {
+        apart.step().expect("finite");
+        lumped.step().expect("finite");
+        let (a, b) = (apart.reading(), lumped.reading());
+        pose = pose.max((a.position - b.position).length());
+        pose = pose.max((a.chassis_angle - b.chassis_angle).abs());
+        speed = speed.max((a.track_speed - b.track_speed).abs());
+    }
+    (pose, speed)
 }
 
 fn profile(terrain: &Terrain) -> (Profile, f64) {

@@ -1,8 +1,9 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    CircumferentialWheels, FieldPattern, GearWheel, HybridWheels, Scenario, Stepfield, Terrain,
-    TorqueSharing, Track, TrackOutline, Wheel,
+    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Gait,
+    GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack, ShoeShape,
+    Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 
 use crate::common::*;
@@ -25,8 +26,10 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
         0 => belt(),
         1 => force(),
         2 => force_on_wheels(),
-        8 => grouser_belt(),
-        9 => segmental(None),
+        8 => Track::GrouserBelt(GrouserBeltTrack {
+            grouser_count: (draw.unit() < 0.5).then(|| 1 + (draw.unit() * 12.0) as u32),
+        }),
+        9 => drawn_chain(draw, outline),
         3 => Track::Circumferential(CircumferentialWheels {
             count: 3 + (draw.unit() * 30.0) as u32,
             wheel_radius: Some(draw.between(0.25, 0.9) * smallest),
@@ -45,6 +48,103 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
             Track::Hybrid(HybridWheels { placements, wheel })
         }
         _ => line_of(2 + (draw.unit() * 10.0) as u32, wheel),
+    }
+}
+
+/// A chain on a guide or on wheels, with shoes that are short enough to go round the smaller end.
+fn drawn_chain(draw: &mut Draw, outline: &TrackOutline) -> Track {
+    let radii = [outline.front_radius, outline.rear_radius].map(|r| r - outline.grouser_height);
+    let [smaller, larger] = [radii[0].min(radii[1]), radii[0].max(radii[1])];
+    let around = 2.0 * outline.axle_distance + std::f64::consts::TAU * larger;
+    let fewest = 1.2 * around / (2.0 * smaller).min(0.5 * outline.axle_distance);
+    let mechanism = if draw.unit() < 0.5 {
+        ChainMechanism::Guide
+    } else {
+        ChainMechanism::Sprocket
+    };
+    let mut wheels = || {
+        let given = mechanism == ChainMechanism::Sprocket && draw.unit() < 0.3;
+        given.then(|| (draw.unit() * 12.0) as u32)
+    };
+    let [road_wheel_count, return_roller_count] = [wheels(), wheels()];
+    Track::Segmental(SegmentalTrack {
+        shoe_count: Some(draw.between(fewest + 1.0, fewest + 25.0) as u32),
+        mechanism,
+        shoe_shape: if draw.unit() < 0.5 {
+            ShoeShape::Rectangle
+        } else {
+            ShoeShape::Trapezoid
+        },
+        plate_thickness: None,
+        pre_tension: None,
+        tensioner_stiffness: None,
+        tensioner_damping: None,
+        road_wheel_count,
+        return_roller_count,
+    })
+}
+
+/// Arms that leave a chassis, with tracks of their own where the robot's do not suit every arm.
+fn drawn_flippers(draw: &mut Draw, robot: &Robot) -> Flippers {
+    let outline = &robot.outline;
+    let smallest = outline.front_radius.min(outline.rear_radius);
+    let suits = !matches!(robot.track, Track::Circumferential(_) | Track::Hybrid(_));
+    let own = !matches!(robot.track, Track::Force(_)) && (!suits || draw.unit() < 0.3);
+    let kinds = match robot.drivetrain.torque_sharing {
+        TorqueSharing::Wheel => 1.0,
+        TorqueSharing::Track => 3.0,
+    };
+    Flippers {
+        length: draw.between(0.3, 0.9) * outline.axle_distance,
+        root_radius: draw.between(0.6, 1.0) * smallest,
+        tip_radius: draw.between(0.5, 1.0) * smallest,
+        mass: draw.between(0.001, 0.03) * robot.mass,
+        ends: [Ends::Front, Ends::Rear, Ends::Both][(draw.unit() * 3.0) as usize],
+        angle: draw.between(-1.5, 3.0),
+        rate_limit: libm::exp(draw.between(-2.0, 2.0)),
+        // From a hundredth of what lifts the robot to ten times that.
+        torque_limit: libm::exp(draw.between(-4.0, 2.0)) * robot.mass * G * outline.axle_distance,
+        track: own.then(|| match (draw.unit() * kinds) as u32 {
+            0 => line_of(2 + (draw.unit() * 5.0) as u32, Wheel::Round),
+            1 => belt(),
+            _ => grouser_belt(),
+        }),
+    }
+}
+
+/// Commands by the clock, and for the flippers also by what the driver sees.
+fn drawn_drive(draw: &mut Draw, has_flippers: bool) -> Drive {
+    let mut later = |low, high| -> Option<Vec<[f64; 2]>> {
+        let some = draw.unit() < 0.3;
+        some.then(|| {
+            let mut time = 0.0;
+            let rows = 0..1 + (draw.unit() * 4.0) as u32;
+            rows.map(|_| {
+                time += draw.between(0.05, 0.8);
+                [time, draw.between(low, high)]
+            })
+            .collect()
+        })
+    };
+    let (speeds, angles) = (later(-1.3, 1.3), later(-1.5, 3.0));
+    Drive {
+        speed: draw.between(-1.3, 1.3),
+        schedule: speeds,
+        gait: (has_flippers && draw.unit() < 0.8).then(|| {
+            if draw.unit() < 0.5 {
+                Gait::Hold(Hold {
+                    angle: draw.between(-1.5, 3.0),
+                    schedule: angles,
+                })
+            } else {
+                Gait::Climb(Climb {
+                    reach_angle: draw.between(-0.5, 2.0),
+                    sweep_angle: draw.between(-1.0, 0.5),
+                    push_angle: draw.between(-1.5, 0.5),
+                    level_angle: draw.between(0.01, 0.5),
+                })
+            }
+        }),
     }
 }
 
@@ -172,6 +272,10 @@ pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
     r.drivetrain.max_torque = libm::exp(draw.between(-4.0, 2.0)) * 0.5 * r.mass * G * smallest;
     r.drivetrain.max_acceleration = libm::exp(draw.between(-3.0, 3.0));
     r.track = drawn_track(draw, &r.outline);
+    if matches!(r.track, Track::Segmental(_)) {
+        // Of sixty shoes each is to weigh a three-thousandth of the rest.
+        r.track_mass = r.track_mass.max(0.03 * r.mass);
+    }
     let driven = !matches!(
         r.track,
         Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_)
@@ -179,8 +283,9 @@ pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
     if driven && draw.unit() < 0.5 {
         r.drivetrain.torque_sharing = TorqueSharing::Wheel;
     }
+    r.flippers = (draw.unit() < 0.4).then(|| drawn_flippers(draw, r));
+    s.drive = drawn_drive(draw, s.robot.flippers.is_some());
     s.terrain = drawn_terrain(draw);
-    s.drive.speed = draw.between(-1.3, 1.3);
     s.gravity = if draw.unit() < 0.05 {
         0.0
     } else {

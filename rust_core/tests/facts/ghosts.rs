@@ -1,6 +1,6 @@
 //! Flat ground is flat however it is cut, and wherever it lies.
 
-use crawler2d_core::{Ground, Profile, Scenario, Simulation, Terrain, Track};
+use crawler2d_core::{Ground, Profile, Scenario, Simulation, Terrain};
 
 use crate::common::*;
 
@@ -30,11 +30,11 @@ fn cut(pieces: usize, jitter: f64, draw: &mut Draw) -> Ground {
     }
 }
 
-/// Positions [m] every 10 ms over 5 s, and the largest upward speed [m/s] after the start.
-fn drive(scenario: &Scenario, ground: Ground) -> (Vec<[f64; 3]>, f64) {
+/// Positions [m] every 10 ms over so many seconds, and the largest upward speed [m/s] after the start.
+fn drive_for(seconds: u32, scenario: &Scenario, ground: Ground) -> (Vec<[f64; 3]>, f64) {
     let mut simulation = Simulation::on_ground(scenario, ground).expect("it fits");
     let (mut path, mut upward) = (Vec::new(), f64::NEG_INFINITY);
-    for step in 1..=5000 {
+    for step in 1..=1000 * seconds {
         simulation.step().expect("finite");
         let r = simulation.reading();
         if step > 500 {
@@ -48,6 +48,10 @@ fn drive(scenario: &Scenario, ground: Ground) -> (Vec<[f64; 3]>, f64) {
     (path, upward)
 }
 
+fn drive(scenario: &Scenario, ground: Ground) -> (Vec<[f64; 3]>, f64) {
+    drive_for(5, scenario, ground)
+}
+
 fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     a.iter()
         .zip(b)
@@ -55,34 +59,36 @@ fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// Robots of [`articulated`] that nothing of strikes the ground run as exactly as belts and wheels.
 fn scenarios() -> Vec<(&'static str, Scenario)> {
-    let with = |track: Track| {
-        let mut scenario = engineer();
-        scenario.robot.track = track;
-        scenario
-    };
-    vec![
-        ("belt", with(belt())),
-        ("line of 3", with(line(3))),
-        ("line of 9", with(line(9))),
-        ("line of 3 gear wheels", with(line_of(3, paper_gear()))),
+    let mut scenarios = articulated();
+    scenarios.retain(|(name, _)| !strikes(name));
+    scenarios.extend([
+        ("belt", engineer_on(belt())),
+        ("line of 3", engineer_on(line(3))),
+        ("line of 9", engineer_on(line(9))),
+        (
+            "line of 3 gear wheels",
+            engineer_on(line_of(3, paper_gear())),
+        ),
         (
             "14 gear wheels round the outline",
-            with(circumferential(14, paper_gear())),
+            engineer_on(circumferential(14, paper_gear())),
         ),
-        ("force", with(force())),
-    ]
+        ("force", engineer_on(force())),
+    ]);
+    scenarios
 }
 
 #[test]
 fn pieces_of_flat_ground_leave_no_trace() {
     for (name, scenario) in scenarios() {
-        let whole = drive(&scenario, cut(1, 0.0, &mut Draw(0))).0;
+        let (whole, upward_on_whole) = drive(&scenario, cut(1, 0.0, &mut Draw(0)));
         for pieces in [3, 101, 1000, 100_000] {
             let (path, upward) = drive(&scenario, cut(pieces, 0.0, &mut Draw(0)));
             let off = apart(&whole, &path);
             println!("{name}, {pieces} pieces: off {off:.1e} m, upwards {upward:.1e} m/s");
-            assert!(off < 1e-6);
+            assert!(off < 1e-6 && upward < upward_on_whole + 1e-6);
         }
     }
 }
@@ -91,10 +97,14 @@ fn pieces_of_flat_ground_leave_no_trace() {
 fn vertices_off_by_a_ten_millionth_leave_none_either() {
     let mut draw = Draw(3);
     // Grousers strike the ground: what a blow finds differs by more than the ground does.
-    let smooth = |(name, _): &(&str, Scenario)| !name.contains("gear");
+    let smooth = |(name, _): &(&str, Scenario)| !strikes(name);
     for (name, scenario) in scenarios().into_iter().filter(smooth) {
         let whole = drive(&scenario, cut(1, 0.0, &mut draw)).0;
         for pieces in [10, 100, 1000, 100_000] {
+            // The small wheel at a tip follows faces of 0.1 mm that a track bridges.
+            if scenario.robot.flippers.is_some() && pieces > 1000 {
+                continue;
+            }
             let (path, upward) = drive(&scenario, cut(pieces, 1e-7, &mut draw));
             let off = apart(&whole, &path);
             println!("{name}, {pieces} jittered pieces: off {off:.1e} m, upwards {upward:.1e} m/s");
@@ -104,7 +114,7 @@ fn vertices_off_by_a_ten_millionth_leave_none_either() {
 }
 
 #[test]
-fn a_shift_by_a_hundred_metres_changes_nothing_before_the_edge() {
+fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
     let step_at = |x: f64| Terrain::Points {
         points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],
         goal: x,
@@ -126,8 +136,54 @@ fn a_shift_by_a_hundred_metres_changes_nothing_before_the_edge() {
             }
             path
         };
-        let off = apart(&path(0.0), &path(100.0));
-        println!("{name}: off {off:.1e} m");
-        assert!(off < 1e-9);
+        let here = path(0.0);
+        for x in [100.0, 1e4] {
+            let off = apart(&here, &path(x));
+            println!("{name}, {x} m: off {off:.1e} m");
+            assert!(off < 1e-9);
+        }
+    }
+}
+
+/// Where grousers and shoes strike the ground, a start that is a nanometre off leads to another path within a
+/// second: how the ground is cut, and where it lies, may lead no farther off than that.
+#[test]
+fn robots_that_strike_the_ground_find_no_more_in_it_than_in_a_nanometre() {
+    let mut striking = articulated();
+    striking.retain(|(name, _)| strikes(name));
+    for (name, mut scenario) in striking {
+        let two_seconds = |scenario: &Scenario, ground| drive_for(2, scenario, ground);
+        let level = |pieces| cut(pieces, 0.0, &mut Draw(0));
+        let (whole, upward_on_whole) = two_seconds(&scenario, level(1));
+        let approach = scenario.start.approach;
+        let (mut spread, mut fastest) = (0.0_f64, upward_on_whole);
+        for nanometres in 1..=3 {
+            scenario.start.approach = approach + 1e-9 * f64::from(nanometres);
+            let (twin, upward) = two_seconds(&scenario, level(1));
+            (spread, fastest) = (spread.max(apart(&whole, &twin)), fastest.max(upward));
+        }
+        scenario.start.approach = approach;
+        for pieces in [101, 1000] {
+            let (path, upward) = two_seconds(&scenario, level(pieces));
+            let off = apart(&whole, &path);
+            println!(
+                "{name}, {pieces} pieces: off {off:.1e} m, starts {spread:.1e} m; upwards {upward:.1e} m/s, \
+                 starts {fastest:.1e} m/s"
+            );
+            // Paths part exponentially: three starts know how far they lead to a power of ten.
+            assert!(off < 1e-9 + 10.0 * spread && upward < 1e-6 + 1.5 * fastest);
+        }
+        let mut far = level(1);
+        far.lanes[0] = Profile::new("ground", &[[95.0, 0.0], [105.0, 0.0]], 0.0, 0.9, false)
+            .expect("a level profile");
+        far.first_edge = 100.0;
+        far.goal = 104.0;
+        let (mut path, _) = two_seconds(&scenario, far);
+        for point in &mut path {
+            point[0] -= 100.0;
+        }
+        let off = apart(&whole, &path);
+        println!("{name}, 100 m on: off {off:.1e} m");
+        assert!(off < 1e-9 + 10.0 * spread);
     }
 }

@@ -15,6 +15,7 @@ fn models() -> Vec<(&'static str, Track)> {
         ("line of 3 gear wheels", line_of(3, paper_gear())),
         ("belt with grousers", grouser_belt()),
         ("chain", segmental(None)),
+        ("chain on a sprocket", sprocketed(None)),
     ]
 }
 
@@ -51,31 +52,18 @@ fn shares(simulation: &Simulation) -> [[f64; 2]; 3] {
 #[test]
 fn equal_lanes_are_both_tracks_as_one() {
     for (name, track) in models() {
-        let mut scenario = engineer();
-        scenario.robot.track = track;
-        let ground = equal_lanes(&scenario.terrain);
-        let mut apart = Simulation::on_ground(&scenario, ground).expect("it fits");
-        let mut lumped = Simulation::new(&scenario).expect("it fits");
-        let mut off: f64 = 0.0;
-        // At 0.2 m/s^2 half a second ends 0.02 m before the step is reached.
-        for _ in 0..500 {
-            apart.step().expect("finite");
-            lumped.step().expect("finite");
-            let (a, b) = (apart.reading(), lumped.reading());
-            off = off.max((a.position - b.position).length());
-            off = off.max((a.chassis_angle - b.chassis_angle).abs());
-            // The speed of a chain is that of every blow of its shoes.
-            if name != "chain" {
-                off = off.max((a.track_speed - b.track_speed).abs());
-            }
-        }
-        println!("{name}: off {off:.1e}");
+        let (pose, speed) = equal_lanes_off(&engineer_on(track));
+        println!("{name}: off {pose:.1e}, speed {speed:.1e} m/s");
         // Coulomb friction leaves open who bears what; where grousers strike, that shows a little.
         let limit = match name {
             "line of 3 gear wheels" | "chain" => 1e-4,
+            // Within the play of its teeth, 2 mm, a chain finds its own way from blow to blow.
+            "chain on a sprocket" => 1e-3,
             _ => 1e-6,
         };
-        assert!(off < limit);
+        assert!(pose < limit);
+        // The speed of a chain is that of every blow of its shoes.
+        assert!(name.starts_with("chain") || speed < limit);
     }
 }
 

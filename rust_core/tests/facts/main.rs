@@ -17,6 +17,8 @@ mod belt;
 mod climbing;
 mod drawn;
 mod drive;
+mod energy;
+mod extremes;
 mod flank;
 mod flippers;
 mod gears;

@@ -43,10 +43,19 @@ fn batch() -> Vec<Scenario> {
         force_on_wheels(),
         segmental(None),
     ];
-    (0..16)
-        .map(|i| {
-            let mut scenario = engineer();
-            scenario.robot.track = tracks[i % tracks.len()].clone();
+    let with_arms = [
+        grouser_belt(),
+        sprocketed(None),
+        belt(),
+        line_of(3, paper_gear()),
+    ];
+    let robots = tracks.map(engineer_on).into_iter();
+    let robots = robots.chain(with_arms.map(|track| on_arms(0.5, track)));
+    robots
+        .cycle()
+        .take(16)
+        .map(|mut scenario| {
+            scenario.drive.gait = Some(climb());
             scenario.terrain = step(draw.between(0.03, 0.12), draw.between(0.5, 1.1));
             scenario.duration = 4.0;
             scenario
@@ -105,19 +114,43 @@ fn recording_does_not_change_the_run() {
 /// They change only together with the physics. A commit that changes one says which and why.
 #[test]
 fn every_build_finds_the_same_values() {
-    for (track, expected) in [
-        (line(5), 0x35de_2006_e0a2_920e),
-        (line_of(3, paper_gear()), 0xe639_051e_7527_c3fb),
-    ] {
+    let robots = [
+        ("line of 5", engineer_on(line(5)), 0x35de_2006_e0a2_920e),
+        (
+            "line of 3 gear wheels",
+            engineer_on(line_of(3, paper_gear())),
+            0xe639_051e_7527_c3fb,
+        ),
+        (
+            "belt with grousers",
+            engineer_on(grouser_belt()),
+            0x76d4_12a0_9462_2314,
+        ),
+        ("chain", engineer_on(segmental(None)), 0xdd16_5eb0_1244_871a),
+        (
+            "chain on a sprocket",
+            engineer_on(sprocketed(None)),
+            0x0252_09ef_2905_969a,
+        ),
+        ("belt, arms", on_arms(0.5, belt()), 0xd802_3795_3cc5_8dab),
+        (
+            "chain, arms",
+            on_arms(0.5, segmental(None)),
+            0x1ba9_f614_afd8_a1e7,
+        ),
+    ];
+    let other = robots.into_iter().filter_map(|(name, robot, expected)| {
         let mut scenario = batch()[2].clone();
-        scenario.robot.track = track;
+        scenario.robot = robot.robot;
         scenario.duration = 2.5;
         let found = fingerprint(&run(&scenario));
-        assert_eq!(
-            found, expected,
-            "found {found:#018x}; if the physics was meant to change, write this value down"
-        );
-    }
+        (found != expected).then(|| format!("{name}: {found:#018x}"))
+    });
+    let other: Vec<String> = other.collect();
+    assert!(
+        other.is_empty(),
+        "{other:#?}; if the physics was meant to change, write these values down"
+    );
 }
 
 #[test]
