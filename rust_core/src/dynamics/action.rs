@@ -12,7 +12,7 @@ pub(super) struct Action {
     pub lever: f64,
     /// [m] Lever of the spin of a drive with a spin of its own.
     pub spin_lever: f64,
-    /// [m/s] What a surface that is held at the set-point adds.
+    /// [m/s] What a surface that is held at the set-point adds, and what a frame that moves over the ground does.
     pub offset: f64,
     /// [m] Lever of the reaction on the chassis, if that takes it.
     pub back: f64,
@@ -53,6 +53,14 @@ impl Action {
                 ..self
             },
             None => self,
+        }
+    }
+
+    /// The same of a place on the ground, measured in a frame that moves over it [m/s].
+    pub(super) fn on_ground(self, frame: Vector) -> Self {
+        Self {
+            offset: self.offset + self.unit.dot(frame),
+            ..self
         }
     }
 

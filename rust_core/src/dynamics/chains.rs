@@ -2,6 +2,7 @@
 
 use super::Dynamics;
 use super::chain::{Chain, Stand};
+use super::flippers::Arm;
 use super::row::{Link, Row};
 use super::solve::Phase;
 use super::state::{State, Twist};
@@ -89,18 +90,54 @@ impl Dynamics {
     }
 
     /// Advances by a piece of `h` [s].
+    ///
+    /// The solve is done in the frame of the chassis: pins are so stiff that the rounding of a velocity that all
+    /// bodies share would be a force.
     pub(super) fn substep_of_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         let soft = self.softness(h);
-        let phase = self.start_phase(state, set_point, h);
+        let frame = state.velocity;
+        state.add_velocity(-frame);
+        let mut phase = self.start_phase(state, set_point, h);
+        phase.frame = frame;
         self.start_chains(state, h);
         for row in &mut self.rows {
             row.close_softly(h, soft, self.solver.max_push_speed);
         }
         self.guess(h);
         self.solve(state, &phase);
+        // Eight digits are lost in the pins; what all bodies share follows from what acts on them from outside.
+        let lost = self.momentum_given(&phase) - self.momentum(state);
+        self.end_phase(state, phase);
+        state.add_velocity(frame + lost / self.mass_of_all());
         self.move_on(state, h);
         self.move_chains(state, set_point, h);
-        self.end_phase(state, phase);
+    }
+
+    /// [N s] Momentum of chassis, shoes and flippers with what the weight and the ground have given in a piece.
+    fn momentum_given(&self, phase: &Phase) -> Vector {
+        let of_chain = |chain: &Chain| {
+            let velocities = chain.free.iter().map(|shoe| shoe.velocity);
+            velocities.sum::<Vector>() * chain.rule.shoe_mass
+        };
+        let of_shoes: Vector = self.chains.iter().map(of_chain).sum();
+        let of_row = |row: &Row| match row.link {
+            Link::Guide { .. } | Link::Tooth { .. } => Vector::ZERO,
+            Link::Chassis | Link::Flipper(_) | Link::Shoe(_) => {
+                let [n, t] = &row.actions;
+                n.unit * row.normal_impulse + t.unit * row.friction_impulse
+            }
+        };
+        let of_ground: Vector = self.rows.iter().map(of_row).sum();
+        let of_arms: Vector = self.flippers.iter().map(Arm::free_momentum).sum();
+        phase.velocity * self.model.mass + of_shoes + of_arms + of_ground
+    }
+
+    /// [kg] Of chassis, shoes and flippers.
+    fn mass_of_all(&self) -> f64 {
+        let of_chain = |chain: &Chain| chain.rule.path.count as f64 * chain.rule.shoe_mass;
+        let of_shoes: f64 = self.chains.iter().map(of_chain).sum();
+        let of_arms: f64 = self.model.flippers.iter().map(|arm| arm.mass).sum();
+        self.model.mass + of_shoes + of_arms
     }
 
     /// Moves shoes and idlers by `h` [s] at the velocities that they have.

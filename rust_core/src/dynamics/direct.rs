@@ -154,7 +154,8 @@ impl Dynamics {
             }
             Link::Shoe(i) => {
                 let (chain, i) = (i / self.shoes_a_chain, i % self.shoes_a_chain);
-                self.chains[chain].add(i, on_body, damper);
+                // Shoes have no offset of their own in the system.
+                self.chains[chain].add(i, on_body, damper.shifted(-action.offset));
             }
             Link::Guide { shoe, chain } => {
                 let back = [force.reaction(), action.reaction()];

@@ -63,6 +63,11 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
+    /// [N s] Momentum that it would have by itself.
+    pub(super) fn free_momentum(&self) -> Vector {
+        self.free.velocity * self.rule.mass
+    }
+
     /// [N m s] What its motor has given at a share of its limit.
     fn given(&self, share: f64, phase: &Phase) -> f64 {
         share * self.rule.torque_limit * phase.elapsed

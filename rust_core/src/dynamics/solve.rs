@@ -29,6 +29,8 @@ pub(super) struct Phase {
     pub set_point: f64,
     /// [s] Time in which motors can push.
     pub elapsed: f64,
+    /// [m/s] Velocity over the ground of the frame that velocities are measured in.
+    pub frame: Vector,
 }
 
 impl Phase {
@@ -115,10 +117,11 @@ impl Dynamics {
             let row = &self.rows[i];
             let held = row.spin().is_some_and(|k| motors[k].share().is_none());
             let [n, t] = [&row.normal, &row.tangent].map(|along| match row.link {
-                Link::Chassis => Action::new(along, held, spin_of_set_point),
+                Link::Chassis => Action::new(along, held, spin_of_set_point).on_ground(phase.frame),
                 Link::Flipper(k) => Action::new(along, held, spin_of_set_point)
-                    .of_flipper(self.flippers[k].held_rate()),
-                Link::Shoe(_) => Action::of_shoe(along, 0.0),
+                    .of_flipper(self.flippers[k].held_rate())
+                    .on_ground(phase.frame),
+                Link::Shoe(_) => Action::of_shoe(along, 0.0).on_ground(phase.frame),
                 Link::Guide { .. } | Link::Tooth { .. } => {
                     Action::of_shoe(along, along.drive_lever)
                 }

@@ -261,6 +261,14 @@ impl State {
         (turn - self.drives[drive].spin) * model.drive_radius
     }
 
+    /// Adds a velocity [m/s] to that of all bodies.
+    pub(super) fn add_velocity(&mut self, velocity: Vector) {
+        self.velocity += velocity;
+        for shoe in &mut self.shoes {
+            shoe.twist.velocity += velocity;
+        }
+    }
+
     /// [m/s] Speed of the fastest point of the robot, at most; `reach` is the farthest from its centre.
     pub(crate) fn fastest(&self, reach: f64) -> f64 {
         let turns = self.flippers.iter().map(|flipper| flipper.rate.abs());
