@@ -165,7 +165,6 @@ class Judge:
                 body=body,
                 kind=int(table["body_kind"][group[0]]),
                 lane=lane,
-                edge=int(table["edge"][group[0]]),
                 carrier=carrier,
                 drive=self.drive_of(body),
                 point=point,
@@ -373,14 +372,15 @@ class Judge:
         return max(speeds, default=0.0)
 
     def pinches(self, on_it: list[Bearing]) -> bool:
-        """Whether two shoes bear on one edge at a time, and close the gap between them."""
-        shoes = self.robot.bodies
-        on_edges = [c for c in on_it if c.edge >= 0 and c.body < self.bodies]
-        for a, b in itertools.combinations(on_edges, 2):
-            one, other = shoes[a.body].shoe, shoes[b.body].shoe
-            together = np.intersect1d(a.samples, b.samples)
-            if a.edge != b.edge or min(one, other) < 0 or not len(together):
-                continue
+        """Whether two shoes bear on it for most of the time, and close the gap between them."""
+        bore: dict[int, set[int]] = {}
+        for c in on_it:
+            shoe = self.robot.bodies[c.body].shoe if c.body < self.bodies else -1
+            if shoe >= 0:
+                bore.setdefault(shoe, set()).update(c.samples.tolist())
+        stay = [shoe for shoe, samples in bore.items() if len(samples) > 0.5 * len(self.poses)]
+        for one, other in itertools.combinations(stay, 2):
+            together = np.array(sorted(bore[one] & bore[other]), dtype=np.int64)
             if self.shoes.closes(one, other, together, self.poses[together, :3], self.ahead):
                 return True
         return False

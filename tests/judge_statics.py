@@ -34,7 +34,6 @@ class Bearing:
     kind: int = 0
     """As in the tables."""
     lane: int = 0
-    edge: int = -1
     samples: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """When it bore, as numbers of samples."""
     carrier: int = 0

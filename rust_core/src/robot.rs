@@ -3,10 +3,9 @@
 use rapier2d_f64::math::Vector;
 
 use crate::chain::ChainOfShoes;
-use crate::contact::Running;
 use crate::error::ScenarioError;
 use crate::flipper::Flipper;
-use crate::outline::{Disc, Envelope, Gear, Grouser, Motion};
+use crate::outline::{Disc, Envelope, Gear, Grouser};
 use crate::scenario::Robot;
 use crate::track;
 
@@ -211,21 +210,6 @@ impl Model {
     pub(crate) fn locked_inertia(&self) -> f64 {
         let drives = (0..self.drives).map(|k| self.drive_inertia(k));
         self.moment_of_inertia + drives.sum::<f64>()
-    }
-
-    /// How the drive of a part moves it over the chassis.
-    pub(crate) fn motion(&self, part: usize, running: &Running) -> Motion {
-        let part = &self.parts[part];
-        let of_shoe = |shoe: usize| {
-            let chain = self.chains.iter().find(|c| c.shoes.contains(&shoe))?;
-            Some(chain.path.motion_at(running.shoes[shoe].translation))
-        };
-        let over_mount = part.motion(part.run(running), 0.0);
-        match part.mount {
-            Mount::Chassis => over_mount,
-            Mount::Shoe(shoe) => of_shoe(shoe).unwrap_or(over_mount),
-            Mount::Flipper(k) => over_mount.seen_from(running.flippers[k].pose),
-        }
     }
 
     /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed

@@ -48,6 +48,20 @@ impl Grouser {
         Pose::from_parts(point, rotation)
     }
 
+    /// How the belt moves what it carries at a point [m] of the chassis frame when it has run so far [m]: this
+    /// grouser, unless it is elsewhere.
+    pub(crate) fn motion_where(&self, run: f64, point: Vector) -> Motion {
+        let reach = self
+            .corners
+            .map(Vector::length)
+            .into_iter()
+            .fold(0.0, f64::max);
+        if (self.place(run).translation - point).length() <= 1.1 * reach {
+            return self.motion(run, 0.0);
+        }
+        self.belt.motion_at(self.belt.way_of(point), 0.0)
+    }
+
     /// How the belt moves it there, the mean while it runs from `reach` [m] before to as far behind.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         self.belt.motion_at(self.way + run, reach)

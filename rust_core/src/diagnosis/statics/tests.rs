@@ -17,6 +17,7 @@ fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Supp
         normal: direction(normal, lever),
         tangent: direction(right_of(normal), of_tangent),
         drive: None,
+        hinge: None,
         friction,
         slides: 0.0,
         role: Role::Track,
@@ -33,6 +34,7 @@ fn block(supports: Vec<Support>) -> Statics {
         lever: 1.0,
         radius: 1.0,
         push: None,
+        hinges: Vec::new(),
     }
 }
 
