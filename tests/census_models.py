@@ -36,12 +36,12 @@ def grouser_belt(rng: Generator) -> c2d.GrouserBeltTrack:
     return c2d.GrouserBeltTrack(grouser_count=count)
 
 
-def chain(rng: Generator, mechanism: str) -> c2d.SegmentalTrack:
+def chain(rng: Generator, mechanism: Any) -> c2d.SegmentalTrack:
     count = int(rng.choice([22, 22, 36, 44]))
-    shape: Any = rng.choice(["rectangle", "trapezoid"])
-    few = {} if mechanism == "guide" or rng.random() < 0.5 else {"road_wheel_count": 3}
+    shape: Any = str(rng.choice(["rectangle", "trapezoid"]))
+    few = None if mechanism == "guide" or rng.random() < 0.5 else 3
     return c2d.SegmentalTrack(
-        shoe_count=count, mechanism=str(mechanism), shoe_shape=str(shape), **few
+        shoe_count=count, mechanism=mechanism, shoe_shape=shape, road_wheel_count=few
     )
 
 

@@ -100,8 +100,8 @@ class Anatomy:
             self._loop(0, shapes, 0.0, -1)
         elif isinstance(track, c2d.SegmentalTrack):
             each = pieces_of_a_shoe(self.robot)
-            for body in range(int(shapes["bodies"][0])):
-                shoe = Body(carrier=0, lane=0, drive=0, form="shoe", shoe=body // each)
+            for number in range(int(shapes["bodies"][0])):
+                shoe = Body(carrier=0, lane=0, drive=0, form="shoe", shoe=number // each)
                 self.bodies.append(shoe)
             # What a chain runs on stands or turns freely; only a guide has friction.
             friction = math.inf if track.mechanism == "guide" else 0.0

@@ -254,7 +254,7 @@ def pieces(ground: Ground, edges: Array, tips: Array, roots: Array, depth: float
 
 
 def _within(ways: Array, spans: list[tuple[float, float]]) -> NDArray[np.bool_]:
-    return np.any([(ways >= a) & (ways <= b) for a, b in spans], axis=0)
+    return np.asarray(np.any([(ways >= a) & (ways <= b) for a, b in spans], axis=0))
 
 
 def _distance(way: float, spans: list[tuple[float, float]]) -> float:

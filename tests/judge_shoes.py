@@ -20,7 +20,8 @@ class Shoes:
     """The shoes of a run at chosen samples; each chain has `count` of them."""
 
     def __init__(self, poses: Array, chains: int) -> None:
-        self.poses, self.count = poses, poses.shape[1] // chains
+        self.poses = poses
+        self.count: int = poses.shape[1] // chains
 
     def beside(self, shoe: int, steps: int) -> int:
         """The shoe so many places ahead in the same chain."""
