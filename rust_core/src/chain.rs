@@ -5,6 +5,7 @@ use std::ops::Range;
 use rapier2d_f64::math::Vector;
 
 use crate::contact::Running;
+use crate::error::ScenarioError;
 use crate::outline::{Disc, Envelope, ShoeLoop, Teeth};
 use crate::robot::Model;
 
@@ -85,9 +86,12 @@ impl ChainOfShoes {
 
 impl Model {
     /// Leaves to the chassis what the chains do not weigh.
-    pub(crate) fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Self {
+    ///
+    /// # Errors
+    /// Chains that leave no chassis, as they may beside flippers.
+    pub(crate) fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Result<Self, ScenarioError> {
         if chains.is_empty() {
-            return self;
+            return Ok(self);
         }
         let places = chains.iter().flat_map(|chain| {
             let body = (chain.shoe_mass, chain.shoe_inertia);
@@ -117,8 +121,15 @@ impl Model {
         }
         let of_drives: f64 = (0..self.drives).map(|k| self.drive_inertia(k)).sum();
         self.moment_of_inertia -= of_drives;
+        if self.moment_of_inertia <= 0.0 {
+            let left = self.moment_of_inertia;
+            let rule =
+                format!("must exceed that of shoes and arms: the chassis would have {left} kg m^2");
+            let path = "robot.moment_of_inertia";
+            return Err(ScenarioError::new(path, locked - left, rule));
+        }
         self.chains = chains;
-        self
+        Ok(self)
     }
 
     /// [kg] Mass of chassis, chains and flippers.

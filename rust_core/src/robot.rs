@@ -183,7 +183,7 @@ impl Model {
         let beside = flippers.iter().map(Flipper::mass_of_track);
         drive_masses.extend(beside.take(track.drives - of_track));
         let circulating = robot.track_mass + drive_masses[of_track..].iter().sum::<f64>();
-        Ok(Self {
+        Self {
             mass: robot.mass,
             center_of_mass: Vector::from(robot.center_of_mass),
             moment_of_inertia: robot.moment_of_inertia - circulating * radius * radius,
@@ -198,7 +198,7 @@ impl Model {
             flippers: Vec::new(),
         }
         .with_flippers(flippers)?
-        .with_chains(track.chains))
+        .with_chains(track.chains)
     }
 
     /// [kg m^2] Moment of inertia of one drive.
