@@ -43,7 +43,11 @@ def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -
         angle=0.8,
         track=arms,
     )
-    return dataclasses.replace(ROBOT.with_track(track), flippers=flippers)
+    robot = ROBOT.with_track(track)
+    if isinstance(track, c2d.SegmentalTrack):
+        # Beside shoes the arms would leave a chassis of the robot without them no inertia.
+        robot = dataclasses.replace(robot, moment_of_inertia=2.0 * robot.moment_of_inertia)
+    return dataclasses.replace(robot, flippers=flippers)
 
 
 VARIANTS = {
