@@ -14,12 +14,16 @@ Generator = np.random.Generator
 HALF, RADIUS = 0.1825, 0.064  # [m] of the Engineer
 
 
-def draw(stratum: str, index: int, seed: int = 0) -> Scenario:
+Strata = dict[str, Callable[[Generator], Scenario]]
+
+
+def draw(stratum: str, index: int, seed: int = 0, strata: Strata | None = None) -> Scenario:
     """Scenario number `index` of a stratum; the same arguments give the same scenario."""
-    number = list(STRATA).index(stratum)
+    strata = strata or STRATA
+    number = list(strata).index(stratum)
     rng = np.random.default_rng([seed, number, index])
     for _ in range(20):
-        scenario = STRATA[stratum](rng)
+        scenario = strata[stratum](rng)
         try:
             scenario.validate()
         except c2d.ScenarioError:  # such as wheels that are too few to touch
@@ -28,9 +32,11 @@ def draw(stratum: str, index: int, seed: int = 0) -> Scenario:
     raise AssertionError(f"stratum {stratum} draws nothing that is valid")
 
 
-def drawn(stratum: str, count: int, seed: int = 0) -> Iterator[Scenario]:
+def drawn(
+    stratum: str, count: int, seed: int = 0, strata: Strata | None = None
+) -> Iterator[Scenario]:
     """The first scenarios of a stratum."""
-    return (draw(stratum, index, seed) for index in range(count))
+    return (draw(stratum, index, seed, strata) for index in range(count))
 
 
 # Tracks
@@ -316,7 +322,7 @@ def of_short_times(rng: Generator) -> Scenario:
     )
 
 
-STRATA: dict[str, Callable[[Generator], Scenario]] = {
+STRATA: Strata = {
     "anything": of_anything,
     "wheels": of_wheels,
     "slots": of_slots,

@@ -5,6 +5,7 @@ functions of their circles, the ground by its arc length, and balance is that of
 of each drive, by a linear program.
 """
 
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -12,24 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crawler2d as c2d
-from crawler2d import _core
-from crawler2d.scenario import Scenario
-from judge_geometry import Array, Ground, Piece, pieces, placed, right_of
-from judge_statics import Balance, Bearing, Range
+from judge_geometry import right_of
+from judge_statics import Balance, Bearing, Hinge, Range
+from judge_stop import Stop
 
 STOPS = ("seized", "hung_up", "stalled", "slipping", "cycling")
 
-# [-] Stop windows that means are taken over; the words allow one to two.
-WINDOWS = 1.0
-# [-] Of the friction limit, from which a sliding contact is at it in the mean.
-AT_FRICTION_LIMIT = 0.98
 # [-] Speed into the ground for a surface speed of 1, from which a surface is a flank.
 FLANK = 0.05
-# [m] Contacts of one body on one face that are this far apart are two: a grouser sweeps over it,
-# and one mean of all its way would bear where it hardly did.
-APART = 5e-3
-# [m] Along the ground, within which a contact bears on a piece of it.
-BESIDE = 5e-4
+# Of the contact table: guide, sprocket, idler, road wheel, return roller.
+INSIDE_A_CHAIN = (6, 7, 8, 9, 10)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,177 +39,8 @@ class Opinion:
     """What was compared with a criterion, to read a disagreement."""
 
 
-class Judge:
-    """Looks at the last windows of one recorded run."""
-
-    def __init__(self, run: c2d.Run, windows: float = WINDOWS) -> None:
-        self.run = run
-        self.scenario: Scenario = run.scenario
-        s, robot = self.scenario, self.scenario.robot
-        self.criteria, self.track = s.criteria, robot.track
-        self.command = s.drive.speed
-        self.ahead = math.copysign(1.0, self.command)
-        self.slow = s.criteria.sliding_speed * abs(self.command)
-        self.half_length = 0.5 * robot.outline.axle_distance
-        window = max(
-            self.criteria.stop_window,
-            self.criteria.stop_pitches * robot.outline.grouser_pitch / abs(self.command),
-        )
-        self.span = min(windows * window, run.time[-1])
-        self.weight = robot.mass * s.gravity
-        self._robot()
-        self._means()
-        self._pieces()
-        self._contacts()
-        self._loads()
-
-    def _robot(self) -> None:
-        robot = self.scenario.robot
-        wheels, outline = robot.wheels(), robot.outline
-        self.geometry = _core.geometry(self.scenario.to_json())
-        self.is_force = self.track.kind == "force"
-        self.wheels = np.column_stack([wheels["x"], wheels["y"], wheels["radius"]])
-        self.is_gear = getattr(getattr(self.track, "wheel", None), "kind", "round") == "gear"
-        half = self.half_length
-        ends = [[-half, 0.0, outline.rear_radius], [half, 0.0, outline.front_radius]]
-        self.tips = self.wheels if len(self.wheels) else np.array(ends)
-        self.roots = self.tips.copy()
-        if self.is_gear:
-            for row, gear in zip(self.roots, self.geometry["gears"], strict=True):
-                row[2] = np.hypot(*gear["outline"].T).min()
-        self.bodies = max(len(self.wheels), 1)
-        shared = robot.drivetrain.torque_sharing == "track"
-        self.motors = 1 if shared or not isinstance(self.track, c2d.LineOfWheels) else self.bodies
-        self.drives = self.motors + (len(self.wheels) if self.is_force else 0)
-        belt_radius = outline.rear_radius - outline.grouser_height
-        self.limit = 2.0 * robot.drivetrain.max_torque / belt_radius / self.motors
-        self.terrain_friction: float = self.scenario.terrain.friction  # type: ignore[union-attr]
-
-    def drive_of(self, body: int) -> int:
-        if body >= self.bodies or (self.is_force and not len(self.wheels)):
-            return -1
-        if self.is_force:
-            return 1 + body  # after the one that pushes the chassis
-        return body if self.motors > 1 else 0
-
-    def friction_of(self, body: int) -> float:
-        of_body = math.inf
-        if isinstance(self.track, c2d.ForceTrack) and not len(self.wheels) and body < self.bodies:
-            of_body = self.track.skid_friction
-        return min(of_body, self.terrain_friction)
-
-    def _means(self) -> None:
-        run = self.run
-        since = run.time[-1] - self.span + 1e-9
-        late = run.time > since
-        self.poses = np.column_stack([run.position, run.chassis_angle])[late]
-        self.pose = self.poses.mean(axis=0)
-        steps = np.diff(run.time, prepend=0.0)
-        share = steps[late] / steps[late].sum()
-        self.drive_speeds = share @ run.drive_speeds[late]
-        self.drive_ways = share @ abs(run.drive_speeds[late])
-        self.drive_forces = share @ run.drive_forces[late][:, : self.motors]
-        rows = np.flatnonzero(run.contacts["time"] > since)
-        self.table = {name: column[rows] for name, column in run.contacts.items()}
-        self.at = np.searchsorted(run.time, self.table["time"])
-        self.share = steps[self.at] / steps[late].sum()
-
-    def _pieces(self) -> None:
-        self.ground = Ground(np.asarray(self.geometry["lanes"][0][1]))
-        edges = np.column_stack([self.run.edges["x"], self.run.edges["y"]])
-        self.pieces: list[Piece] = pieces(
-            self.ground,
-            edges[self.run.edges["angle"] > 0.0],
-            placed(self.tips, *self.pose),
-            placed(self.roots, *self.pose),
-            self.criteria.intrusion_depth,
-        )
-
-    def _in_ground(self, local: Array) -> Array:
-        """Where points of the chassis frame were at the times of the contacts."""
-        angle = self.run.chassis_angle[self.at]
-        c, s = np.cos(angle), np.sin(angle)
-        x, y = local[..., 0], local[..., 1]
-        return np.asarray(
-            self.run.position[self.at] + np.stack([c * x - s * y, s * x + c * y], axis=-1)
-        )
-
-    def _contacts(self) -> None:
-        table = self.table
-        points = np.column_stack([table["x"], table["y"]])
-        normals = np.column_stack([table["normal_x"], table["normal_y"]])
-        arms = points - self._in_ground(np.array(self.scenario.robot.center_of_mass))
-        motions = -right_of(normals)
-        bodies = table["body"].astype(int)
-        if self.is_gear:
-            own = np.minimum(bodies, self.bodies - 1)
-            spokes = points - self._in_ground(self.wheels[own, :2])
-            motions = right_of(spokes) / self.wheels[own, 2][:, None]
-        self.contacts: list[Bearing] = []
-        for body, group in self._groups(bodies, points):
-            loads = table["normal_force"][group] * self.share[group]
-            total = loads.sum()
-            if total <= 0.0:
-                continue
-            w = loads / total
-            normal = w @ normals[group]
-            point = w @ points[group]
-            bearing = Bearing(
-                body=body,
-                drive=self.drive_of(body),
-                point=point,
-                arm=w @ arms[group],
-                normal=normal / np.hypot(*normal),
-                motion=w @ motions[group],
-                friction=self.friction_of(body),
-                piece=self.piece_at(point),
-                normal_force=total,
-                friction_force=float(table["friction_force"][group] @ self.share[group]),
-                surface_speed=w @ table["surface_speed"][group],
-            )
-            limit = AT_FRICTION_LIMIT * bearing.friction * total
-            bearing.slides = (
-                abs(bearing.surface_speed) >= self.slow and abs(bearing.friction_force) >= limit
-            )
-            self.contacts.append(bearing)
-
-    def _groups(
-        self, bodies: NDArray[np.int64], points: Array
-    ) -> list[tuple[int, NDArray[np.int64]]]:
-        """The rows of each contact: of one body, on one edge or one place of a face."""
-        edge = self.table["edge"]
-        keys = np.column_stack([bodies, edge, np.where(edge < 0, self.table["segment"], -1)])
-        found = []
-        for key in np.unique(keys, axis=0):
-            same = np.flatnonzero((keys == key).all(axis=1))
-            way = self.ground.along(points[same])
-            while len(same):
-                near = way <= way.min() + APART
-                found.append((int(key[0]), same[near]))
-                same, way = same[~near], way[~near]
-        return found
-
-    def piece_at(self, point: Array) -> int:
-        """Which piece of the ground a contact bears on; -1: none."""
-        way = self.ground.along(point[None])[0]
-        beside = [max(piece.first - way, way - piece.last) for piece in self.pieces]
-        near = [i for i, distance in enumerate(beside) if distance <= BESIDE]
-        return min(near, key=beside.__getitem__, default=-1)
-
-    def _loads(self) -> None:
-        self.forces = [0.0] * len(self.pieces)
-        for contact in self.contacts:
-            if contact.piece >= 0:
-                self.forces[contact.piece] += contact.normal_force
-        least = self.criteria.intrusion_load * self.weight
-        self.loaded = [i for i, force in enumerate(self.forces) if force > least]
-        # Between two bodies: what is inside the circle of one is no pocket of the track.
-        self.pockets = [
-            i
-            for i in self.loaded
-            if self.pieces[i].root_normal is not None and len(set(self.pieces[i].neighbours)) == 2
-        ]
-        self.most_loaded = max(self.loaded, key=self.forces.__getitem__, default=None)
+class Judge(Stop):
+    """Says why it is one."""
 
     # Balance
 
@@ -227,7 +51,23 @@ class Judge:
             push = np.array([math.cos(angle), math.sin(angle)])
             # It acts along the axis through the axles, below the centre of mass.
             arm = self.scenario.robot.center_of_mass[1]
-        return Balance(drives=self.drives, half_length=self.half_length, push=push, push_arm=arm)
+        hinges = []
+        for number, hung in enumerate(self.carriers.arms, 1):
+            middle, _ = self.carriers.frame(number, self.pose)
+            lever = float((middle - self.carriers.pivot(number, self.pose))[0, 0])
+            share = hung.mass / self.scenario.robot.mass
+            hinge = Hinge(
+                carrier=number, weight_arm=share * lever, torque=hung.torque / self.weight
+            )
+            hinges.append(hinge)
+        return Balance(
+            drives=self.drives,
+            half_length=self.half_length,
+            push=push,
+            push_arm=arm,
+            hinges=tuple(hinges),
+            drive_radius=self.robot.drive_radius,
+        )
 
     def motor_ranges(self, standing: tuple[float, float] | None = None) -> list[Range]:
         """[weights] What each motor may push; where it stands at its limit, these shares of it."""
@@ -243,28 +83,30 @@ class Judge:
 
     def closed(self) -> list[Bearing]:
         """The contacts, with one on the root belt for all on each pocket."""
-        kept = [c for c in self.contacts if c.piece not in self.pockets]
-        x, y, angle = self.pose
-        a, b = self.scenario.robot.center_of_mass
-        c, s = math.cos(angle), math.sin(angle)
-        com = np.array([x + c * a - s * b, y + s * a + c * b])
+        kept = [c for c in self.contacts if not set(c.pieces) & set(self.pockets)]
+        com = self.carriers.center_of_mass(self.pose)[0]
         for i in self.pockets:
-            piece = self.pieces[i]
+            piece, loop = self.pieces[i], self.loops[i]
             assert piece.root_normal is not None
-            body = 0
-            if len(self.wheels):
-                # A belt would run with either of its neighbours; the faster one drags it.
-                body = max(piece.neighbours, key=lambda n: self.drive_ways[self.drive_of(n)])
+            # A belt would run with either of its neighbours; the faster one drags it. One that
+            # nothing drives runs with what runs round it.
+            drives = [self.drive_of(body) for body in self.beside(i)]
+            driven = [drive for drive in drives if drive >= 0] or [loop.drive]
+            drive = max(driven, key=lambda n: self.drive_ways[n] if n >= 0 else 0.0)
             normal = -piece.root_normal
             new = Bearing(
-                body=body,
-                drive=self.drive_of(body),
+                body=self.beside(i)[0],
+                lane=loop.lane,
+                carrier=loop.carrier,
+                drive=drive,
                 point=piece.edge,
                 arm=piece.edge - com,
                 normal=normal,
                 motion=-right_of(normal),
-                friction=self.friction_of(body),
+                friction=self.robot.ground_friction(loop.lane),
             )
+            if loop.carrier > 0:
+                new.pivot_arm = piece.edge - self.carriers.pivot(loop.carrier, self.pose)[0]
             if new.drive >= 0:
                 # The robot stands: what the surface runs is what it slides.
                 new.surface_speed = -self.drive_speeds[new.drive]
@@ -306,7 +148,7 @@ class Judge:
     def to_and_fro(self) -> float:
         """[m] Width of what the chassis frame moved within."""
         scale = np.array([1.0, 1.0, self.half_length])
-        return float(np.ptp(self.poses * scale, axis=0).max())
+        return float(np.ptp(self.poses[:, :3] * scale, axis=0).max())
 
     def stalled(self) -> NDArray[np.bool_]:
         """Which motors stand at their torque limit."""
@@ -333,23 +175,47 @@ class Judge:
         speeds = [
             -self.ahead * float(c.motion @ c.normal)
             for c in self.contacts
-            if c.piece == self.most_loaded and c.drive >= 0
+            if self.most_loaded in c.pieces and c.drive >= 0
         ]
         return max(speeds, default=0.0)
+
+    def pinches(self, on_it: list[Bearing]) -> bool:
+        """Whether two shoes bear on it for most of the time, and close the gap between them."""
+        bore: dict[int, set[int]] = {}
+        for c in on_it:
+            shoe = self.robot.bodies[c.body].shoe if c.body < self.bodies else -1
+            if shoe >= 0:
+                bore.setdefault(shoe, set()).update(c.samples.tolist())
+        stay = [shoe for shoe, samples in bore.items() if len(samples) > 0.5 * len(self.poses)]
+        for one, other in itertools.combinations(stay, 2):
+            together = np.array(sorted(bore[one] & bore[other]), dtype=np.int64)
+            if self.shoes.closes(one, other, together, self.poses[together, :3], self.ahead):
+                return True
+        return False
 
     def mechanism(self) -> str | None:
         if self.most_loaded is None:
             return None
-        on_it = [c for c in self.contacts if c.piece == self.most_loaded]
+        on_it = [c for c in self.contacts if self.most_loaded in c.pieces]
         least = self.criteria.intrusion_load * self.weight
         by_body: dict[int, float] = {}
         for c in on_it:
             by_body[c.body] = by_body.get(c.body, 0.0) + c.normal_force
         if by_body.get(self.bodies, 0.0) > least:
             return "bellied"
+        inside = {c.body for c in on_it if c.kind in INSIDE_A_CHAIN}
+        if any(by_body[body] > 0.5 * least for body in inside):
+            return "fouled"
+        if self.pinches(on_it):
+            return "pinched"
+        return self.held(on_it, by_body)
+
+    def held(self, on_it: list[Bearing], by_body: dict[int, float]) -> str | None:
+        """By motors that cannot turn, or by surfaces that can."""
         if self.stalled_share() >= 0.5:
             return "interlocked" if self.into_ground() > FLANK else "blocked"
-        if sum(force > 0.5 * least for body, force in by_body.items() if body < self.bodies) >= 2:
+        least = 0.5 * self.criteria.intrusion_load * self.weight
+        if sum(force > least for body, force in by_body.items() if body < self.bodies) >= 2:
             return "straddled"
         return "undercut" if any(c.slides for c in on_it) else None
 

@@ -92,7 +92,8 @@ class Hull:
     def __init__(self, circles: Array, inside: float = 0.0) -> None:
         self.centers, self.radii = circles[:, :2], circles[:, 2] - inside
         # Straight runs would be rounded between even directions, by 0.1 mm; theirs are added.
-        angles = np.sort(np.concatenate([ANGLES, self._straight_runs()]))
+        # One direction twice would walk its run there, back and there again.
+        angles = np.unique(np.round(np.concatenate([ANGLES, self._straight_runs()]), 12))
         self.directions = np.column_stack([np.cos(angles), np.sin(angles)])
         self.support = (self.directions @ self.centers.T + self.radii).max(axis=1)
 
@@ -108,7 +109,7 @@ class Hull:
         u = np.column_stack([np.cos(angles), np.sin(angles)])
         reach = u @ self.centers.T + self.radii
         outermost = reach[np.arange(len(i)), i] > reach.max(axis=1) - TOUCHING
-        return np.unique(np.round(angles[outermost] % (2.0 * math.pi), 12))
+        return np.asarray(angles[outermost] % (2.0 * math.pi))
 
     @cached_property
     def way_round(self) -> WayRound:
@@ -167,8 +168,29 @@ class Ground:
         share = (way - self.way[k]) / max(self.lengths[k], 1e-30)
         return np.asarray(self.starts[k] + share * (self.ends[k] - self.starts[k]))
 
-    def inside(self, hull: Hull) -> list[tuple[float, float]]:
-        """[m] The stretches inside a belt."""
+    def inside(self, hull: Hull) -> list[list[tuple[float, float]]]:
+        """[m] The stretches inside a belt, those that bound one connected piece together."""
+        spans = self._spans(hull)
+        if len(spans) < 2:
+            return [[span] for span in spans]
+        # The ground lies to the right of its own way: its rim on the belt runs clockwise from
+        # where one stretch goes out to where another one, or itself, comes in.
+        belt = hull.way_round
+        comes_in, goes_out = np.array([[belt.along(self.at(x)) for x in span] for span in spans]).T
+        follows = [int(((out - comes_in) % belt.total).argmin()) for out in goes_out]
+        found, left = [], set(range(len(spans)))
+        while left:
+            first = k = min(left)
+            piece: list[tuple[float, float]] = []
+            while k in left:
+                left.remove(k)
+                piece.append(spans[k])
+                k = follows[k]
+            assert k == first, "the ground crosses itself"
+            found.append(piece)
+        return found
+
+    def _spans(self, hull: Hull) -> list[tuple[float, float]]:
         spans: list[tuple[float, float]] = []
         room = hull.support - self.starts @ hull.directions.T
         rate = (self.ends - self.starts) @ hull.directions.T
@@ -191,9 +213,8 @@ class Ground:
 class Piece:
     """A connected piece of the ground inside the track."""
 
-    first: float
-    last: float
-    """[m] The stretch of ground that it is."""
+    spans: tuple[tuple[float, float], ...]
+    """[m] The stretches of ground that bound it."""
     edge: Array
     """Where the edge is that stands out and reaches deepest."""
     root_normal: Array | None
@@ -211,20 +232,43 @@ def pieces(ground: Ground, edges: Array, tips: Array, roots: Array, depth: float
     below_root = ground.inside(root)
     found = []
     ways = ground.along(edges)
-    for a, b in ground.inside(inner):
-        among = edges[(ways >= a) & (ways <= b)]
+    for spans in ground.inside(inner):
+        among = edges[_within(ways, spans)]
         if not len(among):
             continue
         depths = np.array([envelope.depth(edge) for edge in among])
         edge = among[int(np.flatnonzero(depths > depths.max() - EQUALLY_DEEP)[0])]
-        way = ground.along(edge[None])[0]
-        deep = [span for span in below_root if span[0] <= b and span[1] >= a]
+        deep = [
+            piece
+            for piece in below_root
+            if any(a <= d and c <= b for a, b in piece for c, d in spans)
+        ]
         normal, neighbours = None, (0, 0)
         if deep:
-            span = min(deep, key=lambda span: max(span[0] - way, way - span[1]))
-            # The ground lies to the right of its own way: the belt inside of it runs anticlockwise
-            # from where it comes in to where it goes out.
-            place, normal = root.way_round.nearest_between(edge, *map(ground.at, span))
+            way = ground.along(edge[None])[0]
+            piece = min(deep, key=lambda piece: _distance(way, piece))
+            place, normal = _nearest_on_rim(ground, root.way_round, piece, edge)
             neighbours = root.neighbours(place, normal)
-        found.append(Piece(a, b, edge, normal, neighbours))
+        found.append(Piece(tuple(spans), edge, normal, neighbours))
     return found
+
+
+def _within(ways: Array, spans: list[tuple[float, float]]) -> NDArray[np.bool_]:
+    return np.asarray(np.any([(ways >= a) & (ways <= b) for a, b in spans], axis=0))
+
+
+def _distance(way: float, spans: list[tuple[float, float]]) -> float:
+    return min(max(a - way, way - b) for a, b in spans)
+
+
+def _nearest_on_rim(
+    ground: Ground, belt: WayRound, piece: list[tuple[float, float]], point: Array
+) -> tuple[Array, Array]:
+    """The place of a belt round a piece nearest to a point of it, and the outward normal there."""
+    # The belt runs anticlockwise from where a stretch comes in to where the one before went out.
+    goes_out = [piece[-1][1], *(b for _, b in piece[:-1])]
+    rims = [
+        belt.nearest_between(point, ground.at(a), ground.at(b))
+        for (a, _), b in zip(piece, goes_out, strict=True)
+    ]
+    return min(rims, key=lambda rim: float(np.hypot(*(rim[0] - point))))

@@ -79,6 +79,29 @@ def test_a_seized_robot_stays_seized_and_gets_away_on_a_belt(seized: c2d.Run) ->
     assert np.array_equal(freed.position[0], seized.position[-1])
 
 
+def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
+    """Gears that slip before a step: a smooth belt does, too, grousers take hold of its edge."""
+    gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
+    robot = c2d.robots.engineer(flippers=None, track=gears)
+    run = c2d.simulate(robot, c2d.terrains.step(0.10, friction=0.7))
+    smooth, grousers = run.counterfactual(), run.counterfactual(grousers=True)
+    assert (smooth.freed, grousers.freed) == (False, True)
+
+
+def test_a_belt_with_grousers_does_as_the_same_belt_does() -> None:
+    """Where it is the track itself, there is nothing that could get away."""
+    robot = c2d.robots.engineer(flippers=None, track=c2d.GrouserBeltTrack())
+    run = c2d.simulate(robot, c2d.terrains.step(0.25))
+    belt = run.counterfactual(grousers=True)
+    assert not belt.freed
+    assert belt.distance < 0.01
+
+
+def test_a_track_without_grousers_is_not_compared_with_grousers(seized: c2d.Run) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"robot\.track must have grousers"):
+        seized.counterfactual(grousers=True)
+
+
 def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
     slippery = seized.branch(at=0.5, friction=0.05, duration=3.0)
     assert slippery.scenario.terrain == c2d.terrains.step(0.10, friction=0.05)

@@ -227,7 +227,15 @@ CONTACTS = {
     "in_pocket": [True, True, False],
 }
 PIECE = Intrusion(
-    edge=3, edges=(3,), bodies=(4, 3), depth=0.041, root_depth=0.041, x=0.6, y=0.1, force=190.0
+    edge=3,
+    edges=(3,),
+    bodies=(4, 3),
+    body_kinds=(0, 0),
+    depth=0.041,
+    root_depth=0.041,
+    x=0.6,
+    y=0.1,
+    force=190.0,
 )
 BELT = Counterfactual(freed=True, distance=0.3, time=0.4, outcome=c2d.Outcome.CLEARED)
 
@@ -314,6 +322,14 @@ def test_bodies_on_the_edge_are_named_by_what_they_do(
         ({"root_depth": 0.0}, "inside the envelope, not below the roots, between wheels 3 and 4"),
         ({"root_depth": 0.0, "bodies": (4, 4)}, "the envelope between two grousers of wheel 4, at"),
         ({"bodies": (4, 4)}, "the envelope at wheel 4, at x 0.600 m"),
+        # What a chain runs on has no numbers that a reader could count.
+        ({"body_kinds": (9, 9)}, "under the shoes between a road wheel and the next, at x 0.600"),
+        ({"body_kinds": (9, 7)}, "under the shoes between a road wheel and the sprocket, at x"),
+        ({"bodies": (44, 44), "body_kinds": (6, 6)}, "the envelope between two shoes, at x 0.600"),
+        (
+            {"bodies": (0, 0), "body_kinds": (1, 1), "root_depth": 0.029},
+            "the envelope between two grousers of the belt, at x 0.600 m",
+        ),
     ],
 )
 def test_ground_inside_is_told_by_its_place_and_depth(piece: Any, said: str) -> None:
@@ -411,15 +427,18 @@ def test_a_tried_belt_ends_the_sentence(belt: Any, said: str) -> None:
 def test_the_body_of_a_closed_track_is_no_wheel(kind: int, name: str) -> None:
     # Ground that a branch found inside of it.
     contacts = {"body": [0, 0, 0], "body_kind": [kind] * 3, "in_pocket": [True, False, False]}
-    said = str(made(contacts, intrusion=dataclasses.replace(PIECE, bodies=(0, 0))))
+    piece = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(kind, kind))
+    said = str(made(contacts, intrusion=piece))
     assert f"inside the envelope at {name}, at x 0.600 m" in said
     assert f"; {name} slides on it with 150 N;" in said
     assert "wheel" not in said
 
 
 def test_of_a_belt_nobody_is_told_that_a_belt_does_the_same() -> None:
-    d = made({"body_kind": [1, 1, 1]}, outcome=c2d.Outcome.SLIPPING, counterfactual=BELT)
-    assert "closed belt" not in str(d)
+    inside = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(1, 1))
+    for piece in (inside, None):
+        fields = {"intrusion": piece, "outcome": c2d.Outcome.SLIPPING, "counterfactual": BELT}
+        assert "closed belt" not in str(made({"body_kind": [1, 4, 4]}, **fields))
 
 
 def test_a_simulation_under_way_says_why_it_has_stopped(stops: dict[str, c2d.Run]) -> None:

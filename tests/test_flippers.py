@@ -107,6 +107,14 @@ def test_same_bits_in_a_batch_and_from_a_snapshot() -> None:
         assert run.position.tobytes() == alone.position.tobytes()
 
 
+def test_shoes_and_arms_that_leave_the_chassis_no_inertia_are_refused() -> None:
+    """Together they may have more than the robot; a step of it never ended."""
+    robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack(shoe_count=44))
+    arms = replace(ARMS, ends="both")
+    with pytest.raises(c2d.ScenarioError, match=r"robot\.moment_of_inertia must exceed"):
+        c2d.Scenario(replace(robot, flippers=arms), c2d.terrains.step(0.1)).validate()
+
+
 def test_stops_with_flippers_are_certified_and_a_belt_is_never_seized() -> None:
     heights = (0.06, 0.10, 0.14, 0.18)
     models = (c2d.LineOfWheels(3), c2d.CircumferentialWheels(24), c2d.BeltTrack())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from crawler2d.diagnosis import Diagnosis
+    from crawler2d.diagnosis import Diagnosis, Intrusion
 
 __all__ = ["sentence"]
 
@@ -71,15 +71,18 @@ def _inside(d: Diagnosis) -> str:
     if piece is None:
         return ""
     rear, front = sorted(piece.bodies)
+    kind = piece.body_kinds[0]
     has_grousers = piece.depth - piece.root_depth > _LEAST_DEPTH
-    if rear != front:
+    if rear != front and kind in _IN_CHAIN:
+        where = f"under the shoes between {' and '.join(_in_chain(piece))}"
+    elif rear != front:
         where = f"between wheels {rear} and {front}"
-    elif _is_chain(d):
+    elif kind in _IN_CHAIN:
         where = "between two shoes"
     elif has_grousers:
-        where = f"between two grousers of wheel {rear}"
+        where = f"between two grousers of {_NAMES.get(kind, f'wheel {rear}')}"
     else:
-        where = f"at {_name(d, rear)}"
+        where = f"at {_NAMES.get(kind, f'wheel {rear}')}"
     below = ""
     if has_grousers and rear != front:
         deep = f"{1e3 * piece.root_depth:.0f} mm" if piece.root_depth > _LEAST_DEPTH else "not"
@@ -87,6 +90,12 @@ def _inside(d: Diagnosis) -> str:
     place = f"at x {piece.x:z.3f} m, y {piece.y:z.3f} m"
     reach = f"edge {piece.edge} reaches {1e3 * piece.depth:.0f} mm inside the envelope"
     return f"{reach}{below} {where}, {place}"
+
+
+def _in_chain(piece: Intrusion) -> list[str]:
+    """Name the wheels that a chain runs on, on either side of an intrusion."""
+    names = [_NAMES[kind] for kind in piece.body_kinds]
+    return [names[0], "the next"] if names[0] == names[1] else names
 
 
 def _on_it(d: Diagnosis) -> str:
@@ -123,11 +132,13 @@ def _name(d: Diagnosis, body: int) -> str:
     return _NAMES.get(int(kinds[0]) if len(kinds) else 0, f"wheel {body}")
 
 
-def _is_chain(d: Diagnosis) -> bool:
-    """Tell shoes from other bodies by what bears: nothing gets inside a belt with grousers."""
+def _is_belt(d: Diagnosis) -> bool:
+    """Tell a belt, with grousers or without, by what is inside of it, or by what bears."""
+    if d.intrusion is not None:
+        return d.intrusion.body_kinds[0] == _BELT
     kinds = d.contacts["body_kind"]
-    told = [_SHOE, *_IN_CHAIN] if d.intrusion is None else [_GROUSER, _SHOE, *_IN_CHAIN]
-    return bool(np.isin(kinds, told).any())
+    is_chain = np.isin(kinds, (_SHOE, *_IN_CHAIN)).any()
+    return bool(np.isin(kinds, (_BELT, _GROUSER)).any() and not is_chain)
 
 
 def _belly(d: Diagnosis) -> str:
@@ -185,8 +196,7 @@ def _moved_by(d: Diagnosis) -> str:
 
 
 def _belt(d: Diagnosis) -> str:
-    is_belt = np.isin(d.contacts["body_kind"], (_BELT, _GROUSER)).any() and not _is_chain(d)
-    if d.counterfactual is None or is_belt:
+    if d.counterfactual is None or _is_belt(d):
         return ""
     if d.counterfactual.freed:
         return "a closed belt gets away"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d._arrays import real_number
-from crawler2d._recording import Recording, recording
+from crawler2d._recording import Recording, recording, yes_or_no
 from crawler2d.diagnosis import Counterfactual
 from crawler2d.errors import ScenarioError
 
@@ -58,6 +58,7 @@ def simulate_branch(
     return _core.branch(run.scenario.to_json(), time, variant.to_json(), *recorded)
 
 
-def try_belt(run: Run, time: float) -> Counterfactual:
+def try_belt(run: Run, time: float, grousers: bool) -> Counterfactual:
     """Repeat the run up to a time, and try a closed belt there."""
-    return Counterfactual.from_core(_core.counterfactual(run.scenario.to_json(), time))
+    asked = yes_or_no(grousers, "grousers")
+    return Counterfactual.from_core(_core.counterfactual(run.scenario.to_json(), time, asked))

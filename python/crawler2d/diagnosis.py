@@ -47,6 +47,8 @@ class Intrusion:
         All edges in the piece, from the left.
     bodies : tuple of int
         The bodies on either side of the deepest point, in order of belt travel.
+    body_kinds : tuple of int
+        What these are, as in the contacts.
     depth, root_depth : float
         [m] Deepest reach below the belt round the circumscribed and the root circles.
     x, y : float
@@ -58,6 +60,7 @@ class Intrusion:
     edge: int
     edges: tuple[int, ...]
     bodies: tuple[int, int]
+    body_kinds: tuple[int, int]
     depth: float
     root_depth: float
     x: float

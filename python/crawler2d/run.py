@@ -309,13 +309,21 @@ class Run:
         result = branching.simulate_branch(self, time, variant, record, sample_interval)
         return Run(variant, result, trunk=(self.scenario, time))
 
-    def counterfactual(self, at: float | Literal["stop"] = "stop") -> Counterfactual:
+    def counterfactual(
+        self, at: float | Literal["stop"] = "stop", *, grousers: bool = False
+    ) -> Counterfactual:
         """Try a closed belt in the pose of an instant: same envelope, force, friction and speeds.
 
         Parameters
         ----------
         at : float or "stop"
             [s] When; "stop" is the instant of the diagnosis.
+        grousers : bool
+            Whether the belt has grousers that travel with it, as `GrouserBeltTrack`: as high as
+            those of the track, at the pitch of the outline. That is the fair one for gear wheels
+            and shoes, whose grip a smooth belt has not. Where ground lies deeper inside than
+            grousers are high, those that come to it hook on what no belt has inside: there an
+            escape tells more than a failure, and of the smooth belt both tell.
 
         Returns
         -------
@@ -325,7 +333,8 @@ class Run:
         Raises
         ------
         ScenarioError
-            If `at` is no time of the run, the run did not end in a stop, or is a branch itself.
+            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or
+            the track has no grousers where `grousers` asks for them.
 
         Examples
         --------
@@ -334,7 +343,7 @@ class Run:
         >>> c2d.simulate(robot, c2d.terrains.step(0.10)).counterfactual().freed
         True
         """
-        return branching.try_belt(self, branching.branch_time(self, at))
+        return branching.try_belt(self, branching.branch_time(self, at), grousers)
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled data set.

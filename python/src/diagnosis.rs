@@ -58,6 +58,8 @@ fn intrusion<'py>(py: Python<'py>, i: &LoadedIntrusion) -> PyResult<Bound<'py, P
     result.set_item("edge", i.place.edge)?;
     result.set_item("edges", PyTuple::new(py, &i.place.edges)?)?;
     result.set_item("bodies", PyTuple::new(py, i.place.bodies)?)?;
+    let kinds = i.kinds.map(|kind| kind as i64);
+    result.set_item("body_kinds", PyTuple::new(py, kinds)?)?;
     result.set_item("depth", i.place.depth)?;
     result.set_item("root_depth", i.place.root_depth)?;
     result.set_item("x", i.place.x)?;

@@ -126,9 +126,14 @@ mod _core {
 
     /// A run up to a time, and a closed belt from there.
     #[pyfunction]
-    fn counterfactual<'py>(py: Python<'py>, text: &str, at: f64) -> PyResult<Bound<'py, PyDict>> {
+    fn counterfactual<'py>(
+        py: Python<'py>,
+        text: &str,
+        at: f64,
+        grousers: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let found = interruptible(py, |cancel| {
-            crawler2d_core::counterfactual(&Scenario::from_json(text)?, at, cancel)
+            crawler2d_core::counterfactual(&Scenario::from_json(text)?, at, grousers, cancel)
         })?;
         diagnosis::counterfactual(py, &found)
     }

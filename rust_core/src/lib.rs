@@ -18,6 +18,7 @@ mod batch;
 mod bodies;
 mod chain;
 mod check;
+mod closed;
 mod contact;
 mod diagnosis;
 #[cfg(test)]

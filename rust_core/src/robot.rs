@@ -3,10 +3,9 @@
 use rapier2d_f64::math::Vector;
 
 use crate::chain::ChainOfShoes;
-use crate::contact::Running;
 use crate::error::ScenarioError;
 use crate::flipper::Flipper;
-use crate::outline::{Disc, Envelope, Gear, Grouser, Motion};
+use crate::outline::{Disc, Envelope, Gear, Grouser};
 use crate::scenario::Robot;
 use crate::track;
 
@@ -222,62 +221,6 @@ impl Model {
         self.moment_of_inertia + drives.sum::<f64>()
     }
 
-    /// How the drive of a part moves it over the chassis.
-    pub(crate) fn motion(&self, part: usize, running: &Running) -> Motion {
-        let part = &self.parts[part];
-        let of_shoe = |shoe: usize| {
-            let chain = self.chains.iter().find(|c| c.shoes.contains(&shoe))?;
-            Some(chain.path.motion_at(running.shoes[shoe].translation))
-        };
-        let over_mount = part.motion(part.run(running), 0.0);
-        match part.mount {
-            Mount::Chassis => over_mount,
-            Mount::Shoe(shoe) => of_shoe(shoe).unwrap_or(over_mount),
-            Mount::Flipper(k) => over_mount.seen_from(running.flippers[k].pose),
-        }
-    }
-
-    /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed
-    /// circles, all their motors' force, their mass.
-    pub(crate) fn closed(&self) -> Self {
-        let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
-        let belt = Envelope::new(&round(Mount::Chassis));
-        // A closed belt shields a belly that lies inside of it.
-        let reaches_out = |part: &&Part| match &part.shape {
-            Shape::Polygon { corners } if part.mount == Mount::Chassis => {
-                corners.iter().any(|c| belt.depth(*c) < 0.0)
-            }
-            _ => false,
-        };
-        let belly = self.parts.iter().filter(reaches_out).cloned();
-        let tracks = self.tracks();
-        let belts = (0..tracks).flat_map(|lane| {
-            self.mounts_of_tracks().map(move |mount| Part {
-                kind: BodyKind::Belt,
-                shape: Shape::Hull {
-                    discs: round(mount),
-                    grouser_height: 0.0,
-                },
-                drive: Some(lane),
-                friction_limit: f64::INFINITY,
-                lane,
-                mount,
-            })
-        });
-        let whole = self.with_circulating_mass();
-        let mass: f64 = whole.drive_masses.iter().sum();
-        let force = self.drive_force * self.motors as f64;
-        Self {
-            parts: belts.chain(belly).collect(),
-            drives: tracks,
-            motors: tracks,
-            drive_masses: vec![mass / tracks as f64; tracks],
-            drive_force: force / tracks as f64,
-            pushes_chassis: false,
-            ..whole
-        }
-    }
-
     /// Number of lanes that tracks meet.
     pub(crate) fn tracks(&self) -> usize {
         let of_tracks = self
@@ -294,7 +237,11 @@ impl Model {
     }
 
     /// Circumscribed and root circles of the bodies of the track on a lane that this carries.
-    fn discs_of_track(&self, lane: usize, on: Mount) -> impl Iterator<Item = (Disc, Disc)> + '_ {
+    pub(crate) fn discs_of_track(
+        &self,
+        lane: usize,
+        on: Mount,
+    ) -> impl Iterator<Item = (Disc, Disc)> + '_ {
         let is_of_track = move |part: &&Part| part.lane == lane && part.mount == on;
         let of_track = self.parts.iter().filter(is_of_track);
         of_track.flat_map(|part| part.discs().collect::<Vec<_>>())

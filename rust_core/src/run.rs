@@ -168,16 +168,23 @@ pub fn branch(
     advance(&mut simulation, last, record, cancel, begin)
 }
 
-/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there.
+/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
 ///
 /// # Errors
-/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is set.
+/// As [`simulate`], [`Error::Scenario`] if the track has no grousers and the belt is to have some, and
+/// [`Error::Interrupted`] once `cancel` is set.
 pub fn counterfactual(
     scenario: &Scenario,
     at: f64,
+    grousers: bool,
     cancel: &AtomicBool,
 ) -> Result<Counterfactual, Error> {
-    replay(scenario, at, cancel)?.counterfactual()
+    let simulation = replay(scenario, at, cancel)?;
+    if grousers {
+        simulation.counterfactual_with_grousers()
+    } else {
+        simulation.counterfactual()
+    }
 }
 
 /// The simulation of a scenario at a time [s].

@@ -14,6 +14,8 @@ pub(super) struct Forces {
     columns: Vec<Vec<f64>>,
     bounds: Vec<(f64, f64)>,
     sources: Vec<Source>,
+    /// Loads of the last balances: the weights of arms about their pivots.
+    hung: Vec<f64>,
 }
 
 /// Whose a force is.
@@ -36,6 +38,14 @@ pub(super) struct Push {
 }
 
 impl Forces {
+    /// None yet; the last balances have to bear so much.
+    pub(super) fn bearing(hung: Vec<f64>) -> Self {
+        Self {
+            hung,
+            ..Self::default()
+        }
+    }
+
     pub(super) fn push(&mut self, source: Source, column: Vec<f64>, bounds: (f64, f64)) {
         self.columns.push(column);
         self.bounds.push(bounds);
@@ -47,8 +57,13 @@ impl Forces {
     fn rows(&self, slack: (f64, f64)) -> Rows {
         let n = self.columns.len();
         let mut rows = Rows::default();
+        let first_hung = self.size() - self.hung.len();
         for i in 0..self.size() {
-            let weight = if i == 1 { 1.0 } else { 0.0 };
+            let weight = match i.checked_sub(first_hung) {
+                Some(k) => self.hung[k],
+                None if i == 1 => 1.0,
+                None => 0.0,
+            };
             for sign in [1.0, -1.0] {
                 let mut row: Vec<f64> = self.columns.iter().map(|c| sign * c[i]).collect();
                 row.push(-slack.0);
@@ -71,7 +86,7 @@ impl Forces {
     }
 
     fn size(&self) -> usize {
-        self.columns.first().map_or(3, Vec::len)
+        self.columns.first().map_or(3 + self.hung.len(), Vec::len)
     }
 
     fn cost(&self, of_last: f64) -> Vec<f64> {

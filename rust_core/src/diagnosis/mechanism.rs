@@ -92,6 +92,6 @@ pub(super) struct Facts {
     pub stalled_share: f64,
     /// A grouser's flank bears on the ground inside the track.
     pub flank: bool,
-    /// Two shoes bear on one edge inside the track, and go on to close the gap between them.
+    /// Two neighbouring shoes bear on the ground inside the track, and go on to close the gap between them.
     pub pinched: bool,
 }

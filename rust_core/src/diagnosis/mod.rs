@@ -5,11 +5,14 @@
 
 mod escape;
 mod forces;
+mod hinges;
 mod linear_program;
 mod mechanism;
+mod pinch;
 mod scene;
 mod signals;
 mod statics;
+mod surfaces;
 
 use rapier2d_f64::math::Vector;
 
@@ -78,6 +81,8 @@ pub struct Diagnosis {
 pub struct LoadedIntrusion {
     /// Where it is.
     pub place: Intrusion,
+    /// What the bodies on either side of it are.
+    pub kinds: [BodyKind; 2],
     /// [N] Normal force on it, in the mean.
     pub force: f64,
 }

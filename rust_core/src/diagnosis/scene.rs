@@ -9,7 +9,7 @@ use super::{LoadedIntrusion, StopContact};
 use crate::contact::{Contact, Intrusion, Running, TrackEnvelope};
 use crate::dynamics::{Carrier, Direction, Levers};
 use crate::plane::{left_of, right_of};
-use crate::robot::{BodyKind, Model};
+use crate::robot::{BodyKind, Model, Part};
 use crate::scenario::{ContactMethod, SeizureCriteria};
 use crate::terrain::Profile;
 
@@ -52,7 +52,12 @@ impl Scene<'_> {
                 .iter()
                 .filter(|b| self.bears_on(&place, &b.contact));
             let force = on_it.map(|b| b.normal_force).sum();
-            LoadedIntrusion { place, force }
+            let kinds = place.bodies.map(|body| self.model.parts[body].kind);
+            LoadedIntrusion {
+                place,
+                kinds,
+                force,
+            }
         });
         with_force.filter(|i| i.force > least).collect()
     }
@@ -134,7 +139,7 @@ impl Scene<'_> {
             sliding_share: sum(&|c| on(c.slides, c.normal_force)) / normal,
             stalled_share: stalled as f64 / motors.len().max(1) as f64,
             flank: self.bears_on_a_flank(stance, &contacts),
-            pinched: self.pinches(&contacts),
+            pinched: self.pinches(stance, &contacts),
             contacts,
         }
     }
@@ -154,30 +159,6 @@ impl Scene<'_> {
         })
     }
 
-    /// Whether two shoes bear on one edge inside the track where the gap between them closes: bent apart,
-    /// as round an end of the track, and about to be straightened, as at the end that goes ahead.
-    fn pinches(&self, contacts: &[StopContact]) -> bool {
-        /// [rad] Two shoes on a straight run are less bent.
-        const BENT: f64 = 0.05;
-
-        let shoes: Vec<(i32, usize)> = contacts
-            .iter()
-            .filter(|c| c.in_pocket && c.edge >= 0)
-            .filter_map(|c| Some((c.edge, self.model.parts[c.body].mount.shoe()?)))
-            .collect();
-        let closes = |a: usize, b: usize| {
-            let [one, other] = [a, b].map(|i| self.running.shoes[i]);
-            let bent = (one.rotation.inverse() * other.rotation).angle().abs();
-            let ahead = self.direction() * one.translation.x;
-            bent > BENT && ahead > 0.0
-        };
-        let pairs = shoes.iter().enumerate();
-        pairs.into_iter().any(|(i, (edge, shoe))| {
-            let others = shoes[..i].iter().filter(|(e, s)| e == edge && s != shoe);
-            others.clone().any(|(_, other)| closes(*shoe, *other))
-        })
-    }
-
     fn levers(&self, stance: &Stance, contact: &Contact) -> Levers {
         self.levers_at(Pose::new(stance.position, stance.angle), contact)
     }
@@ -190,7 +171,7 @@ impl Scene<'_> {
             origin,
             angle: pose.rotation.angle(),
         };
-        let motion = self.model.motion(contact.part, &self.running);
+        let motion = self.motion(contact.part, pose.inverse_transform_point(contact.point));
         Levers::new(contact, &body, motion, self.model)
     }
 
@@ -253,6 +234,7 @@ impl Scene<'_> {
             pose.rotation.angle(),
             (supports, closed),
             stance.drives.iter().map(stands).collect(),
+            self.hinges(pose),
             (
                 self.direction(),
                 self.model.drive_force / weight,
@@ -270,8 +252,18 @@ impl Scene<'_> {
         role: Role,
     ) -> Support {
         let levers = self.levers_at(pose, contact);
-        let drive = self.model.parts[contact.part].drive;
-        Support::new(&levers, drive, (self.friction(contact.part), slides), role)
+        let part = &self.model.parts[contact.part];
+        let directions = [levers.normal, levers.tangent];
+        let (hinge, [normal, tangent]) = self.hung(part.mount, pose, contact.point, directions);
+        Support {
+            normal,
+            tangent,
+            drive: part.drive,
+            hinge,
+            friction: self.friction(contact.part),
+            slides,
+            role,
+        }
     }
 
     /// Whether a motor is at its torque limit, in the mean.
@@ -291,7 +283,7 @@ impl Scene<'_> {
     }
 
     /// What would bear on an intrusion if a belt closed the pocket, at its edge. The belt runs as the
-    /// faster of the bodies on either side.
+    /// faster of the bodies on either side, round what a chain runs on as the chain.
     fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
         let edge = &self.lanes[place.lane].edges[place.edge as usize];
         let point = Vector::new(edge.x, edge.y);
@@ -303,7 +295,16 @@ impl Scene<'_> {
         let normal = -(track.rotation * outward);
         let arm = point - pose.transform_point(self.model.center_of_mass);
         let speed = |k: usize| stance.drives[k].speed;
-        let drives = place.bodies.map(|body| self.model.parts[body].drive);
+        let drive_of = |body: usize| {
+            let part = &self.model.parts[body];
+            let is_shoe = |p: &&Part| p.lane == part.lane && p.mount.shoe().is_some();
+            if part.kind.is_in_chain() {
+                self.model.parts.iter().find(is_shoe)?.drive
+            } else {
+                part.drive
+            }
+        };
+        let drives = place.bodies.map(drive_of);
         let drive = drives.into_iter().flatten().reduce(|a, b| {
             if speed(b).abs() > speed(a).abs() {
                 b
@@ -314,11 +315,15 @@ impl Scene<'_> {
         let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
         // A free surface rolls with the ground under it.
         let slides = drive.filter(|k| *k < self.model.motors).map_or(0.0, speed);
+        let directions =
+            [normal, right_of(normal)].map(|unit| Direction::new(unit, arm, motion, self.model));
+        let (hinge, [of_normal, of_tangent]) = self.hung(place.mount, pose, point, directions);
         Support {
-            normal: Direction::new(normal, arm, motion, self.model),
-            tangent: Direction::new(right_of(normal), arm, motion, self.model),
+            normal: of_normal,
+            tangent: of_tangent,
             drive,
-            friction: self.friction(place.bodies[0]),
+            hinge,
+            friction: self.lanes[place.lane].friction,
             slides: if self.is_moving(slides) {
                 right_of(normal).dot(motion) * slides
             } else {

@@ -46,6 +46,7 @@ struct Summed {
     normal: Vector,
     slip: f64,
     weight: f64,
+    loaded: f64,
 }
 
 /// A contact in the mean.
@@ -59,6 +60,8 @@ pub(crate) struct Bearing {
     pub friction_force: f64,
     /// [m/s] Mean velocity of the surface over ground in the same direction.
     pub slip: f64,
+    /// Share of the time for which it bore.
+    pub duration: f64,
 }
 
 /// A drive in the mean.
@@ -197,6 +200,7 @@ impl Summed {
             normal: l.contact.normal * weight,
             slip: l.surface_speed * weight,
             weight,
+            loaded: f64::from(u8::from(l.normal_force > 0.0)),
         }
     }
 
@@ -217,6 +221,7 @@ impl Summed {
         self.normal += later.normal;
         self.slip += later.slip;
         self.weight += later.weight;
+        self.loaded += later.loaded;
     }
 
     fn mean(&self, share: f64) -> Bearing {
@@ -229,6 +234,7 @@ impl Summed {
             normal_force: self.normal_force * share,
             friction_force: self.friction_force * share,
             slip: self.slip / self.weight,
+            duration: self.loaded * share,
         }
     }
 }

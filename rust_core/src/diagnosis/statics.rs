@@ -9,7 +9,8 @@
 mod tests;
 
 use super::forces::{Forces, Push, Source, WITHOUT_LIMIT};
-use crate::dynamics::{Direction, Levers, push_axis};
+use super::hinges::Hinge;
+use crate::dynamics::{Direction, push_axis};
 use crate::robot::Model;
 
 /// Share of its limit that a motor at its limit has at least.
@@ -32,6 +33,8 @@ pub(super) struct Statics {
     radius: f64,
     /// Force along the chassis of a track that pushes it: direction and lever.
     push: Option<(f64, f64, f64)>,
+    /// Pivots of the arms.
+    hinges: Vec<Hinge>,
 }
 
 /// A contact that bears or could.
@@ -40,6 +43,8 @@ pub(super) struct Support {
     pub normal: Direction,
     pub tangent: Direction,
     pub drive: Option<usize>,
+    /// Pivot of the arm that it is on.
+    pub hinge: Option<usize>,
     /// Coefficient of friction.
     pub friction: f64,
     /// Sign of its slip along the tangent; 0 while it sticks.
@@ -107,6 +112,7 @@ impl Statics {
         angle: f64,
         (supports, closed): (Vec<Support>, Vec<Support>),
         stalled: Vec<f64>,
+        hinges: Vec<Hinge>,
         (command, torque, lever): (f64, f64, f64),
     ) -> Self {
         let bears = |k: usize| {
@@ -134,6 +140,7 @@ impl Statics {
             lever,
             radius: model.drive_radius,
             push,
+            hinges,
         }
     }
 
@@ -230,7 +237,8 @@ impl Statics {
         } else {
             1.0
         };
-        let mut forces = Forces::default();
+        let hung = self.hinges.iter().map(|hinge| hinge.weight / self.lever);
+        let mut forces = Forces::bearing(hung.collect());
         let bearing: Vec<&Support> = self.supports.iter().filter(stays).chain(closed).collect();
         for (i, support) in bearing.iter().enumerate() {
             let motor = support.drive.map_or(0.0, |k| self.motors[k]);
@@ -268,6 +276,12 @@ impl Statics {
             };
             forces.push(Source::Motor(k), self.motor_column(k), bounds);
         }
+        for (k, hinge) in self.hinges.iter().enumerate() {
+            let mut column = self.zero();
+            column[3 + self.motors.len() + k] = 1.0;
+            let most = hinge.torque / self.lever;
+            forces.push(Source::Outside, column, (-most, most));
+        }
         if let Some((x, y, lever)) = self.push {
             let mut column = self.zero();
             (column[0], column[1], column[2]) = (x, y, lever / self.lever);
@@ -278,7 +292,7 @@ impl Statics {
     }
 
     fn zero(&self) -> Vec<f64> {
-        vec![0.0; 3 + self.motors.len()]
+        vec![0.0; 3 + self.motors.len() + self.hinges.len()]
     }
 
     /// A unit normal force with friction along the tangent.
@@ -290,6 +304,10 @@ impl Statics {
         column[2] = (n.lever + t.lever * friction) / self.lever;
         if let Some(k) = support.drive {
             column[3 + k] = (n.drive_lever + t.drive_lever * friction) / self.radius;
+        }
+        if let Some(k) = support.hinge {
+            let lever = n.flipper_lever + t.flipper_lever * friction;
+            column[3 + self.motors.len() + k] = lever / self.lever;
         }
         column
     }
@@ -308,23 +326,6 @@ impl Support {
     pub(super) fn slip_at(&self, motor: f64) -> f64 {
         // A surface speed of 1 moves the surface by -drive_lever / drive_radius.
         -self.tangent.drive_lever * motor
-    }
-
-    /// From the levers of a contact.
-    pub(super) fn new(
-        levers: &Levers,
-        drive: Option<usize>,
-        (friction, slides): (f64, f64),
-        role: Role,
-    ) -> Self {
-        Self {
-            normal: levers.normal,
-            tangent: levers.tangent,
-            drive,
-            friction,
-            slides,
-            role,
-        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::{Envelope, Motion};
+use crate::scenario::TrackOutline;
 
 /// A grouser fixed to a belt, which carries it along its line.
 #[derive(Clone, Debug)]
@@ -35,6 +36,21 @@ impl Grouser {
         }
     }
 
+    /// Those of a belt, evenly spaced: as many as given, or as come nearest to the outline's pitch.
+    pub(crate) fn along(
+        line: &Arc<Envelope>,
+        count: Option<u32>,
+        height: f64,
+        outline: &TrackOutline,
+    ) -> impl Iterator<Item = Self> + use<> {
+        let length = line.length();
+        let nearest = || (length / outline.grouser_pitch).round().max(1.0) as u32;
+        let count = count.unwrap_or_else(nearest);
+        let pitch = length / f64::from(count);
+        let (line, thickness) = (Arc::clone(line), outline.grouser_thickness);
+        (0..count).map(move |i| Self::new(&line, f64::from(i) * pitch, height, thickness))
+    }
+
     /// [m] Its corners in its own frame, counter-clockwise.
     pub fn corners(&self) -> &[Vector; 4] {
         &self.corners
@@ -46,6 +62,20 @@ impl Grouser {
         // Turns +y outwards.
         let rotation = Rotation::from_cos_sin_unchecked(outward.y, -outward.x);
         Pose::from_parts(point, rotation)
+    }
+
+    /// How the belt moves what it carries at a point [m] of the chassis frame when it has run so far [m]: this
+    /// grouser, unless it is elsewhere.
+    pub(crate) fn motion_where(&self, run: f64, point: Vector) -> Motion {
+        let reach = self
+            .corners
+            .map(Vector::length)
+            .into_iter()
+            .fold(0.0, f64::max);
+        if (self.place(run).translation - point).length() <= 1.1 * reach {
+            return self.motion(run, 0.0);
+        }
+        self.belt.motion_at(self.belt.way_of(point), 0.0)
     }
 
     /// How the belt moves it there, the mean while it runs from `reach` [m] before to as far behind.

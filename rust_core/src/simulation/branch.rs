@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::contact::Dents;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
-use crate::error::Error;
+use crate::error::{Error, ScenarioError};
 use crate::monitor::Seen;
 use crate::outcome::Outcome;
 use crate::robot::Model;
@@ -51,7 +51,33 @@ impl Simulation {
     /// # Errors
     /// [`Error::Simulation`] if the state became non-finite.
     pub fn counterfactual(&self) -> Result<Counterfactual, Error> {
-        let mut belt = self.with_closed_belt();
+        self.try_belt(self.with_closed_belt())
+    }
+
+    /// The same of a belt with grousers as high as those of the track.
+    ///
+    /// # Errors
+    /// As [`Self::counterfactual`], and [`Error::Scenario`] if the track has none.
+    pub fn counterfactual_with_grousers(&self) -> Result<Counterfactual, Error> {
+        self.try_belt(self.with_closed_belt_with_grousers()?)
+    }
+
+    /// The same instant with such a belt.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the track has no grousers.
+    pub fn with_closed_belt_with_grousers(&self) -> Result<Self, Error> {
+        let (model, outline) = (self.dynamics.model(), &self.scenario.robot.outline);
+        if !model.has_grousers(outline) || outline.grouser_thickness <= 0.0 {
+            let rule = "must have grousers to be compared with a belt that has some";
+            let error = ScenarioError::new("robot.track", "this model", rule);
+            return Err(error.into());
+        }
+        let closed = model.closed(Some(outline));
+        Ok(self.with(&self.scenario, self.ground.clone(), closed))
+    }
+
+    fn try_belt(&self, mut belt: Self) -> Result<Counterfactual, Error> {
         let criteria = &self.scenario.criteria;
         let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
         let start = belt.reading().position.x;
@@ -74,7 +100,7 @@ impl Simulation {
     /// The same instant with a closed belt round the bodies of the track.
     #[must_use]
     pub fn with_closed_belt(&self) -> Self {
-        let model = self.dynamics.model().closed();
+        let model = self.dynamics.model().closed(None);
         self.with(&self.scenario, self.ground.clone(), model)
     }
 

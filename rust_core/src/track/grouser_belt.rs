@@ -32,14 +32,12 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         })
         .collect();
     let line = Arc::new(Envelope::new(&discs));
+    let grousers: Vec<Grouser> =
+        Grouser::along(&line, belt.grouser_count, height, outline).collect();
     let length = line.length();
-    let count = belt
-        .grouser_count
-        .unwrap_or_else(|| (length / outline.grouser_pitch).round().max(1.0) as u32);
-    let pitch = length / f64::from(count);
-    if pitch <= thickness {
+    if length <= thickness * grousers.len() as f64 {
         let rule = format!("must leave room: the belt is {length} m long, a grouser {thickness} m");
-        return error("track.grouser_count", f64::from(count), rule);
+        return error("track.grouser_count", grousers.len() as f64, rule);
     }
     let part = |kind, shape| Part {
         kind,
@@ -53,10 +51,9 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         discs,
         grouser_height: height,
     };
-    let grousers = (0..count).map(|i| {
-        let grouser = Grouser::new(&line, f64::from(i) * pitch, height, thickness);
-        part(BodyKind::Grouser, Shape::Grouser(grouser))
-    });
+    let grousers = grousers
+        .into_iter()
+        .map(|grouser| part(BodyKind::Grouser, Shape::Grouser(grouser)));
     Ok(TrackModel {
         parts: std::iter::once(part(BodyKind::Belt, surface))
             .chain(grousers)

@@ -17,6 +17,7 @@ fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Supp
         normal: direction(normal, lever),
         tangent: direction(right_of(normal), of_tangent),
         drive: None,
+        hinge: None,
         friction,
         slides: 0.0,
         role: Role::Track,
@@ -33,6 +34,7 @@ fn block(supports: Vec<Support>) -> Statics {
         lever: 1.0,
         radius: 1.0,
         push: None,
+        hinges: Vec::new(),
     }
 }
 
@@ -41,6 +43,34 @@ fn notch(slope: f64, friction: f64) -> Statics {
     let (s, c) = libm::sincos(slope);
     let wall = |side: f64| support(Vector::new(side * s, c), [0.0, 0.0], friction);
     block(vec![wall(1.0), wall(-1.0)])
+}
+
+/// A block on a support on either side, the right one on an arm of no weight, half a metre from its pivot.
+fn on_an_arm(torque: f64) -> Statics {
+    let on = |lever: f64| support(Vector::Y, [lever, 0.0], 0.0);
+    let mut arm = on(1.0);
+    arm.hinge = Some(0);
+    arm.normal.flipper_lever = 0.5;
+    let hinge = Hinge {
+        weight: 0.0,
+        torque,
+    };
+    Statics {
+        hinges: vec![hinge],
+        ..block(vec![on(-1.0), arm])
+    }
+}
+
+#[test]
+fn an_arm_bears_no_more_than_its_motor_holds() {
+    // Half of the weight takes a quarter of a metre.
+    assert!(on_an_arm(0.26).imbalance().unwrap() < 1e-8);
+    for torque in [0.0, 0.1, 0.2] {
+        // With f on the arm: 0.5 f misses the torque by s, 2 f + s the weight by s.
+        let expected = (0.25 - torque) / 1.5;
+        let imbalance = on_an_arm(torque).imbalance().unwrap();
+        assert!((imbalance - expected).abs() < 1e-8, "{torque}: {imbalance}");
+    }
 }
 
 #[test]
