@@ -31,7 +31,7 @@ def test_shoes_stay_linked_and_the_robot_as_high_as_built(
     gaps = np.linalg.norm(np.roll(middle - along, -1, axis=1) - (middle + along), axis=-1)
     assert gaps.max() < 1e-4
     assert run.metrics["max_pin_gap"] < 1e-4
-    settled = run.time > 2.0
+    settled = run.time > 3.0  # chassis and guide find their places
     assert run.position[settled, 1] == pytest.approx(0.064, abs=1e-3)
 
 
