@@ -85,8 +85,8 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
             point = np.array([table["x"][row], table["y"][row]])
             distances.append(distance(point, outlines[table["body"][row] - first]))
     assert len(distances) > 100
-    # Contacts are means over an interval, in which a shoe that is not at rest moves on, at twice the speed of the
-    # robot at most.
+    # Contacts are means over an interval, in which a shoe that is not at rest moves on, at twice
+    # the speed of the robot at most.
     assert np.quantile(distances, 0.85) < 1e-4
     interval = float(np.diff(chain.time).max())
     assert max(distances) < 2.0 * chain.scenario.drive.speed * interval
