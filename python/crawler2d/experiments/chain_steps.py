@@ -23,8 +23,8 @@ __all__ = ["HEIGHTS", "STEPS", "ChainStep", "chain_steps", "chain_steps_text"]
 
 STEPS = tuple((1e-3 * step, substeps) for step in (0.5, 1.0, 2.0) for substeps in (1, 2, 4))
 """Time step [s] and substeps."""
-HEIGHTS = (0.06,)
-"""[m] Of the step; the chain of 22 shoes clears some of the runs."""
+HEIGHTS = (0.11,)
+"""[m] Of the step; the chain of 22 shoes clears about half of the runs."""
 
 _FRICTION = 0.9
 # [s] Of the run on flat ground, and when its speed is steady.
