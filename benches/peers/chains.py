@@ -53,6 +53,7 @@ OWN: dict[str, Track] = {
     "belt with grousers": GrouserBeltTrack(),
     "22 shoes": SegmentalTrack(shoe_count=22),
     "44 shoes": SegmentalTrack(shoe_count=44),
+    "22 shoes, sprocket": SegmentalTrack(shoe_count=22, mechanism="sprocket"),
 }
 """Tracks of the Engineer."""
 
