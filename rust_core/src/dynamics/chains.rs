@@ -108,7 +108,7 @@ impl Dynamics {
         // Eight digits are lost in the pins; what all bodies share follows from what acts on them from outside.
         let lost = self.momentum_given(&phase) - self.momentum(state);
         self.end_phase(state, phase);
-        state.add_velocity(frame + lost / self.mass_of_all());
+        state.add_velocity(frame + lost / self.model.total_mass());
         self.move_on(state, h);
         self.move_chains(state, set_point, h);
     }
@@ -130,14 +130,6 @@ impl Dynamics {
         let of_ground: Vector = self.rows.iter().map(of_row).sum();
         let of_arms: Vector = self.flippers.iter().map(Arm::free_momentum).sum();
         phase.velocity * self.model.mass + of_shoes + of_arms + of_ground
-    }
-
-    /// [kg] Of chassis, shoes and flippers.
-    fn mass_of_all(&self) -> f64 {
-        let of_chain = |chain: &Chain| chain.rule.path.count as f64 * chain.rule.shoe_mass;
-        let of_shoes: f64 = self.chains.iter().map(of_chain).sum();
-        let of_arms: f64 = self.model.flippers.iter().map(|arm| arm.mass).sum();
-        self.model.mass + of_shoes + of_arms
     }
 
     /// Moves shoes and idlers by `h` [s] at the velocities that they have.

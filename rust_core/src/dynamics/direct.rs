@@ -47,8 +47,7 @@ impl Dynamics {
             }
             self.turn_with_chassis(state, phase);
             if self.switch_motors(state, phase) {
-                self.set_actions(state, phase);
-                self.rows.iter_mut().for_each(Row::place_dampers);
+                self.act_with_motors(state, phase);
             } else {
                 if change < AGREEMENT {
                     return true;

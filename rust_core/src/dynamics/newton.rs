@@ -15,8 +15,8 @@ use super::state::{State, Twist};
 
 /// Steps at most; a typical solve takes three.
 const STEPS: u32 = 16;
-/// A step is halved so often at most; ...
-const HALVINGS: u32 = 4;
+/// The least share of a step that is gone; ...
+const LEAST: f64 = 1.0 / 16.0;
 /// ... and this often it may have come to that before the search is left to the descent.
 const STALLS: u32 = 2;
 /// The least share of what a step promises that it has to keep.
@@ -66,7 +66,7 @@ impl Dynamics {
             self.move_by(state, &change, share);
             let (change, fits) = self.arrive(state, phase, share);
             if !fits || share < 1.0 {
-                stalls += u32::from(share <= 0.5_f64.powi(HALVINGS as i32));
+                stalls += u32::from(share <= LEAST);
                 if stalls > STALLS {
                     return false;
                 }
@@ -74,8 +74,7 @@ impl Dynamics {
             }
             self.turn_with_chassis(state, phase);
             if self.switch_motors(state, phase) {
-                self.set_actions(state, phase);
-                self.rows.iter_mut().for_each(Row::place_dampers);
+                self.act_with_motors(state, phase);
                 self.set_out(state);
             } else {
                 if change < AGREEMENT {
@@ -111,10 +110,7 @@ impl Dynamics {
     fn share_that_pays(&self) -> f64 {
         let now = self.misfit_after(0.0);
         let mut share = 1.0;
-        for _ in 0..HALVINGS {
-            if self.misfit_after(share) <= (1.0 - PAYS * share) * now {
-                break;
-            }
+        while share > LEAST && self.misfit_after(share) > (1.0 - PAYS * share) * now {
             share *= 0.5;
         }
         share

@@ -6,7 +6,7 @@ use super::Dynamics;
 use super::action::Action;
 use super::chain::Chain;
 use super::motors::{Motor, push_axis};
-use super::row::Link;
+use super::row::{Link, Row};
 use super::state::State;
 use crate::robot::Model;
 
@@ -142,6 +142,12 @@ impl Dynamics {
                 (push.action, push.admittance) = (action, admittance);
             }
         }
+    }
+
+    /// The same in the middle of a search: the dampers follow, about the impulses that they have.
+    pub(super) fn act_with_motors(&mut self, state: &State, phase: &Phase) {
+        self.set_actions(state, phase);
+        self.rows.iter_mut().for_each(Row::place_dampers);
     }
 
     /// [N m s] Moment of momentum of the chassis, and of the drives that turn with it over it, as it would
