@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Literal
 
-from crawler2d import _core, errors
+from crawler2d import _core
 from crawler2d._progress import Progress, reporter
 from crawler2d._recording import Recording, recording, yes_or_no
 from crawler2d._threads import thread_count
@@ -54,7 +54,8 @@ def simulate(
     ScenarioError
         If the scenario breaks a rule; nothing has been simulated.
     LimitError
-        If the history would not fit in memory.
+        If the run needs more memory than the environment variable CRAWLER2D_MEMORY allows [GiB], 8
+        without it, or than the system gives.
     SimulationDiverged
         If the state became non-finite.
 
@@ -100,8 +101,8 @@ def simulate_many(
         True shows a bar; a callable gets the numbers of finished runs and of all runs.
     on_error : {"raise", "record"}
         What a scenario without a result does. "raise" ends the batch with its error: before the
-        first run if a scenario breaks a rule, after the last if a state became non-finite. "record"
-        keeps the error in `Run.error` and all other runs.
+        first run if a scenario breaks a rule, after the last if a run failed. "record" keeps the
+        error in `Run.error` and all other runs, whatever one of them does.
 
     Returns
     -------
@@ -113,7 +114,8 @@ def simulate_many(
     ScenarioError
         If a scenario or an argument breaks a rule; the path begins with ``scenarios[i]``.
     LimitError
-        If `threads` or the environment variable is out of range, or a history too large.
+        If `threads` or an environment variable is out of range, or the batch needs more memory
+        than the variable CRAWLER2D_MEMORY allows [GiB], 8 without it, or than the system gives.
     SimulationDiverged
         If a state became non-finite.
     BatchInterrupted
@@ -184,13 +186,9 @@ def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> R
         return None
     if isinstance(result, ScenarioError):
         return Run(scenario, {}, result)
-    if "error" in result:
-        return Run(scenario, {}, _error(**result["error"]))
-    return Run(scenario, result)
-
-
-def _error(*, kind: str, message: str, **details: Any) -> Crawler2dError:
-    """Rebuild an error that crossed as data."""
-    if kind == "SimulationDiverged":
-        return errors.SimulationDiverged(message, **details)
-    return InternalError(f"{kind}: {message}")
+    error = result.get("error")
+    if error is None:
+        return Run(scenario, result)
+    if not isinstance(error, Crawler2dError):  # such as a MemoryError while its arrays were made
+        error = InternalError(f"{type(error).__name__}: {error}")
+    return Run(scenario, {}, error)

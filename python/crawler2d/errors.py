@@ -90,11 +90,33 @@ class SimulationDiverged(Crawler2dError, RuntimeError):
 
 
 class LimitError(Crawler2dError, ValueError):
-    """A request is larger than this machine or this program can serve."""
+    """A request is larger than this machine or this program can serve.
+
+    Parameters
+    ----------
+    message : str
+        What is too large, its limit and how that is set.
+    needed : int, optional
+        [bytes] Memory that the request needs, about.
+    left : int, optional
+        [bytes] Memory that it may have.
+    """
+
+    needed: int | None
+    left: int | None
+
+    def __init__(self, message: str, needed: int | None = None, left: int | None = None) -> None:
+        super().__init__(message, needed, left)
+        self.needed = needed
+        self.left = left
+
+    def __str__(self) -> str:
+        """Say what is too large."""
+        return str(self.args[0])
 
 
 class InternalError(Crawler2dError, RuntimeError):
-    """A fault of crawler2d itself, not of the scenario."""
+    """A fault of crawler2d itself, or of the process that it runs in, not of the scenario."""
 
 
 class BatchInterrupted(KeyboardInterrupt):

@@ -1,9 +1,6 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
-use crawler2d_core::{
-    ContactTable, Edge, Event, Intrusion, Model, Record, Run, Scenario, SimulationError, Trace,
-    WheelBody,
-};
+use crawler2d_core::{ContactTable, Edge, Event, Intrusion, Model, Record, Run, Trace, WheelBody};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -38,33 +35,6 @@ pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -
             "must be one of full, summary",
         )),
     }
-}
-
-/// Refuses a history that cannot fit in memory before anything is allocated.
-pub(crate) fn check_size(scenario: &Scenario, record: Record) -> PyResult<()> {
-    /// A sample holds about 20 numbers and a few contacts of 14 columns each.
-    const BYTES_PER_SAMPLE: f64 = 800.0;
-    const MOST: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
-
-    let every = (record.sample_interval / scenario.solver.time_step)
-        .round()
-        .max(1.0)
-        * scenario.solver.time_step;
-    let bytes = if record.history {
-        scenario.duration / every * BYTES_PER_SAMPLE
-    } else {
-        0.0
-    };
-    if bytes > MOST {
-        let message = format!(
-            "a run of {} s sampled every {every} s needs about {:.0} GiB, more than 8 GiB; \
-             use a longer sample_interval or record=\"summary\"",
-            scenario.duration,
-            bytes / (1024.0 * 1024.0 * 1024.0),
-        );
-        return Err(errors::limit(&message));
-    }
-    Ok(())
 }
 
 /// A finished run.
@@ -155,18 +125,10 @@ pub(crate) fn intrusions<'py>(
     Ok(columns)
 }
 
-/// A run of a batch that gave no result.
-pub(crate) fn failure<'py>(
-    py: Python<'py>,
-    error: &SimulationError,
-) -> PyResult<Bound<'py, PyDict>> {
-    let details = PyDict::new(py);
-    details.set_item("kind", "SimulationDiverged")?;
-    details.set_item("message", error.to_string())?;
-    details.set_item("step", error.step)?;
-    details.set_item("body", &error.body)?;
+/// A run of a batch that gave no result, with its exception.
+pub(crate) fn failure<'py>(py: Python<'py>, error: PyErr) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    result.set_item("error", details)?;
+    result.set_item("error", error.into_value(py))?;
     Ok(result)
 }
 

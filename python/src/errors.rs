@@ -1,43 +1,48 @@
 //! Errors of the core as the Python exceptions of `crawler2d.errors`; no panic leaves this file.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
-use crawler2d_core::Error;
+use crawler2d_core::{Error, LimitError, check_rounding};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Runs the core, turning errors and panics into Python exceptions.
 pub(crate) fn guarded<T>(call: impl FnOnce() -> Result<T, Error>) -> PyResult<T> {
-    match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(Ok(value)) => Ok(value),
-        Ok(Err(error)) => Err(to_python(error)),
-        Err(panic) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str);
-            let text = text
-                .or_else(|| panic.downcast_ref::<&str>().copied())
-                .unwrap_or("unknown panic");
-            Err(internal(&format!(
-                "the core failed: {text}; please report this with the scenario"
-            )))
-        }
-    }
+    caught(call).map_err(to_python)
+}
+
+/// The same with an error of the core, which needs no interpreter.
+pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    check_rounding()?;
+    crawler2d_core::caught(call)
 }
 
 /// The Python exception of an error.
 pub(crate) fn to_python(error: Error) -> PyErr {
-    Python::attach(|py| match error {
-        Error::Scenario(e) => raise(py, "ScenarioError", (e.path, e.value, e.rule), None),
-        Error::Simulation(e) => {
-            let details = PyDict::new(py);
-            let filled = details
-                .set_item("step", e.step)
-                .and_then(|()| details.set_item("body", &e.body));
-            filled.map_or_else(
-                |err| err,
-                |()| raise(py, "SimulationDiverged", (e.to_string(),), Some(&details)),
-            )
-        }
-        Error::Interrupted => pyo3::exceptions::PyKeyboardInterrupt::new_err(()),
+    Python::attach(|py| {
+        let details = PyDict::new(py);
+        let (class, filled) = match &error {
+            Error::Scenario(e) => {
+                return raise(py, "ScenarioError", (&e.path, &e.value, &e.rule), None);
+            }
+            Error::Interrupted => return pyo3::exceptions::PyKeyboardInterrupt::new_err(()),
+            Error::Simulation(e) => {
+                let step = details.set_item("step", e.step);
+                let filled = step.and_then(|()| details.set_item("body", &e.body));
+                ("SimulationDiverged", filled)
+            }
+            Error::Limit(LimitError::Memory { needed, left, .. }) => {
+                let filled = details.set_item("needed", needed);
+                (
+                    "LimitError",
+                    filled.and_then(|()| details.set_item("left", left)),
+                )
+            }
+            Error::Limit(LimitError::Setting(_)) => ("LimitError", Ok(())),
+            Error::Internal(_) => ("InternalError", Ok(())),
+        };
+        filled.map_or_else(
+            |failed| failed,
+            |()| raise(py, class, (error.to_string(),), Some(&details)),
+        )
     })
 }
 

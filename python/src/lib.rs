@@ -1,5 +1,6 @@
 //! The Python module `crawler2d._core`: JSON text in, `NumPy` columns out.
 
+mod beside;
 mod convert;
 mod diagnosis;
 mod errors;
@@ -12,13 +13,14 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     use std::sync::Mutex;
-    use std::sync::atomic::{AtomicBool, Ordering};
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
-    use crawler2d_core::{Error, Model, Progress, Record, Run, Scenario};
+    use crawler2d_core::{Cancel, Error, Ground, Model, Progress, Record, Run, Scenario};
     use pyo3::prelude::*;
+    use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
 
+    use crate::beside::{beside, built};
     use crate::convert;
     use crate::diagnosis;
     use crate::errors;
@@ -29,22 +31,22 @@ mod _core {
 
     /// Checks a scenario and returns its canonical JSON.
     #[pyfunction]
-    fn canonical(text: &str) -> PyResult<String> {
-        errors::guarded(|| Ok(Scenario::from_json(text)?.to_json()))
+    fn canonical(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
+        built(py, text, |text| Ok(Scenario::from_json(text)?.to_json()))
     }
 
     /// SHA-256 of the canonical JSON.
     #[pyfunction]
-    fn identity(text: &str) -> PyResult<String> {
-        errors::guarded(|| Ok(Scenario::from_json(text)?.identity()))
+    fn identity(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
+        built(py, text, |text| Ok(Scenario::from_json(text)?.identity()))
     }
 
     /// Ground and robot of a scenario as arrays for drawing.
     #[pyfunction]
-    fn geometry<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (scenario, model, ground) = errors::guarded(|| {
-            let scenario = Scenario::from_json(text)?;
-            let ground = crawler2d_core::Ground::new(&scenario.terrain, scenario.robot.gauge)?;
+    fn geometry(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
+        let (scenario, model, ground) = beside(py, &Cancel::default(), move || {
+            let scenario = Scenario::from_json(&text)?;
+            let ground = Ground::new(&scenario.terrain, scenario.robot.gauge)?;
             let model = Model::on(&scenario.robot, &ground)?;
             Ok((scenario, model, ground))
         })?;
@@ -55,7 +57,7 @@ mod _core {
     #[pyfunction]
     fn simulate<'py>(
         py: Python<'py>,
-        text: &str,
+        text: PyBackedStr,
         sample_interval: f64,
         record: &str,
         counterfactual: bool,
@@ -72,30 +74,30 @@ mod _core {
         }
     }
 
-    /// Many runs on several threads, results in order.
+    /// Many runs on several threads, results in order; whatever one comes to, the others are there.
     #[pyfunction]
     fn simulate_many<'py>(
         py: Python<'py>,
-        texts: Vec<String>,
+        texts: Vec<PyBackedStr>,
         threads: usize,
         sample_interval: f64,
         record: &str,
         counterfactual: bool,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyList>, bool)> {
-        let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
         let record = convert::record(sample_interval, record, counterfactual)?;
         let (results, interrupted) = run_all(py, &texts, threads, record, progress)?;
         let list = PyList::empty(py);
         for result in results {
-            match result {
-                Some(Ok(run)) => list.append(convert::run(py, run)?)?,
-                Some(Err(Error::Simulation(error))) => {
-                    list.append(convert::failure(py, &error)?)?;
+            let converted = match result {
+                None => {
+                    list.append(py.None())?;
+                    continue;
                 }
-                Some(Err(error)) => return Err(errors::to_python(error)),
-                None => list.append(py.None())?,
-            }
+                Some(Ok(run)) => convert::run(py, run),
+                Some(Err(error)) => Err(errors::to_python(error)),
+            };
+            list.append(converted.or_else(|error| convert::failure(py, error))?)?;
         }
         match interrupted {
             // Ctrl-C keeps what is finished; anything else a callback raised goes on unchanged.
@@ -110,64 +112,36 @@ mod _core {
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
-        text: &str,
+        text: PyBackedStr,
         at: f64,
-        variant: &str,
+        variant: PyBackedStr,
         sample_interval: f64,
         record: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, false)?;
-        let run = interruptible(py, |cancel| {
-            let (scenario, variant) = (Scenario::from_json(text)?, Scenario::from_json(variant)?);
-            crawler2d_core::branch(&scenario, at, &variant, record, cancel)
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let run = beside(py, &cancel, move || {
+            let (scenario, variant) = (Scenario::from_json(&text)?, Scenario::from_json(&variant)?);
+            crawler2d_core::branch(&scenario, at, &variant, record, &asked)
         })?;
         convert::run(py, run)
     }
 
     /// A run up to a time, and a closed belt from there.
     #[pyfunction]
-    fn counterfactual<'py>(
-        py: Python<'py>,
-        text: &str,
+    fn counterfactual(
+        py: Python<'_>,
+        text: PyBackedStr,
         at: f64,
         grousers: bool,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let found = interruptible(py, |cancel| {
-            crawler2d_core::counterfactual(&Scenario::from_json(text)?, at, grousers, cancel)
+    ) -> PyResult<Bound<'_, PyDict>> {
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::counterfactual(&Scenario::from_json(&text)?, at, grousers, &asked)
         })?;
         diagnosis::counterfactual(py, &found)
-    }
-
-    /// Runs the core beside the interpreter, which looks for Ctrl-C meanwhile.
-    fn interruptible<T: Send>(
-        py: Python<'_>,
-        call: impl Send + FnOnce(&AtomicBool) -> Result<T, Error>,
-    ) -> PyResult<T> {
-        /// Between two looks.
-        const PAUSE: Duration = Duration::from_millis(10);
-
-        let cancel = AtomicBool::new(false);
-        let mut signal = None;
-        let result = py.detach(|| {
-            std::thread::scope(|scope| {
-                let work = scope.spawn(|| errors::guarded(|| call(&cancel)));
-                while !work.is_finished() {
-                    std::thread::sleep(PAUSE);
-                    #[allow(clippy::redundant_closure_for_method_calls)]
-                    // its lifetime is not general
-                    let looked = Python::attach(|py| py.check_signals());
-                    if let Err(error) = looked {
-                        cancel.store(true, Ordering::Relaxed);
-                        signal = Some(error);
-                    }
-                }
-                work.join()
-            })
-        });
-        if let Some(signal) = signal {
-            return Err(signal);
-        }
-        result.unwrap_or_else(|_| Err(errors::internal("a thread of the core failed")))
     }
 
     /// Version and build of the compiled core.
@@ -183,27 +157,19 @@ mod _core {
     /// The second item is what interrupted the batch: a signal, or an exception of the callback.
     fn run_all(
         py: Python<'_>,
-        texts: &[&str],
+        texts: &[PyBackedStr],
         threads: usize,
         record: Record,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(Results, Option<PyErr>)> {
-        let scenarios = errors::guarded(|| {
-            texts
-                .iter()
-                .map(|text| Ok(Scenario::from_json(text)?))
-                .collect::<Result<Vec<_>, Error>>()
-        })?;
-        for scenario in &scenarios {
-            convert::check_size(scenario, record)?;
-        }
+        let scenarios = read_all(py, texts)?;
         let progress = progress.map(Bound::unbind);
         let total = scenarios.len();
         let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);
         let mut reported = usize::MAX;
-        let results = errors::guarded(|| {
-            Ok(py.detach(|| {
-                crawler2d_core::simulate_many(&scenarios, threads, record, |done| {
+        let results = py.detach(|| {
+            errors::guarded(|| {
+                let results = crawler2d_core::simulate_many(scenarios, threads, record, |done| {
                     let stop = Python::attach(|py| {
                         py.check_signals()?;
                         match &progress {
@@ -221,9 +187,25 @@ mod _core {
                         first.get_or_insert(error);
                     }
                     Progress::Stop
-                })
-            }))
+                })?;
+                Ok(results)
+            })
         })?;
         Ok((results, interrupted.into_inner().unwrap_or_default()))
+    }
+
+    /// Reads scenarios, and looks for Ctrl-C now and then.
+    fn read_all(py: Python<'_>, texts: &[PyBackedStr]) -> PyResult<Vec<Scenario>> {
+        const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+
+        let mut looked = Instant::now();
+        let read = |text: &PyBackedStr| {
+            if looked.elapsed() > BETWEEN_LOOKS {
+                py.check_signals()?;
+                looked = Instant::now();
+            }
+            built(py, text.clone_ref(py), Scenario::from_json)
+        };
+        texts.iter().map(read).collect()
     }
 }

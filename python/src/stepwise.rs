@@ -1,39 +1,46 @@
 //! A simulation that Python advances and commands by itself.
 
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
-use crawler2d_core::{End, Error, Scenario};
+use crawler2d_core::{Cancel, End, Error, Scenario};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
+use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use pyo3::types::{PyBytes, PyDict};
 
+use crate::beside::beside;
 use crate::{convert, diagnosis, errors};
 
 /// One simulation under way; a lock lets any thread use it, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
-    /// None once a step failed: its state is not to be trusted.
-    inner: Mutex<Option<crawler2d_core::Simulation>>,
+    inner: Arc<Inner>,
+    /// Its steps take so long that Ctrl-C must not wait for one.
+    is_slow: AtomicBool,
 }
+
+/// None once a step failed: its state is not to be trusted.
+type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 
 #[pymethods]
 impl Simulation {
     #[new]
-    fn new(text: &str) -> PyResult<Self> {
-        let simulation =
-            errors::guarded(|| crawler2d_core::Simulation::new(&Scenario::from_json(text)?))?;
-        Ok(Self {
-            inner: Mutex::new(Some(simulation)),
-        })
+    fn new(py: Python<'_>, text: PyBackedStr) -> PyResult<Self> {
+        let simulation = beside(py, &Cancel::default(), move || {
+            crawler2d_core::Simulation::new(&Scenario::from_json(&text)?)
+        })?;
+        Ok(Self::of(simulation))
     }
 
     /// The simulation of a snapshot.
     #[staticmethod]
-    fn from_snapshot(snapshot: &[u8]) -> PyResult<Self> {
-        let simulation = errors::guarded(|| crawler2d_core::Simulation::from_snapshot(snapshot))?;
-        Ok(Self {
-            inner: Mutex::new(Some(simulation)),
-        })
+    fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
+        let simulation = beside(py, &Cancel::default(), move || {
+            crawler2d_core::Simulation::from_snapshot(&snapshot)
+        })?;
+        Ok(Self::of(simulation))
     }
 
     /// Everything that the future depends on.
@@ -55,9 +62,6 @@ impl Simulation {
 
     /// Advances by a duration, rounded to whole steps.
     fn advance(&self, py: Python<'_>, duration: f64) -> PyResult<()> {
-        /// A few milliseconds of computing between two looks for Ctrl-C.
-        const STEPS_AT_A_TIME: u64 = 2048;
-
         if !(0.0..=1e5).contains(&duration) {
             return Err(errors::argument(
                 "duration",
@@ -68,15 +72,26 @@ impl Simulation {
         let dt = self.with(py, |simulation| Ok(simulation.time_step()))?;
         #[allow(clippy::cast_sign_loss, clippy::cast_possible_truncation)] // bounded above
         let mut left = (duration / dt).round() as u64;
-        while left > 0 {
-            let now = left.min(STEPS_AT_A_TIME);
-            self.with(py, |simulation| {
-                (0..now).try_for_each(|_| simulation.step())
-            })?;
-            left -= now;
+        while left > 0 && !self.is_slow.load(Ordering::Relaxed) {
+            left -= self.with(py, |simulation| self.steps_between_looks(simulation, left))?;
             py.check_signals()?;
         }
-        Ok(())
+        if left == 0 {
+            return Ok(());
+        }
+        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
+        let asked = cancel.clone();
+        beside(py, &cancel, move || {
+            call(&inner, |simulation| {
+                for _ in 0..left {
+                    simulation.step()?;
+                    if asked.is_asked() {
+                        break;
+                    }
+                }
+                Ok(())
+            })
+        })
     }
 
     /// Gives the drivetrain a new command, turns the flippers, or pushes the robot.
@@ -140,32 +155,60 @@ impl Simulation {
 }
 
 impl Simulation {
+    fn of(simulation: crawler2d_core::Simulation) -> Self {
+        /// Points of a ground, and parts of a robot, from which a step may take long.
+        const MANY: (usize, usize) = (10_000, 200);
+
+        let (points, parts) = simulation.size();
+        Self {
+            is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
+            inner: Arc::new(Mutex::new(Some(simulation))),
+        }
+    }
+
+    /// Takes at most so many steps, and no more than fit between two looks for Ctrl-C; how many it took.
+    fn steps_between_looks(
+        &self,
+        simulation: &mut crawler2d_core::Simulation,
+        most: u64,
+    ) -> Result<u64, Error> {
+        const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+
+        let begin = Instant::now();
+        let mut taken = 0;
+        while taken < most && begin.elapsed() < BETWEEN_LOOKS {
+            simulation.step()?;
+            taken += 1;
+        }
+        self.is_slow
+            .store(begin.elapsed() > 2 * BETWEEN_LOOKS, Ordering::Relaxed);
+        Ok(taken)
+    }
+
     /// Calls the core detached from the interpreter, one thread at a time.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        call: impl Send + FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
+        change: impl Send + FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
     ) -> PyResult<T> {
-        py.detach(|| {
-            let mut inner = self
-                .inner
-                .lock()
-                .map_err(|_| errors::internal("another thread failed in this simulation"))?;
-            let Some(simulation) = inner.as_mut() else {
-                return Err(errors::internal(
-                    "this simulation has failed before and cannot go on",
-                ));
-            };
-            let mut failed = true;
-            let result = errors::guarded(|| {
-                let result = call(simulation);
-                failed = matches!(result, Err(Error::Simulation(_)));
-                result
-            });
-            if failed {
-                *inner = None;
-            }
-            result
-        })
+        py.detach(|| errors::guarded(|| call(&self.inner, change)))
     }
+}
+
+/// Calls the core for a simulation, one thread at a time; after a failure it is closed.
+fn call<T>(
+    inner: &Inner,
+    change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let closed = || {
+        let message = "this simulation has failed before and cannot go on";
+        Error::Internal(message.to_owned())
+    };
+    let mut inner = inner.lock().map_err(|_| closed())?;
+    let simulation = inner.as_mut().ok_or_else(closed)?;
+    let result = crawler2d_core::caught(|| change(simulation));
+    if matches!(result, Err(Error::Simulation(_) | Error::Internal(_))) {
+        *inner = None;
+    }
+    result
 }

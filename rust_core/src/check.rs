@@ -2,18 +2,36 @@
 
 use serde_json::Value;
 
-use crate::error::ScenarioError;
+use crate::error::{Error, ScenarioError};
+use crate::needs;
 use crate::robot::{Model, Part};
 use crate::scenario::Scenario;
 use crate::start::start_position;
 use crate::terrain::Ground;
 
+/// Bytes of the longest text that is read: three lanes of the most points that there can be take half of it.
+const LONGEST_TEXT: usize = 64 << 20;
+
+/// Whether a text is not too long to be read.
+///
+/// # Errors
+/// It is, or more than memory holds.
+pub fn check_text(text: &str) -> Result<(), Error> {
+    if text.len() > LONGEST_TEXT {
+        let rule = format!("must be at most {} MiB of JSON", LONGEST_TEXT >> 20);
+        let value = format!("{} MiB", text.len() >> 20);
+        return Err(ScenarioError::new("scenario", value, rule).into());
+    }
+    Ok(needs::ask_for_text(text)?)
+}
+
 impl Scenario {
     /// Reads and checks a scenario.
     ///
     /// # Errors
-    /// The first broken rule, with the path of its field.
-    pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
+    /// The first broken rule, with the path of its field; a text or a ground beyond what memory holds.
+    pub fn from_json(text: &str) -> Result<Self, Error> {
+        check_text(text)?;
         let value: Value = serde_json::from_str(text)
             .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
         Self::checked(&value)
@@ -22,27 +40,23 @@ impl Scenario {
     /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
     ///
     /// # Errors
-    /// The first broken rule, with the path of its field.
-    pub fn validate(&self) -> Result<(), ScenarioError> {
+    /// As [`Self::from_json`].
+    pub fn validate(&self) -> Result<(), Error> {
         let value = serde_json::to_value(self)
             .unwrap_or_else(|e| unreachable!("plain data serialises: {e}"));
         Self::checked(&value).map(|_| ())
     }
 
-    fn checked(value: &Value) -> Result<Self, ScenarioError> {
+    fn checked(value: &Value) -> Result<Self, Error> {
         let scenario = Self::read(value)?;
         scenario.check()?;
         Ok(scenario)
     }
 
     /// Rules that join several branches of the tree.
-    fn check(&self) -> Result<(), ScenarioError> {
+    fn check(&self) -> Result<(), Error> {
+        self.drive.check(&self.robot.drivetrain)?;
         let limit = self.robot.drivetrain.max_speed;
-        let (path, speed) = self.drive.fastest();
-        if speed.abs() > limit {
-            let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
-            return Err(ScenarioError::new(path, speed, rule));
-        }
         let model = Model::new(&self.robot)?;
         let (tip, root) = model.parts.iter().flat_map(Part::discs).fold(
             (f64::INFINITY, f64::INFINITY),
@@ -59,8 +73,10 @@ impl Scenario {
                 "criteria.intrusion_depth",
                 self.criteria.intrusion_depth,
                 rule,
-            ));
+            )
+            .into());
         }
+        needs::ask_for_ground(&self.terrain)?;
         let ground = Ground::new(&self.terrain, self.robot.gauge)?;
         start_position(self, &model.placed_on(&ground), &ground)?;
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::error::ScenarioError;
 use crate::outline::{Disc, Envelope, Grouser};
 use crate::robot::{BodyKind, Model, Mount, Part, Shape};
 use crate::scenario::TrackOutline;
@@ -10,7 +11,10 @@ impl Model {
     /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed circles, all
     /// their motors' force, their mass. With an outline it has the grousers of that where the track has some,
     /// as high as these, and within the same circles.
-    pub(crate) fn closed(&self, grousers: Option<&TrackOutline>) -> Self {
+    ///
+    /// # Errors
+    /// Its pitch leaves more of them than a belt may have.
+    pub(crate) fn closed(&self, grousers: Option<&TrackOutline>) -> Result<Self, ScenarioError> {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
         let belt = Envelope::new(&round(Mount::Chassis));
         // A closed belt shields a belly that lies inside of it.
@@ -22,32 +26,34 @@ impl Model {
         };
         let belly = self.parts.iter().filter(reaches_out).cloned();
         let tracks = self.tracks();
-        let belts = (0..tracks).flat_map(|lane| {
-            self.mounts_of_tracks().flat_map(move |mount| {
+        let mut parts = Vec::new();
+        for lane in 0..tracks {
+            for mount in self.mounts_of_tracks() {
                 let height = grousers.map_or(0.0, |outline| self.grouser_height(mount, outline));
-                let shapes = shapes(round(mount), height, grousers);
-                shapes.into_iter().map(move |(kind, shape)| Part {
+                let shapes = shapes(round(mount), height, grousers)?;
+                parts.extend(shapes.into_iter().map(|(kind, shape)| Part {
                     kind,
                     shape,
                     drive: Some(lane),
                     friction_limit: f64::INFINITY,
                     lane,
                     mount,
-                })
-            })
-        });
+                }));
+            }
+        }
+        parts.extend(belly);
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
         let force = self.drive_force * self.motors as f64;
-        Self {
-            parts: belts.chain(belly).collect(),
+        Ok(Self {
+            parts,
             drives: tracks,
             motors: tracks,
             drive_masses: vec![mass / tracks as f64; tracks],
             drive_force: force / tracks as f64,
             pushes_chassis: false,
             ..whole
-        }
+        })
     }
 
     /// Whether any of its tracks has grousers.
@@ -76,7 +82,11 @@ impl Model {
 }
 
 /// The hull of circumscribed circles, and what travels along it.
-fn shapes(tips: Vec<Disc>, height: f64, outline: Option<&TrackOutline>) -> Vec<(BodyKind, Shape)> {
+fn shapes(
+    tips: Vec<Disc>,
+    height: f64,
+    outline: Option<&TrackOutline>,
+) -> Result<Vec<(BodyKind, Shape)>, ScenarioError> {
     let discs: Vec<Disc> = tips
         .into_iter()
         .map(|tip| Disc {
@@ -87,7 +97,7 @@ fn shapes(tips: Vec<Disc>, height: f64, outline: Option<&TrackOutline>) -> Vec<(
     let mut shapes = Vec::new();
     if let Some(outline) = outline.filter(|_| height > 0.0) {
         let line = Arc::new(Envelope::new(&discs));
-        let grousers = Grouser::along(&line, None, height, outline);
+        let grousers = Grouser::along(&line, None, height, outline)?;
         shapes.extend(grousers.map(|g| (BodyKind::Grouser, Shape::Grouser(g))));
     }
     let hull = Shape::Hull {
@@ -95,5 +105,5 @@ fn shapes(tips: Vec<Disc>, height: f64, outline: Option<&TrackOutline>) -> Vec<(
         grouser_height: height,
     };
     shapes.insert(0, (BodyKind::Belt, hull));
-    shapes
+    Ok(shapes)
 }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::memory::MEMORY_VARIABLE;
+
 /// A field of a scenario breaks a rule; nothing has been run.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{path} {rule}, got {value}")]
@@ -39,6 +41,29 @@ pub struct SimulationError {
     pub body: String,
 }
 
+/// A request needs more memory than it may have; nothing of it has been done.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum LimitError {
+    /// It needs more than is left of the limit, or than the system gives.
+    #[error(
+        "{what} needs about {} MiB of memory and {} MiB are left: the limit is {} GiB (environment variable {MEMORY_VARIABLE}), or less if the system gives less",
+        mebibytes(*needed), left >> 20, gibibytes(*limit)
+    )]
+    Memory {
+        /// What needs it, and perhaps what would need less.
+        what: String,
+        /// \[bytes\] How much it needs.
+        needed: u64,
+        /// \[bytes\] How much is left.
+        left: u64,
+        /// \[bytes\] The limit.
+        limit: u64,
+    },
+    /// The environment variable that sets the limit makes no sense.
+    #[error("environment variable {MEMORY_VARIABLE} must be a number of GiB > 0, got {0:?}")]
+    Setting(String),
+}
+
 /// Why a run gave no result.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Error {
@@ -48,9 +73,23 @@ pub enum Error {
     /// See [`SimulationError`].
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// See [`LimitError`].
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// A fault of the program, or of the process that it runs in.
+    #[error("{0}")]
+    Internal(String),
     /// The caller asked to stop.
     #[error("the run was interrupted")]
     Interrupted,
+}
+
+fn mebibytes(bytes: u64) -> u64 {
+    bytes.div_ceil(1 << 20)
+}
+
+fn gibibytes(bytes: u64) -> f64 {
+    bytes as f64 / (1_u64 << 30) as f64
 }
 
 /// Long values (point lists) would bury the message.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Intrusion;
-use crate::terrain::Side;
+use crate::terrain::{Profile, Side};
 
 /// What an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,6 +48,22 @@ pub struct Event {
 }
 
 impl Event {
+    /// Whether a robot of so many parts on lanes can have given it.
+    pub(crate) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
+        let numbers = [
+            self.start,
+            self.end,
+            self.depth,
+            self.root_depth,
+            self.force,
+        ];
+        let edges = lanes.iter().map(|lane| lane.edges.len()).max();
+        self.bodies
+            .is_none_or(|pair| pair.iter().all(|b| *b < parts))
+            && (-1..edges.unwrap_or(0) as i32).contains(&self.edge)
+            && numbers.iter().all(|number| number.is_finite())
+    }
+
     /// A stop with what was inside the track.
     pub(crate) fn stop(start: f64, end: f64, inside: Option<&Self>) -> Self {
         Self {
@@ -104,6 +120,18 @@ impl IntrusionWatch {
                 self.past.push(self.present.remove(i).event);
             }
         }
+    }
+
+    /// Whether a robot of so many parts on lanes can have given them.
+    pub(crate) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
+        let present = self.present.iter().map(|p| &p.event);
+        let looks = self.present.iter().all(|p| p.looks >= 1.0);
+        looks
+            && self
+                .past
+                .iter()
+                .chain(present)
+                .all(|e| e.fits(parts, lanes))
     }
 
     /// The most loaded of those that go on.

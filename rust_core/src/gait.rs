@@ -49,6 +49,13 @@ impl Driver {
         speed
     }
 
+    /// Whether commands can have brought it there.
+    pub(crate) fn fits(&self, drive: &Drive) -> bool {
+        let entries = drive.schedule.as_ref().map_or(0, Vec::len);
+        let known = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+        self.entries <= entries && self.by_hand.iter().all(known)
+    }
+
     /// Takes the flippers out of the gait's hands.
     pub(crate) fn hold(&mut self, end: usize, angle: f64) {
         self.by_hand[end] = Some(angle);

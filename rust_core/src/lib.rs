@@ -16,6 +16,7 @@
 
 mod batch;
 mod bodies;
+mod cancel;
 mod chain;
 mod check;
 mod closed;
@@ -29,13 +30,16 @@ mod error;
 mod events;
 mod flipper;
 mod gait;
+mod memory;
 mod monitor;
+mod needs;
 mod outcome;
 mod outline;
 mod part;
 mod plane;
 mod reading;
 mod robot;
+mod rounding;
 mod run;
 mod scenario;
 mod shaking;
@@ -46,19 +50,23 @@ mod terrain;
 mod trace;
 mod track;
 
-pub use batch::{Progress, simulate_many};
+pub use batch::{Progress, caught, simulate_many};
 pub use bodies::{ChassisBody, WheelBody};
+pub use cancel::Cancel;
 pub use chain::{ChainOfShoes, Sprocket, Tensioner};
+pub use check::check_text;
 pub use contact::Intrusion;
 pub use diagnosis::{Condition, Diagnosis, LoadedIntrusion, Mechanism, StopContact};
 pub use dynamics::ChainReading;
-pub use error::{Error, ScenarioError, SimulationError};
+pub use error::{Error, LimitError, ScenarioError, SimulationError};
 pub use events::{Event, EventKind};
 pub use flipper::Flipper;
+pub use memory::MEMORY_VARIABLE;
 pub use outcome::Outcome;
 pub use outline::{Disc, Gear, Grouser, ShoeLoop, Teeth};
 pub use reading::Reading;
 pub use robot::{BodyKind, Model, Mount, Part, Shape};
+pub use rounding::check_rounding;
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Drive, Drivetrain, End,

@@ -221,6 +221,11 @@ impl Model {
         self.moment_of_inertia + drives.sum::<f64>()
     }
 
+    /// Number of shoes of all chains.
+    pub(crate) fn shoes(&self) -> usize {
+        self.chains.iter().map(|chain| chain.shoes.len()).sum()
+    }
+
     /// Number of lanes that tracks meet.
     pub(crate) fn tracks(&self) -> usize {
         let of_tracks = self

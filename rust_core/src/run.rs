@@ -1,11 +1,13 @@
 //! One scenario to its end.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use crate::cancel::Cancel;
 use crate::diagnosis::Diagnosis;
 use crate::error::Error;
 use crate::events::{Event, EventKind};
+use crate::memory::Budget;
+use crate::needs;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
 use crate::simulation::{Counterfactual, Simulation};
@@ -128,16 +130,18 @@ impl Metrics {
 /// Simulates a scenario to its end.
 ///
 /// # Errors
-/// [`Error::Scenario`] before anything runs, [`Error::Simulation`] if the state became non-finite.
+/// [`Error::Scenario`] and [`Error::Limit`] before anything runs, [`Error::Simulation`] if the state became
+/// non-finite, [`Error::Limit`] if more was recorded than memory holds.
 pub fn simulate(scenario: &Scenario, record: Record) -> Result<Run, Error> {
-    simulate_until(scenario, record, &AtomicBool::new(false))
+    let budget = needs::of_batch(std::slice::from_ref(scenario), record, 1)?;
+    simulate_within(scenario, record, (&budget, &Cancel::default()))
 }
 
-/// The same, ending early with [`Error::Interrupted`] once `cancel` is set.
-pub(crate) fn simulate_until(
+/// The same within a budget of memory, ending early with [`Error::Interrupted`] once asked to.
+pub(crate) fn simulate_within(
     scenario: &Scenario,
     record: Record,
-    cancel: &AtomicBool,
+    limits: Limits,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
     let mut simulation = Simulation::new(scenario)?;
@@ -145,7 +149,7 @@ pub(crate) fn simulate_until(
         &mut simulation,
         scenario.step_count(),
         record,
-        cancel,
+        limits,
         begin,
     )
 }
@@ -153,90 +157,82 @@ pub(crate) fn simulate_until(
 /// Simulates `scenario` up to the time `at` [s], then goes on as `variant`, for its whole duration.
 ///
 /// # Errors
-/// As [`simulate`], for both, and [`Error::Interrupted`] once `cancel` is set.
+/// As [`simulate`], for both, and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
     scenario: &Scenario,
     at: f64,
     variant: &Scenario,
     record: Record,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
+    let budget = needs::of_batch(std::slice::from_ref(variant), record, 1)?;
     let trunk = replay(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant)?;
     let last = simulation.steps() + variant.step_count();
-    advance(&mut simulation, last, record, cancel, begin)
+    advance(&mut simulation, last, record, (&budget, cancel), begin)
 }
 
 /// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
 ///
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the track has no grousers and the belt is to have some, and
-/// [`Error::Interrupted`] once `cancel` is set.
+/// [`Error::Interrupted`] once `cancel` is asked.
 pub fn counterfactual(
     scenario: &Scenario,
     at: f64,
     grousers: bool,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Counterfactual, Error> {
     let simulation = replay(scenario, at, cancel)?;
     if grousers {
-        simulation.counterfactual_with_grousers()
+        simulation.counterfactual_with_grousers(cancel)
     } else {
-        simulation.counterfactual()
+        simulation.counterfactual(cancel)
     }
 }
 
 /// The simulation of a scenario at a time [s].
-fn replay(scenario: &Scenario, at: f64, cancel: &AtomicBool) -> Result<Simulation, Error> {
+fn replay(scenario: &Scenario, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
     let mut simulation = Simulation::new(scenario)?;
     let steps = (at / simulation.time_step()).round() as u64;
     while simulation.steps() < steps {
         simulation.step()?;
-        check(&simulation, cancel)?;
+        cancel.check()?;
     }
     Ok(simulation)
 }
 
-/// Looks now and then whether the caller wants to stop.
-fn check(simulation: &Simulation, cancel: &AtomicBool) -> Result<(), Error> {
-    /// A step takes a few microseconds: a request to stop is seen within milliseconds.
-    const STEPS_BETWEEN_CHECKS: u64 = 1024;
-
-    let is_due = simulation.steps().is_multiple_of(STEPS_BETWEEN_CHECKS);
-    if is_due && cancel.load(Ordering::Relaxed) {
-        Err(Error::Interrupted)
-    } else {
-        Ok(())
-    }
-}
+/// What a run may take: memory, and time until it is asked to end.
+type Limits<'a> = (&'a Budget, &'a Cancel);
 
 /// Simulates on to the step `last` or a certain outcome.
 fn advance(
     simulation: &mut Simulation,
     last: u64,
     record: Record,
-    cancel: &AtomicBool,
+    (budget, cancel): Limits,
     begin: Instant,
 ) -> Result<Run, Error> {
     let start = simulation.reading();
-    let mut recorder = record.history.then(|| Recorder::new(simulation, record));
+    let recorder = record
+        .history
+        .then(|| Recorder::new(simulation, record, budget));
+    let mut recorder = recorder.transpose()?;
     while simulation.steps() < last && !simulation.is_over() {
         simulation.step()?;
         if let Some(recorder) = &mut recorder {
-            recorder.step(simulation);
+            recorder.step(simulation)?;
         }
-        check(simulation, cancel)?;
+        cancel.check()?;
     }
-    if let Some(recorder) = &mut recorder {
-        recorder.finish(simulation);
-    }
-    let (trace, contacts) = recorder.map(|r| (r.trace, r.contacts)).unwrap_or_default();
+    let recorded = recorder.map(|recorder| recorder.finish(simulation));
+    let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
     let end = simulation.reading();
     let events = simulation.events();
     let mut diagnosis = simulation.diagnosis();
     if let Some(diagnosis) = diagnosis.as_mut().filter(|_| record.counterfactual) {
-        diagnosis.counterfactual = Some(simulation.counterfactual()?);
+        diagnosis.counterfactual = Some(simulation.counterfactual(cancel)?);
     }
     let outcome = diagnosis
         .as_ref()

@@ -1,6 +1,12 @@
 //! The history of a run as columns.
 
+use std::collections::TryReserveError;
+
 use crate::contact::Readings;
+use crate::error::LimitError;
+use crate::memory::{Budget, Rows, reserve};
+use crate::robot::Model;
+use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 
 /// What to keep of a run.
@@ -31,6 +37,49 @@ impl Record {
             history: false,
             ..Self::default()
         }
+    }
+
+    /// Steps of the time step `dt` [s] between two samples.
+    fn steps_a_sample(&self, dt: f64) -> u64 {
+        (self.sample_interval / dt).round().max(1.0) as u64
+    }
+
+    /// Samples of a run that lasts as long as it may.
+    pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
+        scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
+    }
+}
+
+/// What a robot has that is recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    pub parts: usize,
+    drives: usize,
+    shoes: usize,
+    flippers: usize,
+}
+
+impl Columns {
+    /// Bytes of a row of the contact table.
+    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
+
+    pub(crate) fn of(model: &Model) -> Self {
+        Self {
+            parts: model.parts.len(),
+            drives: model.drives,
+            shoes: model.shoes(),
+            flippers: model.flippers.len(),
+        }
+    }
+
+    /// Bytes of a sample without its contacts.
+    pub(crate) fn bytes(self) -> u64 {
+        let entries: usize = Trace::default()
+            .columns(self)
+            .iter()
+            .map(|(_, entries)| entries)
+            .sum();
+        8 * entries as u64
     }
 }
 
@@ -75,6 +124,38 @@ pub struct Trace {
     pub flipper_torques: Vec<f64>,
 }
 
+impl Trace {
+    /// Every column, with its entries a sample.
+    fn columns(&mut self, robot: Columns) -> [(&mut Vec<f64>, usize); 18] {
+        let Columns {
+            drives,
+            shoes,
+            flippers,
+            ..
+        } = robot;
+        [
+            (&mut self.time, 1),
+            (&mut self.position, 2),
+            (&mut self.velocity, 2),
+            (&mut self.chassis_angle, 1),
+            (&mut self.angular_velocity, 1),
+            (&mut self.commanded_speed, 1),
+            (&mut self.track_speed, 1),
+            (&mut self.track_position, 1),
+            (&mut self.slip_ratio, 1),
+            (&mut self.tractive_effort, 1),
+            (&mut self.drive_force, 1),
+            (&mut self.drive_speeds, drives),
+            (&mut self.drive_positions, drives),
+            (&mut self.drive_forces, drives),
+            (&mut self.track_tension, 1),
+            (&mut self.shoe_poses, 3 * shoes),
+            (&mut self.flipper_angles, flippers),
+            (&mut self.flipper_torques, flippers),
+        ]
+    }
+}
+
 /// Contacts of all samples.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // the columns are described in docs/conventions.md
@@ -107,6 +188,43 @@ impl Simulation {
 }
 
 impl ContactTable {
+    /// Every column.
+    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 5]) {
+        let numbers = [
+            &mut self.time,
+            &mut self.x,
+            &mut self.y,
+            &mut self.normal_x,
+            &mut self.normal_y,
+            &mut self.normal_force,
+            &mut self.friction_force,
+            &mut self.surface_speed,
+            &mut self.penetration,
+        ];
+        let codes = [
+            &mut self.lane,
+            &mut self.body,
+            &mut self.body_kind,
+            &mut self.segment,
+            &mut self.edge,
+        ];
+        (numbers, codes)
+    }
+
+    /// Room in every column for so many rows in all.
+    fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
+        codes.into_iter().try_for_each(|c| reserve(c, rows))
+    }
+
+    /// Gives back the room that no row takes.
+    fn shrink(&mut self) {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().for_each(Vec::shrink_to_fit);
+        codes.into_iter().for_each(Vec::shrink_to_fit);
+    }
+
     /// Writes the readings of an interval that ends now.
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
         for r in readings.drain() {
@@ -130,39 +248,47 @@ impl ContactTable {
 }
 
 /// Collects samples while a run goes on.
-pub(crate) struct Recorder {
+pub(crate) struct Recorder<'a> {
     every: u64,
     steps: u64,
     readings: Readings,
     forces: Vec<f64>,
     traction: f64,
-    pub trace: Trace,
-    pub contacts: ContactTable,
+    columns: Columns,
+    trace: Trace,
+    samples: Rows<'a>,
+    contacts: ContactTable,
+    contact_rows: Rows<'a>,
 }
 
 /// [m/s] Below this the track stands and has no slip.
 const STANDS: f64 = 1e-3;
 
-impl Recorder {
-    pub(crate) fn new(simulation: &Simulation, record: Record) -> Self {
-        let every = (record.sample_interval / simulation.time_step())
-            .round()
-            .max(1.0) as u64;
+impl<'a> Recorder<'a> {
+    pub(crate) fn new(
+        simulation: &Simulation,
+        record: Record,
+        budget: &'a Budget,
+    ) -> Result<Self, LimitError> {
+        let columns = simulation.columns();
         let mut recorder = Self {
-            every,
+            every: record.steps_a_sample(simulation.time_step()),
             steps: 0,
             readings: Readings::default(),
             forces: vec![0.0; simulation.drives()],
             traction: 0.0,
+            columns,
             trace: Trace::default(),
+            samples: Rows::new(budget, columns.bytes()),
             contacts: ContactTable::default(),
+            contact_rows: Rows::new(budget, Columns::BYTES_A_CONTACT),
         };
-        recorder.sample(simulation);
-        recorder
+        recorder.sample(simulation)?;
+        Ok(recorder)
     }
 
     /// Takes in one step and writes a sample at the end of each interval.
-    pub(crate) fn step(&mut self, simulation: &Simulation) {
+    pub(crate) fn step(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
         self.steps += 1;
         self.readings.add(simulation.loaded());
         for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
@@ -170,18 +296,40 @@ impl Recorder {
             self.traction += drive.traction;
         }
         if self.steps.is_multiple_of(self.every) {
-            self.sample(simulation);
+            self.sample(simulation)?;
         }
+        Ok(())
     }
 
-    /// Writes what is left of an interval that the run cut short.
-    pub(crate) fn finish(&mut self, simulation: &Simulation) {
+    /// What was recorded, with what is left of an interval that the run cut short.
+    pub(crate) fn finish(
+        mut self,
+        simulation: &Simulation,
+    ) -> Result<(Trace, ContactTable), LimitError> {
         if !self.steps.is_multiple_of(self.every) {
-            self.sample(simulation);
+            self.sample(simulation)?;
         }
+        for (column, _) in self.trace.columns(self.columns) {
+            column.shrink_to_fit();
+        }
+        self.samples.shrink(self.trace.time.len());
+        self.contacts.shrink();
+        self.contact_rows.shrink(self.contacts.time.len());
+        Ok((self.trace, self.contacts))
     }
 
-    fn sample(&mut self, simulation: &Simulation) {
+    fn make_room(&mut self) -> Result<(), LimitError> {
+        let (trace, contacts, columns) = (&mut self.trace, &mut self.contacts, self.columns);
+        self.samples.make(trace.time.len() + 1, |room| {
+            let mut all = trace.columns(columns).into_iter();
+            all.try_for_each(|(column, entries)| reserve(column, entries * room))
+        })?;
+        let rows = contacts.time.len() + self.readings.count();
+        self.contact_rows.make(rows, |room| contacts.reserve(room))
+    }
+
+    fn sample(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
+        self.make_room()?;
         let reading = simulation.reading();
         let steps = match self.steps % self.every {
             0 => self.every,
@@ -221,5 +369,6 @@ impl Recorder {
         t.flipper_torques.extend(simulation.flipper_torques());
         self.traction = 0.0;
         self.contacts.append(simulation, &mut self.readings);
+        Ok(())
     }
 }

@@ -33,6 +33,12 @@ impl Dents {
         }
     }
 
+    /// Whether a robot of so many parts can have them.
+    pub(crate) fn fits(&self, parts: usize) -> bool {
+        let fits = |d: &Dent| d.part < parts && d.point.is_finite() && d.depth.is_finite();
+        self.dents.iter().all(fits)
+    }
+
     /// Measures gaps from the bottom of the dents.
     pub(crate) fn forgive(&self, contacts: &mut [Contact]) {
         for contact in contacts {

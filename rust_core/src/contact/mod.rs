@@ -19,6 +19,7 @@ use crate::dynamics::Grip;
 use crate::flipper::{Flipper, Mounted};
 use crate::plane::right_of;
 use crate::robot::{Model, Mount};
+use crate::terrain::Profile;
 pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
@@ -84,6 +85,19 @@ pub(crate) struct Contact {
     pub distance: f64,
 }
 
+impl Contact {
+    /// Whether a robot and its lanes have what it is between.
+    pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        let lane = model.parts.get(self.part).and_then(|p| lanes.get(p.lane));
+        lane.is_some_and(|lane| {
+            let edges = -1..lane.edges.len() as i32;
+            self.facet + 1 < lane.points.len() && edges.contains(&self.edge)
+        }) && self.point.is_finite()
+            && self.normal.is_finite()
+            && self.distance.is_finite()
+    }
+}
+
 /// A contact as the solver keeps it from step to step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct LoadedContact {
@@ -102,6 +116,20 @@ pub(crate) struct LoadedContact {
     /// What it did last.
     pub grip: Grip,
     pub carried_over: bool,
+}
+
+impl LoadedContact {
+    /// The same, with its forces.
+    pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        let forces = [
+            self.normal_force,
+            self.friction_force,
+            self.surface_speed,
+            self.normal_guess,
+            self.friction_guess,
+        ];
+        self.contact.fits(model, lanes) && forces.iter().all(|force| force.is_finite())
+    }
 }
 
 /// Leaves out contacts that add nothing: those that repeat another of the same part, and those that lie

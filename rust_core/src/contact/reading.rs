@@ -65,6 +65,11 @@ impl Readings {
         }
     }
 
+    /// Contacts seen since the last sample.
+    pub(crate) fn count(&self) -> usize {
+        self.seen.len()
+    }
+
     /// The means, in the order of first sight; the next interval starts empty.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = Reading> + '_ {
         let share = 1.0 / f64::from(self.steps.max(1));

@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{Contact, LoadedContact};
 use crate::dynamics::DriveState;
 use crate::reading::Reading;
+use crate::robot::Model;
+use crate::terrain::Profile;
 
 /// [m] A contact that moves less than this from step to step is one contact.
 const SAME_PLACE: f64 = 5e-3;
@@ -104,6 +106,18 @@ impl Signals {
         self.newer.add(now, loaded, drives);
     }
 
+    /// Whether a robot and its lanes can have given them.
+    pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        [&self.older, &self.newer].into_iter().all(|block| {
+            let numbers = [block.place, block.low, block.high].concat();
+            block.drives.len() <= model.drives
+                && block.start.is_finite()
+                && (0.0..1e15).contains(&block.steps)
+                && numbers.iter().all(|number| number.is_finite())
+                && block.contacts.iter().all(|c| c.fits(model, lanes))
+        })
+    }
+
     /// The means over both windows.
     pub(crate) fn stance(&self) -> Stance {
         let mut sum = self.older.clone();
@@ -189,6 +203,20 @@ impl Block {
 }
 
 impl Summed {
+    fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        let sums = [
+            self.normal_force,
+            self.friction_force,
+            self.slip,
+            self.loaded,
+        ];
+        self.last.fits(model, lanes)
+            && self.weight > 0.0
+            && self.point.is_finite()
+            && self.normal.is_finite()
+            && sums.iter().all(|sum| sum.is_finite())
+    }
+
     fn new(l: &LoadedContact) -> Self {
         // A contact without a force has a place all the same.
         let weight = l.normal_force.max(1e-9);

@@ -32,6 +32,7 @@ use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
+use crate::terrain::Profile;
 use chain::{Chain, ChainImpulses};
 pub use chains::ChainReading;
 use flippers::Arm;
@@ -138,6 +139,27 @@ impl Dynamics {
             chains: self.chains.iter().map(Chain::impulses).collect(),
             flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
         }
+    }
+
+    /// Whether a step of this model can have left them.
+    pub(crate) fn fits(&self, impulses: &Impulses, lanes: &[Profile]) -> bool {
+        let Impulses {
+            push,
+            motors,
+            contacts,
+            chains,
+            flippers,
+        } = impulses;
+        push.is_some() == self.push.is_some()
+            && push.is_none_or(f64::is_finite)
+            && motors.len() == self.motors.len()
+            && flippers.len() == self.flippers.len()
+            && chains.len() == self.chains.len()
+            && chains
+                .iter()
+                .zip(&self.chains)
+                .all(|(i, chain)| chain.fits(i))
+            && contacts.iter().all(|l| l.fits(&self.model, lanes))
     }
 
     /// Starts from what a step of the same model left.

@@ -311,6 +311,35 @@ impl State {
         }
     }
 
+    /// Whether a robot can be in it: it has what the robot has, and none of that is lost far away.
+    pub(crate) fn fits(&self, model: &Model) -> bool {
+        /// [m] From the chassis to a shoe of its chains.
+        const FAR: f64 = 1e3;
+        /// [m/s], [rad/s], [rad] No run comes near.
+        const MOST: f64 = 1e9;
+
+        let counts = [
+            (self.drives.len(), model.drives),
+            (self.shoes.len(), model.shoes()),
+            (self.idlers.len(), model.chains.len()),
+            (self.flippers.len(), model.flippers.len()),
+        ];
+        let speeds = [self.velocity.length(), self.angular_velocity, self.angle];
+        counts.iter().all(|(has, needs)| has == needs)
+            && self.is_finite()
+            && speeds.iter().all(|speed| speed.abs() < MOST)
+            && self.drives.iter().all(|d| d.spin.abs() < MOST)
+            && self.flippers.iter().all(|f| f.rate.abs() < MOST)
+            && self
+                .idlers
+                .iter()
+                .all(|i| i.travel.abs() < FAR && i.rate.abs() < MOST)
+            && self.shoes.iter().all(|shoe| {
+                let near = (shoe.center - self.center).length() < FAR;
+                near && shoe.twist.velocity.length() < MOST && shoe.twist.turn.abs() < MOST
+            })
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         let body = self.center.is_finite() && self.velocity.is_finite();
         let turn = self.angle.is_finite() && self.angular_velocity.is_finite();

@@ -14,7 +14,7 @@ use crate::reading::Reading;
 use crate::robot::{Model, Part};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::shaking::Shaking;
-use crate::terrain::Ground;
+use crate::terrain::{Ground, Profile};
 use progress::Progress;
 
 /// [s] Time between two looks at the progress; far below any stop window.
@@ -103,6 +103,34 @@ impl Seen {
             max_guide_penetration: 0.0,
             max_sprocket_slip: 0.0,
         }
+    }
+}
+
+impl Seen {
+    /// Whether a robot on lanes can have been seen so until a time [s].
+    pub(crate) fn fits(&self, time: f64, model: &Model, lanes: &[Profile]) -> bool {
+        let parts = model.parts.len();
+        // Looks are counted: ahead of time there would be none.
+        let next_look = self.looks as f64 * LOOK;
+        let numbers = [
+            self.time_to_clear,
+            self.max_penetration,
+            self.max_angle,
+            self.min_angle,
+            self.drive_work,
+            self.path_length,
+            self.max_track_tension,
+            self.max_pin_gap,
+            self.max_guide_penetration,
+            self.max_sprocket_slip,
+        ];
+        next_look <= time + 2.0 * LOOK
+            && (self.last_time - time).abs() <= 2.0 * LOOK
+            && numbers.iter().all(|number| !number.is_nan())
+            && self.goal_since.is_none_or(f64::is_finite)
+            && self.progress.fits(parts, lanes)
+            && self.intrusions.fits(parts, lanes)
+            && self.signals.fits(model, lanes)
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::events::Event;
 use crate::reading::Reading;
+use crate::terrain::Profile;
 
 /// How far the robot has come, and when it came no further.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -63,6 +64,22 @@ impl Default for Progress {
 }
 
 impl Progress {
+    /// Whether a robot of so many parts on lanes can have made it.
+    pub(super) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
+        let looks = self.history.iter();
+        let known = |look: &Look| {
+            let gained = look.advance + look.angle;
+            !gained.is_nan() && look.commanded.is_finite()
+        };
+        [-1.0, 0.0, 1.0].contains(&self.direction)
+            && looks.clone().all(known)
+            && !(self.best_advance + self.best_angle).is_nan()
+            && self.commanded.is_finite()
+            && self.share.is_finite()
+            && self.stop_since.is_none_or(f64::is_finite)
+            && self.stops.iter().all(|stop| stop.fits(parts, lanes))
+    }
+
     /// Takes in one step of `dt` [s] of a robot of a `length` [m] between its end axles.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
         let direction = if command < 0.0 { -1.0 } else { 1.0 };
@@ -92,11 +109,12 @@ impl Progress {
             commanded: self.commanded,
         };
         self.history.push_back(here);
+        // Slow commands have windows longer than any run: such a one is never whole.
         let span = (window / every).ceil() as usize;
-        while self.history.len() > span + 1 {
+        while self.history.len() > span.saturating_add(1) {
             self.history.pop_front();
         }
-        let whole = self.history.len() == span + 1;
+        let whole = self.history.len() > span;
         if whole {
             self.share = here.share_since(&self.history[0]);
         }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 
 use super::{Envelope, Motion};
-use crate::scenario::TrackOutline;
+use crate::error::ScenarioError;
+use crate::scenario::{MAX_GROUSERS, TrackOutline};
 
 /// A grouser fixed to a belt, which carries it along its line.
 #[derive(Clone, Debug)]
@@ -37,18 +38,23 @@ impl Grouser {
     }
 
     /// Those of a belt, evenly spaced: as many as given, or as come nearest to the outline's pitch.
+    ///
+    /// # Errors
+    /// The pitch leaves more of them than a belt may have.
     pub(crate) fn along(
         line: &Arc<Envelope>,
         count: Option<u32>,
         height: f64,
         outline: &TrackOutline,
-    ) -> impl Iterator<Item = Self> + use<> {
+    ) -> Result<impl Iterator<Item = Self> + use<>, ScenarioError> {
         let length = line.length();
-        let nearest = || (length / outline.grouser_pitch).round().max(1.0) as u32;
-        let count = count.unwrap_or_else(nearest);
+        let count = match count {
+            Some(count) => count,
+            None => outline.pitches_along(length, [1, MAX_GROUSERS])?,
+        };
         let pitch = length / f64::from(count);
         let (line, thickness) = (Arc::clone(line), outline.grouser_thickness);
-        (0..count).map(move |i| Self::new(&line, f64::from(i) * pitch, height, thickness))
+        Ok((0..count).map(move |i| Self::new(&line, f64::from(i) * pitch, height, thickness)))
     }
 
     /// [m] Its corners in its own frame, counter-clockwise.

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::fields::{Fields, Range, one_of};
 use super::flippers::ANGLE;
+use super::robot::Drivetrain;
 use crate::error::ScenarioError;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
@@ -68,8 +69,19 @@ impl Drive {
         Ok(drive)
     }
 
+    /// No speed beyond that of the drivetrain is commanded.
+    pub(crate) fn check(&self, drivetrain: &Drivetrain) -> Result<(), ScenarioError> {
+        let limit = drivetrain.max_speed;
+        let (path, speed) = self.fastest();
+        if speed.abs() <= limit {
+            return Ok(());
+        }
+        let rule = format!("must not exceed robot.drivetrain.max_speed = {limit} m/s");
+        Err(ScenarioError::new(path, speed, rule))
+    }
+
     /// [m/s] The fastest speed that is commanded, in magnitude, with the path of its field.
-    pub(crate) fn fastest(&self) -> (String, f64) {
+    fn fastest(&self) -> (String, f64) {
         let later = self.schedule.iter().flatten().enumerate();
         let later = later.map(|(i, [_, speed])| (format!("drive.schedule[{i}][1]"), *speed));
         let first = ("drive.speed".to_owned(), self.speed);

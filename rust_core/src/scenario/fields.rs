@@ -159,10 +159,18 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
+        /// Characters of a name.
+        const LONGEST: usize = 1000;
+
         let value = self.value(name)?;
-        value
+        let text = value
             .as_str()
-            .ok_or_else(|| self.error(name, value, "must be a text"))
+            .ok_or_else(|| self.error(name, value, "must be a text"))?;
+        if text.chars().nth(LONGEST).is_some() {
+            let rule = format!("must have at most {LONGEST} characters");
+            return Err(self.error(name, text, rule));
+        }
+        Ok(text)
     }
 
     /// One of a closed set of names.

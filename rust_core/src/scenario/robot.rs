@@ -87,6 +87,24 @@ impl TrackOutline {
     pub fn belt_radius(&self) -> f64 {
         self.rear_radius - self.grouser_height
     }
+
+    /// How many grousers come nearest to the pitch along a belt of a length [m], at least `least`.
+    ///
+    /// # Errors
+    /// More than `most`: the bounds are those of a number that is given.
+    pub(crate) fn pitches_along(
+        &self,
+        length: f64,
+        [least, most]: [u32; 2],
+    ) -> Result<u32, ScenarioError> {
+        let count = (length / self.grouser_pitch).round();
+        if count <= f64::from(most) {
+            return Ok((count as u32).max(least));
+        }
+        let rule = format!("must leave at most {most} grousers on a belt of {length:.4} m");
+        let path = "robot.outline.grouser_pitch";
+        Err(ScenarioError::new(path, self.grouser_pitch, rule))
+    }
 }
 
 impl Drivetrain {

@@ -1,6 +1,7 @@
 //! The same instant with something changed: another track, friction, command, or a closed belt.
 
 use super::Simulation;
+use crate::cancel::Cancel;
 use crate::contact::Dents;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
 use crate::error::{Error, ScenarioError};
@@ -49,23 +50,23 @@ impl Simulation {
     /// What a closed belt of the same envelope, force and friction does in this pose.
     ///
     /// # Errors
-    /// [`Error::Simulation`] if the state became non-finite.
-    pub fn counterfactual(&self) -> Result<Counterfactual, Error> {
-        self.try_belt(self.with_closed_belt())
+    /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
+    pub fn counterfactual(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
+        self.try_belt(self.with_closed_belt()?, cancel)
     }
 
     /// The same of a belt with grousers as high as those of the track.
     ///
     /// # Errors
     /// As [`Self::counterfactual`], and [`Error::Scenario`] if the track has none.
-    pub fn counterfactual_with_grousers(&self) -> Result<Counterfactual, Error> {
-        self.try_belt(self.with_closed_belt_with_grousers()?)
+    pub fn counterfactual_with_grousers(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
+        self.try_belt(self.with_closed_belt_with_grousers()?, cancel)
     }
 
     /// The same instant with such a belt.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the track has no grousers.
+    /// [`Error::Scenario`] if the track has no grousers, or the pitch leaves more than a belt may have.
     pub fn with_closed_belt_with_grousers(&self) -> Result<Self, Error> {
         let (model, outline) = (self.dynamics.model(), &self.scenario.robot.outline);
         if !model.has_grousers(outline) || outline.grouser_thickness <= 0.0 {
@@ -73,17 +74,18 @@ impl Simulation {
             let error = ScenarioError::new("robot.track", "this model", rule);
             return Err(error.into());
         }
-        let closed = model.closed(Some(outline));
+        let closed = model.closed(Some(outline))?;
         Ok(self.with(&self.scenario, self.ground.clone(), closed))
     }
 
-    fn try_belt(&self, mut belt: Self) -> Result<Counterfactual, Error> {
+    fn try_belt(&self, mut belt: Self, cancel: &Cancel) -> Result<Counterfactual, Error> {
         let criteria = &self.scenario.criteria;
         let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
         let start = belt.reading().position.x;
         let (mut distance, mut time): (f64, f64) = (0.0, f64::INFINITY);
         while belt.time() - self.time() < criteria.escape_time && !belt.is_over() {
             belt.step()?;
+            cancel.check()?;
             distance = distance.max(direction * (belt.reading().position.x - start));
             if distance > criteria.escape_distance {
                 time = time.min(belt.time() - self.time());
@@ -98,10 +100,12 @@ impl Simulation {
     }
 
     /// The same instant with a closed belt round the bodies of the track.
-    #[must_use]
-    pub fn with_closed_belt(&self) -> Self {
-        let model = self.dynamics.model().closed(None);
-        self.with(&self.scenario, self.ground.clone(), model)
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if there is no such belt.
+    pub fn with_closed_belt(&self) -> Result<Self, Error> {
+        let model = self.dynamics.model().closed(None)?;
+        Ok(self.with(&self.scenario, self.ground.clone(), model))
     }
 
     /// Another model in this pose, its drives at the mean speed of these.

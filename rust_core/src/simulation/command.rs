@@ -8,7 +8,7 @@ use crate::error::{Error, ScenarioError};
 use crate::gait::Sight;
 use crate::plane::direction;
 use crate::robot::Mount;
-use crate::scenario::{End, Flippers};
+use crate::scenario::{Drive, End, Flippers};
 
 impl Simulation {
     pub(super) fn command(&mut self) {
@@ -51,9 +51,12 @@ impl Simulation {
     /// # Errors
     /// [`Error::Scenario`] if the speed is beyond the drivetrain's.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
-        let mut next = self.scenario.clone();
-        next.drive.speed = speed;
-        next.validate()?;
+        let drive = Drive {
+            speed,
+            schedule: None,
+            gait: None,
+        };
+        drive.check(&self.scenario.robot.drivetrain)?;
         self.command = speed;
         Ok(())
     }

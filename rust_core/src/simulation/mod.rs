@@ -24,6 +24,7 @@ use crate::robot::{BodyKind, Model};
 use crate::scenario::Scenario;
 use crate::start::start_position;
 use crate::terrain::{Ground, Side};
+use crate::trace::Columns;
 
 /// A simulation under way: what was built from the scenario, and the state.
 pub struct Simulation {
@@ -317,6 +318,17 @@ impl Simulation {
     /// The shoes of all chains.
     pub(crate) fn shoes(&self) -> &[Shoe] {
         &self.state.shoes
+    }
+
+    /// Points of the ground, and parts of the robot.
+    pub fn size(&self) -> (usize, usize) {
+        let points = self.ground.lanes.iter().map(|lane| lane.points.len());
+        (points.sum(), self.dynamics.model().parts.len())
+    }
+
+    /// What of it is recorded.
+    pub(crate) fn columns(&self) -> Columns {
+        Columns::of(self.dynamics.model())
     }
 
     /// Number of drives.

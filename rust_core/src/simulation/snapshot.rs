@@ -91,6 +91,10 @@ impl Simulation {
         let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
         let scenario = Scenario::from_json(&moment.scenario)?;
         let mut simulation = Self::new(&scenario)?;
+        if !simulation.fits(&moment) {
+            let rule = "must hold what its own robot and ground can have come to";
+            return Err(refused("contents of another", rule));
+        }
         simulation.step = moment.step;
         simulation.command = moment.command;
         simulation.driver = moment.driver;
@@ -101,6 +105,32 @@ impl Simulation {
         simulation.dents = moment.dents;
         simulation.monitor.seen = moment.seen;
         Ok(simulation)
+    }
+}
+
+impl Simulation {
+    /// Whether it can have come to a moment: a snapshot may be a stranger's.
+    fn fits(&self, moment: &Moment) -> bool {
+        /// Steps of more than a day.
+        const MOST_STEPS: u64 = 1 << 40;
+        /// [m] Beyond the ground, and above it; what falls may be anywhere below.
+        const FAR: f64 = 1e6;
+
+        let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);
+        let time = moment.step as f64 * self.time_step();
+        let (low, high) = self.ground.extent();
+        let (x, y) = (moment.state.center.x, moment.state.center.y);
+        let fastest = self.scenario.robot.drivetrain.max_speed;
+        moment.step <= MOST_STEPS
+            && (low - FAR..=high + FAR).contains(&x)
+            && y < FAR + self.ground.highest()
+            && moment.command.abs() <= fastest
+            && moment.set_point.abs() <= fastest
+            && moment.driver.fits(&self.scenario.drive)
+            && moment.state.fits(model)
+            && self.dynamics.fits(&moment.impulses, lanes)
+            && moment.dents.fits(model.parts.len())
+            && moment.seen.fits(time, model, lanes)
     }
 }
 

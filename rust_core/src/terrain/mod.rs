@@ -182,6 +182,12 @@ impl Ground {
         heights.fold(f64::INFINITY, f64::min)
     }
 
+    /// [m] Height of the highest point of all.
+    pub(crate) fn highest(&self) -> f64 {
+        let points = self.lanes.iter().flat_map(|lane| &lane.points);
+        points.fold(f64::NEG_INFINITY, |high, point| high.max(point.y))
+    }
+
     /// [m] The x that the rear axle must leave behind, unless the scenario has its own.
     pub fn goal_of(&self, scenario: &Scenario) -> f64 {
         scenario.goal.unwrap_or(self.goal)

@@ -8,6 +8,8 @@ use crate::plane::left_of;
 
 /// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
 const FACET_TURN: f64 = 0.0175;
+/// Facets of all rounded edges of a lane at most: these build in well under a second.
+const MAX_FACETS: f64 = 1e6;
 /// [m] Points closer than this to the line of their neighbours do not make an edge.
 pub(super) const COLLINEAR: f64 = 1e-9;
 
@@ -116,12 +118,14 @@ impl Profile {
 
     /// Walks the corners and replaces each convex one by an arc of the radius.
     fn round(&mut self, path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
+        if radius > 0.0 {
+            check_facets(path, corners, radius)?;
+        }
         let mut spare = 0.0; // [m] what the previous arc took of the segment behind it
         self.push(corners[0], -1);
         for i in 1..corners.len() - 1 {
             let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
-            let (d1, d2) = ((corner - before).normalize(), (behind - corner).normalize());
-            let angle = libm::atan2(d1.y * d2.x - d1.x * d2.y, d1.dot(d2));
+            let (d1, angle) = turn(before, corner, behind);
             if angle.abs() * (corner - before).length().min((behind - corner).length()) < COLLINEAR
             {
                 spare = 0.0;
@@ -162,7 +166,7 @@ impl Profile {
                 center,
             });
             if rounded {
-                let facets = (angle / FACET_TURN).ceil().max(1.0);
+                let facets = facets(angle);
                 for k in 0..=facets as usize {
                     let (s, c) = libm::sincos(-angle * k as f64 / facets);
                     let spoke =
@@ -294,6 +298,31 @@ impl Profile {
         }
         rise
     }
+}
+
+/// Direction of the ground before a corner, and its turn there [rad], clockwise positive.
+fn turn(before: Vector, corner: Vector, behind: Vector) -> (Vector, f64) {
+    let (d1, d2) = ((corner - before).normalize(), (behind - corner).normalize());
+    (d1, libm::atan2(d1.y * d2.x - d1.x * d2.y, d1.dot(d2)))
+}
+
+/// Facets of an arc that turns by an angle [rad].
+fn facets(angle: f64) -> f64 {
+    (angle / FACET_TURN).ceil().max(1.0)
+}
+
+/// Refuses arcs of more facets in all than a ground may have, before there are any.
+fn check_facets(path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
+    let turns = corners.windows(3).map(|c| turn(c[0], c[1], c[2]).1);
+    let all: f64 = turns.filter(|turn| *turn > 0.0).map(facets).sum();
+    if all <= MAX_FACETS {
+        return Ok(());
+    }
+    let rule = format!(
+        "must be 0 on a ground with so many edges: rounded they take {all} facets, and {MAX_FACETS} are the most"
+    );
+    let path = format!("{path}.edge_radius");
+    Err(ScenarioError::new(path, radius, rule))
 }
 
 #[allow(clippy::float_cmp)] // the points of a vertical face have exactly one x

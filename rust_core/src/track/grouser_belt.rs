@@ -33,7 +33,7 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         .collect();
     let line = Arc::new(Envelope::new(&discs));
     let grousers: Vec<Grouser> =
-        Grouser::along(&line, belt.grouser_count, height, outline).collect();
+        Grouser::along(&line, belt.grouser_count, height, outline)?.collect();
     let length = line.length();
     if length <= thickness * grousers.len() as f64 {
         let rule = format!("must leave room: the belt is {length} m long, a grouser {thickness} m");

@@ -33,9 +33,10 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         })
     };
     let roots = Envelope::new(&ends(outline.grouser_height));
-    let count = track
-        .shoe_count
-        .unwrap_or_else(|| (roots.length() / outline.grouser_pitch).round().max(3.0) as u32);
+    let count = match track.shoe_count {
+        Some(count) => count,
+        None => outline.pitches_along(roots.length(), [3, MAX_SHOES])?,
+    };
     let count = count as usize;
     let plate = |count: usize| {
         let default = roots.length() / count as f64 / 16.0;

@@ -114,6 +114,9 @@ fn wrong_json_gets_an_error_that_names_the_place_or_runs() {
             match result {
                 Err(e) => {
                     errors += 1;
+                    let Error::Scenario(e) = e else {
+                        panic!("{place} = {value}: {e}")
+                    };
                     let path = place.trim_start_matches('/').replace('/', ".");
                     let root = path.split('.').next().unwrap_or_default();
                     assert!(

@@ -1,7 +1,7 @@
 //! Why a robot stops: hand-solved cases, and what a closed belt does in its place.
 
 use crawler2d_core::{
-    Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain, Wheel, simulate,
+    Cancel, Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain, Wheel, simulate,
 };
 
 use crate::common::*;
@@ -85,8 +85,8 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
         cases += 1;
         let depth = stopped.diagnosis().unwrap().intrusion.unwrap().place.depth;
         deepest = deepest.max(depth);
-        freed += u32::from(stopped.counterfactual().unwrap().freed);
-        most = most.max(gain_when_braked(stopped.with_closed_belt()));
+        freed += u32::from(stopped.counterfactual(&Cancel::default()).unwrap().freed);
+        most = most.max(gain_when_braked(stopped.with_closed_belt().unwrap()));
     }
     println!(
         "seed {seed}: {cases} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
@@ -123,8 +123,13 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
             continue;
         };
         cases += 1;
-        smooth += u32::from(stopped.counterfactual().unwrap().freed);
-        freed += u32::from(stopped.counterfactual_with_grousers().unwrap().freed);
+        smooth += u32::from(stopped.counterfactual(&Cancel::default()).unwrap().freed);
+        freed += u32::from(
+            stopped
+                .counterfactual_with_grousers(&Cancel::default())
+                .unwrap()
+                .freed,
+        );
         most = most.max(gain_when_braked(
             stopped.with_closed_belt_with_grousers().unwrap(),
         ));

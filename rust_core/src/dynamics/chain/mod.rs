@@ -96,6 +96,16 @@ impl Chain {
         }
     }
 
+    /// Whether a step of this chain can have left them.
+    pub(super) fn fits(&self, impulses: &ChainImpulses) -> bool {
+        let ChainImpulses { pins, pull, memory } = impulses;
+        let counts = pins.len() == self.pins.len() && memory.len() == self.memory.len();
+        counts
+            && pull.is_finite()
+            && pins.iter().all(Pin::is_finite)
+            && memory.iter().all(|rest| rest.force.is_finite())
+    }
+
     pub(super) fn start_from(&mut self, impulses: ChainImpulses) {
         self.pins = impulses.pins;
         self.pull.impulses = impulses.pull;

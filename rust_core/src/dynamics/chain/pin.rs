@@ -31,6 +31,12 @@ pub(super) struct Pin {
 }
 
 impl Pin {
+    pub(super) fn is_finite(&self) -> bool {
+        let vectors = [self.gap, self.bias, self.impulse, self.center, self.force];
+        let known = vectors.iter().chain(&self.arms).all(|v| v.is_finite());
+        known && self.stiffness.is_finite()
+    }
+
     /// Takes its place between two centres, half of `pitch` [m] along the shoes from both of them.
     pub(super) fn follow(&mut self, centers: [Vector; 2], alongs: [Vector; 2], pitch: f64) {
         self.arms = [alongs[0] * (0.5 * pitch), alongs[1] * (-0.5 * pitch)];

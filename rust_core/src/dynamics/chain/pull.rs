@@ -45,6 +45,13 @@ pub(super) struct PullImpulses {
     pub behind: f64,
 }
 
+impl PullImpulses {
+    pub(super) fn is_finite(&self) -> bool {
+        let all = [self.impulse, self.center, self.force, self.behind];
+        all.iter().all(|number| number.is_finite())
+    }
+}
+
 /// How the drive acts on one shoe and on the chassis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grasp {

@@ -1,0 +1,30 @@
+//! How a caller asks computing that is under way to end early.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::Error;
+
+/// Held by the caller and by what computes; once asked, computing ends with [`Error::Interrupted`].
+#[derive(Clone, Debug, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    /// Asks to end.
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was asked to end.
+    pub fn is_asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Goes on, unless it was asked to end.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if self.is_asked() {
+            return Err(Error::Interrupted);
+        }
+        Ok(())
+    }
+}
