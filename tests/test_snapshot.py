@@ -162,3 +162,42 @@ def test_the_snapshot_of_another_build_names_both(scenario: Scenario) -> None:
     assert caught.value.path == "snapshot"
     assert own in caught.value.rule
     assert other in str(caught.value.value)
+
+
+FORGED = {
+    "belt": c2d.robots.engineer(flippers=None),
+    "gears": c2d.robots.engineer(
+        flippers=None, track=c2d.LineOfWheels(3, wheel=c2d.GearWheel())
+    ),
+    "arms": c2d.robots.engineer(track=c2d.LineOfWheels(4)),
+    "chain": c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack()),
+}
+
+
+@pytest.mark.parametrize("robot", FORGED.values(), ids=FORGED)
+def test_a_snapshot_changed_and_signed_again_is_refused_or_runs(robot: c2d.Robot) -> None:
+    sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.step(0.1)))
+    sim.advance(1.5)
+    whole = sim.snapshot()[:-DIGEST]
+    rng = np.random.default_rng(7)
+    told = {"refused": 0, "ran": 0, "diverged": 0}
+    for _ in range(150):
+        body = bytearray(whole)
+        for place in rng.integers(100, len(body), rng.choice([1, 1, 3])):
+            body[place] = rng.integers(256)
+        try:
+            forged = c2d.Simulation.from_snapshot(bytes(body) + hashlib.sha256(body).digest())
+        except c2d.ScenarioError:
+            told["refused"] += 1
+            continue
+        assert abs(forged.state().position[0]) < 1.2e6
+        try:
+            forged.advance(0.02)
+            forged.intrusions()
+            forged.diagnosis()
+            told["ran"] += 1
+            assert np.isfinite(forged.state().position).all()
+        except c2d.SimulationDiverged:
+            told["diverged"] += 1
+    assert told["refused"] > 10
+    assert told["ran"] > 10

@@ -159,7 +159,7 @@ class Simulation:
         Returns
         -------
         bytes
-            For `from_snapshot` of the same build of crawler2d: about 10 kB.
+            For `from_snapshot` of the same build of crawler2d: about 10 kB, and the scenario.
         """
         return self._core.snapshot()
 
@@ -176,6 +176,13 @@ class Simulation:
         -------
         Simulation
             Independent of the one that was written.
+
+        Notes
+        -----
+        A snapshot from a stranger is worth what a scenario from one is. It runs no code, and what
+        it holds is checked against its own robot and ground: nothing but what these could have come
+        to. That they did is not known: where the robot stands and what its run has seen so far are
+        what the stranger says.
 
         Raises
         ------

@@ -16,6 +16,7 @@
 
 mod batch;
 mod bodies;
+mod bounds;
 mod cancel;
 mod chain;
 mod check;

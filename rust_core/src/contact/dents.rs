@@ -7,6 +7,7 @@ use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::{Contact, LoadedContact};
+use crate::bounds::plausible;
 
 /// [m] A dent moves less than this in a step.
 const SAME_PLACE: f64 = 0.01;
@@ -35,7 +36,7 @@ impl Dents {
 
     /// Whether a robot of so many parts can have them.
     pub(crate) fn fits(&self, parts: usize) -> bool {
-        let fits = |d: &Dent| d.part < parts && d.point.is_finite() && d.depth.is_finite();
+        let fits = |d: &Dent| d.part < parts && plausible(&[d.point.x, d.point.y, d.depth]);
         self.dents.iter().all(fits)
     }
 

@@ -14,6 +14,7 @@ mod reference;
 use rapier2d_f64::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
+use crate::bounds::{plausible, plausible_vectors};
 use crate::chain::ChainOfShoes;
 use crate::dynamics::Grip;
 use crate::flipper::{Flipper, Mounted};
@@ -92,9 +93,8 @@ impl Contact {
         lane.is_some_and(|lane| {
             let edges = -1..lane.edges.len() as i32;
             self.facet + 1 < lane.points.len() && edges.contains(&self.edge)
-        }) && self.point.is_finite()
-            && self.normal.is_finite()
-            && self.distance.is_finite()
+        }) && plausible_vectors(&[self.point, self.normal])
+            && plausible(&[self.distance])
     }
 }
 
@@ -128,7 +128,7 @@ impl LoadedContact {
             self.normal_guess,
             self.friction_guess,
         ];
-        self.contact.fits(model, lanes) && forces.iter().all(|force| force.is_finite())
+        self.contact.fits(model, lanes) && plausible(&forces)
     }
 }
 

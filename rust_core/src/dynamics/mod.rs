@@ -28,6 +28,7 @@ mod tests;
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::bounds::plausible;
 use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::{Model, Mount};
@@ -151,7 +152,7 @@ impl Dynamics {
             flippers,
         } = impulses;
         push.is_some() == self.push.is_some()
-            && push.is_none_or(f64::is_finite)
+            && push.is_none_or(|push| plausible(&[push]))
             && motors.len() == self.motors.len()
             && flippers.len() == self.flippers.len()
             && chains.len() == self.chains.len()

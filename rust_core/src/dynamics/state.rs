@@ -315,8 +315,9 @@ impl State {
     pub(crate) fn fits(&self, model: &Model) -> bool {
         /// [m] From the chassis to a shoe of its chains.
         const FAR: f64 = 1e3;
-        /// [m/s], [rad/s], [rad] No run comes near.
-        const MOST: f64 = 1e9;
+        /// [m/s], [rad/s], [rad] No run comes near; only what falls grows ever faster.
+        const MOST: f64 = 1e6;
+        const FALLS: f64 = -1e9;
 
         let counts = [
             (self.drives.len(), model.drives),
@@ -324,10 +325,12 @@ impl State {
             (self.idlers.len(), model.chains.len()),
             (self.flippers.len(), model.flippers.len()),
         ];
-        let speeds = [self.velocity.length(), self.angular_velocity, self.angle];
+        let velocity = |v: Vector| v.x.abs() < MOST && (FALLS..MOST).contains(&v.y);
         counts.iter().all(|(has, needs)| has == needs)
             && self.is_finite()
-            && speeds.iter().all(|speed| speed.abs() < MOST)
+            && velocity(self.velocity)
+            && self.angular_velocity.abs() < MOST
+            && self.angle.abs() < MOST
             && self.drives.iter().all(|d| d.spin.abs() < MOST)
             && self.flippers.iter().all(|f| f.rate.abs() < MOST)
             && self
@@ -336,7 +339,7 @@ impl State {
                 .all(|i| i.travel.abs() < FAR && i.rate.abs() < MOST)
             && self.shoes.iter().all(|shoe| {
                 let near = (shoe.center - self.center).length() < FAR;
-                near && shoe.twist.velocity.length() < MOST && shoe.twist.turn.abs() < MOST
+                near && velocity(shoe.twist.velocity) && shoe.twist.turn.abs() < MOST
             })
     }
 

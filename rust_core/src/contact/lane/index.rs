@@ -189,7 +189,7 @@ impl Index {
         let last = self.cells.len() - 1;
         // A cell further on either side: the table's own rounding may be off by one.
         let from = self.cells[cell.saturating_sub(1).min(last)] as usize;
-        let to = match self.cells.get(cell + 2) {
+        let to = match self.cells.get(cell.saturating_add(2)) {
             Some(to) => *to as usize,
             None => self.begins.len(),
         };

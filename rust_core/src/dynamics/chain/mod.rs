@@ -14,6 +14,7 @@ use super::damper::Damper;
 use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
+use crate::bounds::plausible;
 use crate::chain::{ChainOfShoes, Tensioner};
 use pin::Pin;
 use pull::{Grasp, Pull, PullImpulses};
@@ -101,9 +102,9 @@ impl Chain {
         let ChainImpulses { pins, pull, memory } = impulses;
         let counts = pins.len() == self.pins.len() && memory.len() == self.memory.len();
         counts
-            && pull.is_finite()
-            && pins.iter().all(Pin::is_finite)
-            && memory.iter().all(|rest| rest.force.is_finite())
+            && pull.is_plausible()
+            && pins.iter().all(Pin::is_plausible)
+            && memory.iter().all(|rest| plausible(&[rest.force]))
     }
 
     pub(super) fn start_from(&mut self, impulses: ChainImpulses) {

@@ -4,6 +4,7 @@ use nalgebra::Matrix2x3;
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::bounds::{plausible, plausible_vectors};
 use crate::dynamics::state::Twist;
 use crate::plane::left_of;
 
@@ -31,10 +32,9 @@ pub(super) struct Pin {
 }
 
 impl Pin {
-    pub(super) fn is_finite(&self) -> bool {
+    pub(super) fn is_plausible(&self) -> bool {
         let vectors = [self.gap, self.bias, self.impulse, self.center, self.force];
-        let known = vectors.iter().chain(&self.arms).all(|v| v.is_finite());
-        known && self.stiffness.is_finite()
+        plausible_vectors(&self.arms) && plausible_vectors(&vectors) && plausible(&[self.stiffness])
     }
 
     /// Takes its place between two centres, half of `pitch` [m] along the shoes from both of them.

@@ -8,6 +8,7 @@
 use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::bounds::plausible;
 use crate::chain::ChainOfShoes;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::{Shoe, State, Twist};
@@ -46,9 +47,8 @@ pub(super) struct PullImpulses {
 }
 
 impl PullImpulses {
-    pub(super) fn is_finite(&self) -> bool {
-        let all = [self.impulse, self.center, self.force, self.behind];
-        all.iter().all(|number| number.is_finite())
+    pub(super) fn is_plausible(&self) -> bool {
+        plausible(&[self.impulse, self.center, self.force, self.behind])
     }
 }
 
