@@ -11,6 +11,8 @@ pub(crate) struct Sight {
     pub time: f64,
     /// [rad] Nose up > 0.
     pub chassis_angle: f64,
+    /// [rad] The same at the end of the step that is commanded, if it goes on turning as it does.
+    pub angle_ahead: f64,
     /// The flippers at the front and at the rear bear on something beyond their roots.
     pub touches: [bool; 2],
 }
@@ -75,8 +77,9 @@ impl Driver {
             Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
-        let swept = climb.sweep_angle - sight.chassis_angle;
-        let pushed = climb.push_angle + sight.chassis_angle;
+        // Aimed at where the chassis was, arms would lag behind by what it turns in a step.
+        let swept = climb.sweep_angle - sight.angle_ahead;
+        let pushed = climb.push_angle + sight.angle_ahead;
         match self.phase {
             Phase::Reach => [climb.reach_angle, start],
             Phase::Sweep => [swept, start],

@@ -277,7 +277,7 @@ impl State {
     }
 
     /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
-    pub(super) fn moved(&self, time: f64) -> (Vector, f64) {
+    pub(crate) fn moved(&self, time: f64) -> (Vector, f64) {
         (
             self.center + self.velocity * time,
             self.angle + self.angular_velocity * time,

@@ -20,6 +20,7 @@ impl Simulation {
             let sight = Sight {
                 time,
                 chassis_angle: self.state.angle,
+                angle_ahead: self.state.moved(self.time_step()).1,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
             let angles = self.driver.angles(drive, flippers.angle, sight);

@@ -106,6 +106,36 @@ fn a_schedule_is_followed_at_the_limit_of_the_rate() {
     }
 }
 
+/// A climb has the front arms level over ground while the chassis turns. Aimed at where the chassis was,
+/// they would lag behind by what it turns in a step.
+#[test]
+fn arms_held_level_do_not_lag_behind_a_chassis_that_turns() {
+    let mut scenario = with_flippers(Ends::Both, belt());
+    scenario.terrain = step(0.3, 0.9);
+    scenario.drive.gait = Some(climb());
+    let mut simulation = Simulation::new(&scenario).expect("it is valid");
+    let mut lags = Vec::new();
+    for _ in 0..6000 {
+        simulation.step().expect("it runs");
+        let now = simulation.reading();
+        let over_chassis = simulation.flipper_angles().next().expect("it has one");
+        let off = (over_chassis + now.chassis_angle).abs();
+        let turns = now.angular_velocity.abs() * simulation.time_step();
+        // Within reach of the level, above the tenth of a radian that starts it.
+        if off < 5e-3 && now.chassis_angle > 0.1 && turns > 1e-4 {
+            lags.push(off / turns);
+        }
+    }
+    lags.sort_by(f64::total_cmp);
+    let median = lags[lags.len() / 2];
+    println!(
+        "off by {median:.4} of what the chassis turns in a step, {} steps",
+        lags.len()
+    );
+    assert!(lags.len() > 300, "it hardly turns: {} steps", lags.len());
+    assert!(median < 0.05, "off by {median} of a step's turn");
+}
+
 /// Arms and chassis turn and stand on both; all contacts together bear weight and inertia.
 #[test]
 fn contact_forces_bear_weight_and_inertia_while_arms_move() {
