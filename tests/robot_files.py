@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import operator
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,6 +16,14 @@ from numpy.typing import NDArray
 
 FOLDER = Path(__file__).parent / "robots"
 Array = NDArray[np.float64]
+
+_XACRO = "{http://www.ros.org/wiki/xacro}"
+_OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 
 
 @dataclass(frozen=True)
@@ -62,7 +71,8 @@ def together(links: list[Link]) -> Masses:
 
 def lines(file: str) -> list[str]:
     """Take the lines of a file, the first as number 1."""
-    return ["", *(FOLDER / file).read_text().splitlines()]
+    # A stray carriage return within a line ends none.
+    return ["", *(FOLDER / file).read_bytes().decode().split("\n")]
 
 
 def read_sdf(file: str, model: str | None = None) -> list[Link]:
@@ -71,6 +81,65 @@ def read_sdf(file: str, model: str | None = None) -> list[Link]:
     found = root.find("model") if model is None else root.find(f".//model[@name='{model}']")
     assert found is not None
     return [_link(link) for link in found.findall("link")]
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A wheel of a xacro model, in the frame of its parent link."""
+
+    name: str
+    parent: str
+    place: Array
+    radius: float
+
+
+def read_xacro(file: str) -> tuple[dict[str, float], list[Wheel]]:
+    """Read masses of all links by name, and the wheels, of a file of macro calls."""
+    root = ElementTree.parse(FOLDER / file).getroot()
+    known = xacro_properties(root)
+    masses, wheels = {}, []
+    for link in root.iter(_XACRO + "link_macro"):
+        masses[link.attrib["name_link"]] = evaluated(link.attrib["mass"], known)
+    for wheel in root.iter(_XACRO + "wheel"):
+        name = wheel.attrib["name_link"]
+        masses[name] = evaluated(wheel.attrib["mass"], known)
+        place = np.array([evaluated(wheel.attrib[axis], known) for axis in "xyz"])
+        # The macro scales the radius, and takes the place as it is.
+        radius = evaluated(wheel.attrib["radius"], known) * known["scale"]
+        wheels.append(Wheel(name, wheel.attrib["parent"], place, radius))
+    for plain in root.findall("link"):
+        mass = plain.find("inertial/mass")
+        assert mass is not None
+        masses[plain.attrib["name"]] = float(mass.attrib["value"])
+    return masses, wheels
+
+
+def xacro_properties(root: ElementTree.Element) -> dict[str, float]:
+    """Evaluate the properties that are numbers and rest on numbers, in their order."""
+    known: dict[str, float] = {}
+    for entry in root.iter(_XACRO + "property"):
+        with contextlib.suppress(ValueError, KeyError, SyntaxError):
+            known[entry.attrib["name"]] = evaluated(entry.attrib["value"], known)
+    return known
+
+
+def evaluated(text: str, known: dict[str, float]) -> float:
+    """Evaluate a number or ``${...}`` with products, sums and known names."""
+    inner = re.fullmatch(r"\$\{(.*)\}", text)
+    if inner is None:
+        return float(text)
+
+    def value(node: ast.expr) -> float:
+        if isinstance(node, ast.BinOp):
+            return _OPERATORS[type(node.op)](value(node.left), value(node.right))
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            return -value(node.operand)
+        if isinstance(node, ast.Name):
+            return known[node.id]
+        assert isinstance(node, ast.Constant)
+        return float(node.value)  # type: ignore[arg-type]
+
+    return value(ast.parse(inner[1], mode="eval").body)
 
 
 def _link(element: ElementTree.Element) -> Link:

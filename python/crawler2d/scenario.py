@@ -258,7 +258,7 @@ class Scenario(Parameters):
             variant = replace_path(variant, path, value)
         if _leaves_mass_of_arms(self.robot, variant.robot):
             message = (
-                "robot.flippers = None takes the flippers off but leaves their mass on the robot;"
+                "robot.flippers = None takes the flippers off and leaves their mass on the robot;"
                 " to take it off, too, replace or sweep the whole robot:"
                 ' {"robot": robot.without_flippers()}'
             )

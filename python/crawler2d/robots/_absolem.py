@@ -64,7 +64,7 @@ def absolem(
     max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
     max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
     mass, grousers
-    public wheels       8 of 0.089 m, evenly spaced between   absolem.sdf:1273 to 1691
+    public wheels       8 of 0.089 m, evenly spaced between   absolem.sdf:1273 to 1690
                         the axles; 5 a flipper, 0.089 to      absolem.sdf:988 to 1234
                         0.029 m, evenly spaced
     ==================  ====================================  ====================================
@@ -82,9 +82,21 @@ def absolem(
 
     Examples
     --------
-    >>> robot = absolem()
-    >>> round(robot.mass, 2), round(robot.center_of_mass[0], 3)
-    (38.7, -0.029)
+    What its makers tell of, in the pockets of its front flippers, at the friction of its wheels:
+
+    >>> import crawler2d as c2d
+    >>> step = c2d.terrains.step(0.10, friction=0.5)
+    >>> drive = c2d.Drive(gait=c2d.Climb())
+    >>> run = c2d.simulate(absolem(track="public"), step, drive=drive)
+    >>> str(run.outcome), str(run.mechanism)
+    ('seized', 'straddled')
+    >>> str(c2d.simulate(absolem(), step, drive=drive).outcome)
+    'cleared'
+
+    So it goes on steps, knife edges of 10 mm and barriers of 100 mm, 70 to 130 mm high, in all of
+    210 runs, and with the belt all of 210 clear; at 140 mm the wheels do, too. A belt comes into no
+    such pose, and one that is put there does not get away (none of 21). Without flippers the wheels
+    seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
     """
     built = Flippers(
         length=0.33,
@@ -99,12 +111,13 @@ def absolem(
     chassis = 35.6983
     whole = chassis + 4.0 * built.mass
     robot = Robot.simple(whole, axle_distance=0.5, radius=0.089, name="absolem", max_speed=0.4)
+    rear, front, bottom, top = -0.372085, 0.187487, 0.02995, 0.16895
     robot = replace(
         robot,
         mass=chassis,
         center_of_mass=(-0.03139, 0.10286),
         moment_of_inertia=1.5354,
-        belly=((-0.372085, 0.02995), (0.187487, 0.02995), (0.187487, 0.16895), (-0.372085, 0.16895)),
+        belly=((rear, bottom), (front, bottom), (front, top), (rear, top)),
         gauge=0.397,
         drivetrain=replace(robot.drivetrain, max_acceleration=1.4),
     )

@@ -46,8 +46,8 @@ def marv(
     ==================  ====================================  ====================================
     figure              value                                 source
     ==================  ====================================  ====================================
-    pivots              0.512 m apart                         marv.sdf:469, 2 x 0.256 m
-    gauge               0.496 m                               marv.sdf:469, 2 x 0.248 m
+    pivots              0.512 m apart                         marv.sdf:469, twice
+    gauge               0.496 m                               marv.sdf:469, twice
     mass                45.726 kg without flippers            marv.sdf: all its links but those of
                                                               the flippers, sensors included
     centre of mass      (0.00292, 0.06481) m, the same        the same
