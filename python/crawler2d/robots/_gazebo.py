@@ -47,7 +47,7 @@ def gz_tracked_vehicle(
     grousers            none                                  the same: its tracks are smooth
     gauge               0.397 m                               tracked_vehicle_simple.sdf:98
     mass                25.26 kg without flippers: body       tracked_vehicle_simple.sdf:67, 101
-                        13.14, tracks 6.06 each               and 201
+                        13.14, tracks 6.06 each               tracked_vehicle_simple.sdf:201
     centre of mass      (-0.0635, 0.0496) m, the same         the same links
     moment of inertia   0.529 kg m^2, the same                the same links
     flippers            0.33 m long                           tracked_vehicle_simple.sdf:334
