@@ -69,6 +69,21 @@ def test_a_seed_alone_says_how_high_the_posts_are() -> None:
     assert tops == [0.2, 0.2, 0.2]
 
 
+@pytest.mark.parametrize("pattern", ["flat", "hill", "diagonal"])
+@pytest.mark.parametrize("fields", [{}, {"rise": 0.05}, {"levels": 2}])
+def test_the_barrier_of_a_field_stands_above_its_highest_post(
+    pattern: Any, fields: dict[str, Any]
+) -> None:
+    for seed in range(5):
+        posts = c2d.terrains.random_stepfield(seed, pattern=pattern, **fields)
+        field = c2d.terrains.stepfield_with_barrier(seed, pattern=pattern, **fields)
+        highest = max(lane[:, 1].max() for lane in lanes_of(posts).values())
+        tops = [float(lane[:, 1].max()) for lane in lanes_of(field).values()]
+        assert tops == [field.barrier_height] * 3
+        assert field.barrier_height > 1.4 * highest
+    assert c2d.terrains.stepfield_with_barrier().barrier_height == 0.15
+
+
 def test_tables_name_the_lane() -> None:
     terrain = c2d.terrains.lanes(
         c2d.terrains.barrier(0.03, 0.05), c2d.terrains.flat(), middle=c2d.terrains.flat()

@@ -20,6 +20,7 @@ __all__ = [
     "InternalError",
     "LimitError",
     "ScenarioError",
+    "ScenarioWarning",
     "SimulationDiverged",
 ]
 
@@ -61,6 +62,10 @@ class ScenarioError(Crawler2dError, ValueError):
     def __str__(self) -> str:
         """Name the field, the rule and the value."""
         return f"{self.path} {self.rule}, got {self.value}"
+
+
+class ScenarioWarning(UserWarning):
+    """A scenario is legal but unlikely to be what was meant."""
 
 
 class SimulationDiverged(Crawler2dError, RuntimeError):

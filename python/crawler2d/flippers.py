@@ -21,6 +21,11 @@ class Flippers(Parameters):
     turns the arm to the commanded angle, as fast as its rate and its torque allow, and acts back on
     the chassis. Arms do not touch the chassis or each other. `Drive.gait` moves them.
 
+    The mass figures of a `Robot` are those of the whole robot, arms included. `Robot.with_flippers`
+    mounts arms on a robot and counts their masses, `Robot.without_flippers` takes both off again;
+    the field `robot.flippers` alone, set to other arms or to None, leaves the whole as heavy as it
+    was.
+
     Parameters
     ----------
     length : float

@@ -107,7 +107,8 @@ class Robot(Parameters):
     belly : array_like, shape (n, 2), optional
         [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
     flippers : Flippers, optional
-        Pivoting arms.
+        Pivoting arms; None: none. The field alone changes no mass: see `with_flippers` and
+        `without_flippers`.
     track : Track
         The model of the track.
     """
@@ -141,6 +142,63 @@ class Robot(Parameters):
             A copy; nothing else changes.
         """
         return replace(self, track=track)
+
+    def with_flippers(self, flippers: Flippers) -> Robot:
+        """Mount arms: mass, centre of mass and moment of inertia count them from then on.
+
+        Parameters
+        ----------
+        flippers : Flippers
+            The arms, in place of those that the robot may have.
+
+        Returns
+        -------
+        Robot
+            A copy with the arms; they count as rods at angle 0, evenly spread from pivot to tip.
+
+        Raises
+        ------
+        ScenarioError
+            If the figures of the arms cannot be counted.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> bare = c2d.robots.engineer(flippers=None)
+        >>> arms = c2d.Flippers(
+        ...     length=0.34, root_radius=0.064, tip_radius=0.037, mass=0.775, torque_limit=30.0
+        ... )
+        >>> bare.mass, bare.with_flippers(arms).mass
+        (21.2, 22.75)
+        """
+        return replace(_plus_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
+
+    def without_flippers(self) -> Robot:
+        """Take the arms off, with their mass: the robot as its builder would have it without them.
+
+        Setting `flippers` to None leaves mass, centre of mass and moment of inertia as they are:
+        the chassis then weighs what the arms weighed, and where the whole robot had it.
+
+        Returns
+        -------
+        Robot
+            A copy without arms, less what they count as in `with_flippers`.
+
+        Raises
+        ------
+        ScenarioError
+            If the arms leave no chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.absolem()
+        >>> round(robot.mass, 2), round(robot.without_flippers().mass, 2)
+        (38.7, 35.7)
+        """
+        if self.flippers is None:
+            return self
+        return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
 
     def wheels(self) -> Table:
         """List the wheels of the track model, those of both sides as one.
@@ -260,6 +318,29 @@ class Robot(Parameters):
             ),
         )
         return robot if track is None else robot.with_track(track)
+
+
+def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
+    """Count the masses of arms, as rods at angle 0, to those of a robot: +1 adds, -1 takes out."""
+    length = real_number(flippers.length, "robot.flippers.length")
+    pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
+    reach = 0.5 * robot.outline.axle_distance + 0.5 * length
+    places = {"front": (reach,), "rear": (-reach,), "both": (reach, -reach)}
+    if flippers.ends not in places:
+        rule = f"must be one of {', '.join(places)}"
+        raise ScenarioError("robot.flippers.ends", flippers.ends, rule)
+    ends = places[flippers.ends]
+    mass = robot.mass + pair * len(ends)
+    if not mass > 0.0:
+        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave a chassis")
+    x, y = robot.center_of_mass
+    center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
+    inertia = robot.moment_of_inertia
+    inertia += robot.mass * ((x - center[0]) ** 2 + (y - center[1]) ** 2)
+    for place in ends:
+        inertia += pair * length**2 / 12.0
+        inertia += pair * ((place - center[0]) ** 2 + center[1] ** 2)
+    return replace(robot, mass=mass, center_of_mass=center, moment_of_inertia=inertia)
 
 
 def _size(value: float, name: str) -> float:

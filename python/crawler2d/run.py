@@ -66,8 +66,8 @@ class Run:
     `final_x`, `final_y`     m      last position of the chassis frame
     `final_angle`            rad    last chassis angle
     `distance`               m      final x less that of the start
-    `track_distance`         m      how far the track surface has run: what odometry with the
-                                    circumscribed radius reads
+    `track_distance`         m      how far the track surface has run: of wheels what odometry with
+                                    the circumscribed radius reads, of belts the way of the belt
     `path_length`            m      how far the chassis frame has truly gone, along its own axis
     `max_angle`,             rad    of the chassis
     `min_angle`
@@ -89,8 +89,11 @@ class Run:
                                     hundredths of a pitch are the play of the teeth
     =======================  =====  ===============================================================
 
-    The track distance exceeds the path length by the slip; on gear wheels also because these roll
-    on less than their circumscribed circle.
+    On level ground the track distance exceeds the path length by the slip; on gear wheels also
+    because these roll on less than their circumscribed circle. On uneven ground the two differ
+    without slip, too: the track runs less where the nose comes down over a crest, and more in a
+    hollow. A belt with grousers reads less than its way over ridges: where it stands on its ends,
+    the tips are faster than the belt.
 
     The events, in order of their start. One of the kind "stop" is a span without progress although
     commanded; one of the kind "intrusion" is a span in which an edge was deeper than

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, Literal
@@ -11,7 +12,7 @@ from typing import Any, ClassVar, Literal
 from crawler2d import _core
 from crawler2d._json import Parameters, from_plain, to_plain
 from crawler2d._paths import replace_path
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.gaits import Gait
 from crawler2d.robot import Robot
 from crawler2d.terrain import Terrain
@@ -246,10 +247,22 @@ class Scenario(Parameters):
         ------
         ScenarioError
             If a path names no field; the message lists the fields and the nearest name.
+
+        Warns
+        -----
+        ScenarioWarning
+            If the flippers are taken off a robot and their mass stays on it.
         """
         variant = self
         for path, value in fields.items():
             variant = replace_path(variant, path, value)
+        if _leaves_mass_of_arms(self.robot, variant.robot):
+            message = (
+                "robot.flippers = None takes the flippers off and leaves their mass on the robot;"
+                " to take it off, too, replace or sweep the whole robot:"
+                ' {"robot": robot.without_flippers()}'
+            )
+            warnings.warn(message, ScenarioWarning, stacklevel=2)
         return variant
 
     def to_json(self, *, indent: int | None = None) -> str:
@@ -318,3 +331,12 @@ class Scenario(Parameters):
             If the scenario is not valid.
         """
         return _core.identity(self.to_json())
+
+
+def _leaves_mass_of_arms(before: Robot, after: Robot) -> bool:
+    """Whether arms went from a robot whose masses are still those of the whole."""
+    if not (isinstance(before, Robot) and isinstance(after, Robot)):
+        return False  # for the validator to refuse
+    names = ("mass", "center_of_mass", "moment_of_inertia")
+    masses = [[getattr(robot, name) for name in names] for robot in (before, after)]
+    return before.flippers is not None and after.flippers is None and masses[0] == masses[1]

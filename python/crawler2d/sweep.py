@@ -50,7 +50,9 @@ def sweep(
         From each dotted path to its values, set in this order: ``{"terrain.height": [0.05, 0.1]}``.
         A mapping of values gives them labels: ``{"robot.track": {"belt": BeltTrack()}}``; objects
         without are labelled by their short text. A tuple of paths sweeps them together, and takes
-        tuples of values.
+        tuples of values. Whole robots are swept as ``{"robot": {"name": robot}}``: flippers and no
+        flippers so, with `Robot.without_flippers`, for ``robot.flippers`` set to None leaves their
+        mass on the robot.
     repeats : int
         Runs a cell, 1 to 1,000,000.
     seed : int
@@ -97,6 +99,11 @@ def sweep(
         On Ctrl-C; its `runs` keeps what was finished.
     ImportError
         If xarray is missing; the message names the extra to install.
+
+    Warns
+    -----
+    ScenarioWarning
+        If a cell takes the flippers off a robot and leaves their mass on it.
 
     Notes
     -----

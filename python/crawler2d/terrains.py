@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
+from crawler2d._arrays import real_number
 from crawler2d.terrain import (
     Barrier,
     DiagonalBarrier,
@@ -78,7 +80,12 @@ def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Ba
 
 
 def stepfield_with_barrier(
-    seed: int = 0, *, height: float = 0.1, thickness: float = 0.1, yaw: float = 0.0, **fields: Any
+    seed: int = 0,
+    *,
+    height: float | None = None,
+    thickness: float = 0.1,
+    yaw: float = 0.0,
+    **fields: Any,
 ) -> RandomStepfield:
     """Make a random step field with a barrier across its middle.
 
@@ -86,7 +93,10 @@ def stepfield_with_barrier(
     ----------
     seed : int
         Of the heights of the posts.
-    height, thickness : float
+    height : float, optional
+        [m] Of the barrier. None stands it half as high again as the highest post can be, 0.15 m
+        in the default field.
+    thickness : float
         [m] Of the barrier.
     yaw : float
         [rad] Turn of the barrier about the vertical, as that of a `DiagonalBarrier`.
@@ -98,14 +108,29 @@ def stepfield_with_barrier(
     RandomStepfield
         The terrain.
 
+    Raises
+    ------
+    ScenarioError
+        If the barrier's height is to follow from posts of no numbers.
+
+    Notes
+    -----
+    "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer" drives over such
+    fields (its Table 2) without their measures. Its Figures 18 and 19 have barriers of 0.10 and
+    0.20 m; 0.15 m is the middle, and the highest obstacle of its line of wheels (Table 3). The
+    thickness is an estimate: that of a post.
+
     Examples
     --------
     >>> stepfield_with_barrier(7, yaw=0.5).barrier_height
-    0.1
+    0.15
     """
-    return RandomStepfield(
-        seed, barrier_height=height, barrier_thickness=thickness, barrier_yaw=yaw, **fields
-    )
+    field = RandomStepfield(seed, barrier_thickness=thickness, barrier_yaw=yaw, **fields)
+    if height is None:
+        rise = real_number(field.rise, "terrain.rise")
+        highest = rise * real_number(field.levels, "terrain.levels")
+        height = round(1.5 * highest, 9)  # to the nanometre: 0.15 is 0.15
+    return replace(field, barrier_height=height)
 
 
 def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:

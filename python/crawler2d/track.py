@@ -1,4 +1,8 @@
-"""How a track is modelled: one class a family of the literature, one robot behind them."""
+"""How a track is modelled: one class a family of the literature, one robot behind them.
+
+The paper, whose figures and sections are named here, is "Gear Wheels based Simulation of Crawlers
+for Mobile Robot Servosila Engineer".
+"""
 
 from __future__ import annotations
 

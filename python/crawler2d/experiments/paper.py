@@ -1,5 +1,6 @@
 """The tables of the paper that introduced gear wheels, to be printed beside ours.
 
+The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer".
 Nothing here enters a simulation.
 """
 
