@@ -3,7 +3,6 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::cancel::Cancel;
@@ -33,6 +32,8 @@ struct Work {
     budget: Budget,
     next: AtomicUsize,
     done: AtomicUsize,
+    /// Threads that have ended.
+    ended: AtomicUsize,
     cancel: Cancel,
     slots: Vec<Mutex<Slot>>,
 }
@@ -60,17 +61,18 @@ pub fn simulate_many(
     let work = Arc::new(Work {
         next: AtomicUsize::new(0),
         done: AtomicUsize::new(0),
+        ended: AtomicUsize::new(0),
         cancel: Cancel::default(),
         slots: scenarios.iter().map(|_| Mutex::new(None)).collect(),
         scenarios,
         record,
         budget,
     });
-    let workers = start(&work, threads);
-    if workers.is_empty() {
+    let started = start(&work, threads);
+    if started == 0 {
         work.run_all();
     }
-    while !workers.iter().all(JoinHandle::is_finished) {
+    while work.ended.load(Ordering::Acquire) < started {
         if watch(work.done.load(Ordering::Acquire)) == Progress::Stop {
             work.cancel.ask();
             break;
@@ -85,8 +87,9 @@ pub fn simulate_many(
     Ok(taken.collect())
 }
 
-/// As many threads as the system gives; none does no harm, for the calling thread can work, too.
-fn start(work: &Arc<Work>, threads: usize) -> Vec<JoinHandle<()>> {
+/// Starts as many threads as the system gives, and says how many; none does no harm, for the calling thread can
+/// work, too.
+fn start(work: &Arc<Work>, threads: usize) -> usize {
     let caller = std::thread::current();
     let spawn = |_| {
         let (work, caller) = (Arc::clone(work), caller.clone());
@@ -94,11 +97,12 @@ fn start(work: &Arc<Work>, threads: usize) -> Vec<JoinHandle<()>> {
         thread
             .spawn(move || {
                 work.run_all();
+                work.ended.fetch_add(1, Ordering::Release);
                 caller.unpark();
             })
             .ok()
     };
-    (0..threads).map_while(spawn).collect()
+    (0..threads).map_while(spawn).count()
 }
 
 impl Work {
@@ -131,4 +135,19 @@ pub fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
             "the core failed: {text}; please report this with the scenario"
         )))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_with_its_text() {
+        let failed: Result<(), Error> = caught(|| panic!("wheel {} came off", 3));
+        let Err(Error::Internal(message)) = failed else {
+            panic!("{failed:?}")
+        };
+        assert!(message.contains("wheel 3 came off"), "{message}");
+        assert!(caught(|| Ok(1)).is_ok_and(|one| one == 1));
+    }
 }
