@@ -8,6 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
+from crawler2d._plan import plan_runs
 from crawler2d.draws import Variation, scaled, uniform, uniform_numbers
 from crawler2d.scenario import Scenario
 
@@ -17,9 +18,9 @@ DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.
 def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...] = ()) -> Any:
     """The default draws of 200 repeats, shape (200,) by path."""
     variation = Variation.of(base or cell, None, swept)
-    numbers = {path: uniform_numbers(path, 0, 200).tolist() for path in variation.distributions}
-    rows = [variation.draw(cell, {p: n[i] for p, n in numbers.items()}) for i in range(200)]
-    return {path: np.array([row[path] for row in rows]) for path in rows[0]}
+    plans = plan_runs(cell, [], variation, repeats=200, seed=0)
+    assert all(plan.refused is None for plan in plans)
+    return {path: np.array([plan.drawn[path] for plan in plans]) for path in plans[0].drawn}
 
 
 def test_a_uniform_value_lies_between_its_bounds_and_does_not_know_the_scenario() -> None:

@@ -58,6 +58,55 @@ def test_any_dimension_can_be_counted_over() -> None:
     assert found["count"].values.tolist() == [2, 2, 1, 2]
 
 
+def test_several_dimensions_can_be_counted_over() -> None:
+    found = rate(TABLE, dim=["height", "repeat"])
+    assert found.sizes == {}
+    assert found["count"].item() == 7
+    assert found["rate"].item() == 3 / 7
+    assert rate(TABLE, dim=("repeat", "height")).identical(found)
+    assert rate(TABLE, dim=iter(["repeat"])).identical(rate(TABLE))
+    alone = rate(TABLE, dim=[])
+    assert alone["count"].equals(TABLE["outcome"].isin([str(o) for o in c2d.Outcome]).astype(int))
+
+
+@pytest.mark.parametrize("missing", [np.nan, None, "", "not made"])
+def test_runs_that_were_never_made_are_not_counted(missing: Any) -> None:
+    table = TABLE.astype(object)
+    table["outcome"][0, 2:] = missing
+    found = rate(table, "cleared")
+    assert found["count"].values.tolist() == [2, 3, 0]
+    assert found["rate"].values[:2].tolist() == [1.0, 1 / 3]
+    assert rate(table, "stopped")["rate"].values[:2].tolist() == [0.0, 1 / 3]
+
+
+POSES = {
+    "final_x": [[0.0, 0.0004, 0.0006, 1.0], [0.0, 0.0, 0.0, 0.0], [np.nan] * 4],
+    "final_y": [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0016, 0.0, 0.0], [np.nan] * 4],
+    "final_angle": [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 5.0, np.radians(0.06)], [np.nan] * 4],
+}
+
+
+def test_distinct_poses_are_those_of_the_runs_that_are_counted() -> None:
+    posed = TABLE.assign({name: (("height", "repeat"), rows) for name, rows in POSES.items()})
+    found = rate(posed)["distinct"]
+    # In the second cell the run with an angle of its own diverged; in the third all were refused.
+    assert found.values.tolist() == [3, 3, 0]
+    assert found.attrs == {"units": "1", "long_name": "number of distinct final poses"}
+    assert rate(posed, dim=["repeat", "height"])["distinct"].item() == 5
+    assert rate(posed, dim="height")["distinct"].values.tolist() == [1, 2, 1, 2]
+    assert "distinct" not in rate(posed.drop_vars("final_y"))
+    assert "distinct" not in rate(["cleared"])
+
+
+@pytest.mark.parametrize("name", ["rate", "low", "high", "count"])
+def test_a_dimension_called_as_a_result_is_refused_by_name(name: str) -> None:
+    table = TABLE.rename(height=name)
+    with pytest.raises(c2d.ScenarioError, match="rename it") as caught:
+        rate(table)
+    assert (caught.value.path, caught.value.value) == ("table", name)
+    assert rate(table, dim=name)["count"].dims == ("repeat",)
+
+
 def test_a_list_of_outcomes_has_a_rate() -> None:
     outcomes = [c2d.Outcome.CLEARED, "seized", None, "cleared"]
     found = rate(outcomes)
@@ -79,6 +128,8 @@ def test_no_outcomes_have_no_rate() -> None:
         ((TABLE, "diverged"), "outcome", "detracked, tipped_over"),
         ((TABLE, None), "outcome", "detracked, tipped_over"),
         ((TABLE, "cleared", "repeats"), "dim", "did you mean repeat?"),
+        ((TABLE, "cleared", ["repeat", "hight"]), "dim", "did you mean height?"),
+        ((TABLE, "cleared", 3), "dim", "must be one of height, repeat"),
         ((xr.Dataset({"time": 1.0}),), "table", "must be one of time"),
         ((TABLE, "stoped"), "outcome", "did you mean stopped?"),
         ((["cleared", "siezed"],), "outcomes[1]", "did you mean seized?"),

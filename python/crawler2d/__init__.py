@@ -15,7 +15,7 @@ from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
 from crawler2d.compare import compare
 from crawler2d.diagnosis import Diagnosis, Mechanism
-from crawler2d.draws import scaled, uniform
+from crawler2d.draws import scaled, uniform, uniform_int
 from crawler2d.errors import (
     BatchInterrupted,
     Crawler2dError,
@@ -90,6 +90,7 @@ __all__ = [
     "sweep",
     "terrains",
     "uniform",
+    "uniform_int",
     "wilson",
 ]
 
