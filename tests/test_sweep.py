@@ -397,7 +397,10 @@ def test_ctrl_c_keeps_the_finished_runs() -> None:
             quiet(long, over, threads=2)
     finally:
         timer.cancel()
-    assert [run is not None for run in caught.value.runs] == [True, True, False, False]
+    runs = caught.value.runs
+    assert [run.outcome is not None for run in runs] == [True, True, False, False]
+    assert [run.scenario.duration for run in runs] == [0.1, 0.1, 10_000.0, 10_000.0]
+    assert runs[2].scenario != runs[3].scenario  # with its draws
 
 
 def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,6 +21,7 @@ from crawler2d.errors import (
     Crawler2dError,
     InternalError,
     LimitError,
+    RunUnfinished,
     ScenarioError,
     SimulationDiverged,
 )
@@ -69,6 +70,7 @@ __all__ = [
     "Robot",
     "RoundWheel",
     "Run",
+    "RunUnfinished",
     "Scenario",
     "ScenarioError",
     "SegmentalTrack",

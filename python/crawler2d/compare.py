@@ -86,7 +86,7 @@ def compare(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     BatchInterrupted
-        On Ctrl-C; its `runs` keeps what was finished, model by model.
+        On Ctrl-C; its `runs`, model by model, keeps what was finished, and the other scenarios.
     ImportError
         If xarray is missing; the message names the extra to install.
 

@@ -98,7 +98,7 @@ def sweep(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     BatchInterrupted
-        On Ctrl-C; its `runs` keeps what was finished, cell by cell.
+        On Ctrl-C; its `runs`, cell by cell, keeps what was finished, and the other scenarios.
     ImportError
         If xarray is missing; the message names the extra to install.
 
