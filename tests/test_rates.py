@@ -1,5 +1,6 @@
 """Rates of outcomes: counted over a dimension, or of a plain list."""
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,10 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
         expected = c2d.wilson(successes, count)
         assert (cell.rate, cell.low, cell.high) == pytest.approx(tuple(expected), nan_ok=True)
     assert found["height"].attrs == {"units": "m"}
-    assert found["rate"].attrs == {"units": "1", "long_name": "rate of cleared"}
+    assert found.attrs == {"outcome": "cleared", "confidence": 0.95}
+    spoken = {"rate": "rate of cleared", "low": "lower bound", "high": "upper bound"}
+    for name, long_name in {**spoken, "count": "number of runs"}.items():
+        assert found[name].attrs == {"units": "1", "long_name": long_name}
 
 
 def test_any_outcome_can_be_counted() -> None:
@@ -94,16 +98,33 @@ def test_distinct_poses_are_those_of_the_runs_that_are_counted() -> None:
     assert found.attrs == {"units": "1", "long_name": "number of distinct final poses"}
     assert rate(posed, dim=["repeat", "height"])["distinct"].item() == 5
     assert rate(posed, dim="height")["distinct"].values.tolist() == [1, 2, 1, 2]
-    assert "distinct" not in rate(posed.drop_vars("final_y"))
+    for name in POSES:
+        assert "distinct" not in rate(posed.drop_vars(name))
     assert "distinct" not in rate(["cleared"])
+
+
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [("final_x", 1e-3), ("final_y", 1e-3), ("final_angle", np.radians(0.1))],
+)
+def test_poses_are_told_apart_in_steps_of_1_mm_and_a_tenth_of_a_degree(
+    name: str, step: float
+) -> None:
+    poses = {"final_x": 0.0, "final_y": 0.0, "final_angle": 0.0}
+    # The last two lie on either side of the middle between two steps.
+    for places, count in [([99.51, 100.49], 1), ([100.49, 100.51], 2), ([99.49, 99.51], 2)]:
+        rows = {key: ("repeat", [0.0, 0.0]) for key in poses}
+        rows[name] = ("repeat", [place * step for place in places])
+        table = xr.Dataset({"outcome": ("repeat", ["cleared", "seized"]), **rows})
+        assert rate(table)["distinct"].item() == count
 
 
 @pytest.mark.parametrize("name", ["rate", "low", "high", "count"])
 def test_a_dimension_called_as_a_result_is_refused_by_name(name: str) -> None:
     table = TABLE.rename(height=name)
-    with pytest.raises(c2d.ScenarioError, match="rename it") as caught:
+    rule = f"table must have no other dimension or coordinate of that name: rename it, got {name}"
+    with pytest.raises(c2d.ScenarioError, match=f"^{rule}$"):
         rate(table)
-    assert (caught.value.path, caught.value.value) == ("table", name)
     assert rate(table, dim=name)["count"].dims == ("repeat",)
 
 
@@ -144,3 +165,11 @@ def test_an_unknown_name_is_refused_with_the_nearest(
         rate(*arguments)
     assert caught.value.path == path
     assert hint in caught.value.rule
+    # A hint is the end of the rule, and so is the last of the names where there is none.
+    assert caught.value.rule.endswith(("?)", "timed_out, stopped", "timed_out", "repeat", "time"))
+
+
+def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]$"):
+        rate(["cleared"])
