@@ -10,6 +10,9 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
+from crawler2d._axes import COLUMNS
+from crawler2d._units import METRICS
+from crawler2d.rates import rate
 from crawler2d.scenario import Scenario
 from crawler2d.sweep import sweep
 
@@ -97,12 +100,63 @@ def test_paths_that_end_alike_are_named_in_full() -> None:
     assert quiet(ramp, pairs)["outcome"].dims == ("angle", "goal", "repeat")
 
 
+def test_elements_are_axes_with_names_that_python_can_spell() -> None:
+    driven = BASE.replace({"drive.schedule": [(1.0, 0.2), (2.0, 0.3)]})
+    over = {
+        "robot.center_of_mass[0]": [-0.05, 0.05],
+        ("drive.schedule[0][1]", "drive.schedule[1][1]"): [(0.1, 0.2), (0.2, 0.3)],
+    }
+    found = quiet(driven, over)
+    assert found["outcome"].dims == ("center_of_mass_0", "schedule_0_1_schedule_1_1", "repeat")
+    assert all(str(name).isidentifier() for name in found.variables)
+    assert found["center_of_mass_0"].attrs == {
+        "path": "robot.center_of_mass[0]",
+        "units": "m",
+        "long_name": "center of mass[0]",
+    }
+    assert found["schedule_1_1"].values.tolist() == [0.2, 0.3]
+    assert found["schedule_1_1"].attrs["units"] == "m/s"
+    text = found["scenario"].values[1, 0, 0]
+    assert json.loads(text)["robot"]["center_of_mass"] == [0.05, 0.02]
+    assert json.loads(text)["drive"]["schedule"] == [[1.0, 0.1], [2.0, 0.2]]
+
+
+def test_an_element_and_a_field_that_are_called_alike_are_named_in_full() -> None:
+    belly = {"robot.belly[0][0]": [-0.1], "robot.belly[1][0]": [0.1]}
+    assert quiet(BASE, belly)["outcome"].dims == ("belly_0_0", "belly_1_0", "repeat")
+    lanes = VARIANTS["belt-lanes"].replace(
+        {f"terrain.{side}": VARIANTS["belt-points"].terrain for side in ("left", "right", "middle")}
+    )
+    ends = {"terrain.left.points[3][1]": [0.05], "terrain.right.points[3][1]": [0.05]}
+    assert quiet(lanes.replace({"duration": 0.0}), ends)["outcome"].dims == (
+        "terrain_left_points_3_1",
+        "terrain_right_points_3_1",
+        "repeat",
+    )
+
+
+def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> None:
+    table = sweep(BASE, {}, repeats=2, counterfactual=True, wall_time=True, vary={}, progress=False)
+    assert {*METRICS, *COLUMNS} >= {*map(str, table.variables), *map(str, rate(table).variables)}
+    wheels = BASE.replace({"robot.track": c2d.LineOfWheels(3)})
+    found = quiet(wheels, {"robot.track.count": [3, 5]})
+    assert found["outcome"].dims == ("robot_track_count", "repeat")
+    assert rate(found)["count"].dims == ("robot_track_count",)
+    assert rate(found)["count"].sel(robot_track_count=5).item() == 2
+    field = BASE.replace({"terrain": c2d.terrains.random_stepfield(0)})
+    assert quiet(field, {"terrain.seed": [3, 4]})["outcome"].dims == ("terrain_seed", "repeat")
+    together = {("robot.track.count", "duration"): [(3, 0.0), (5, 0.1)]}
+    paired = quiet(wheels, together)
+    assert paired["outcome"].dims == ("count_duration", "repeat")
+    assert paired["robot_track_count"].values.tolist() == [3, 5]
+    assert rate(paired)["robot_track_count"].values.tolist() == [3, 5]
+
+
 @pytest.mark.parametrize(
     ("over", "path", "hint"),
     [
         (None, "over", "mapping"),
         ([("terrain.height", [0.1])], "over", "mapping"),
-        ({}, "over", "at least one path"),
         ({3: [0.1]}, "over", "dotted paths"),
         ({(): [0.1]}, "over", "dotted paths"),
         ({("terrain.height", 3): [(0.1, 0.1)]}, "over", "dotted paths"),
@@ -128,6 +182,11 @@ def test_paths_that_end_alike_are_named_in_full() -> None:
             {"robot.track.count": [3], "robot.track": [c2d.LineOfWheels(5)]},
             "over",
             "before robot.track.count",
+        ),
+        (
+            {"robot.center_of_mass[0]": [0.1], "robot.center_of_mass": {"low": (0.0, 0.0)}},
+            "over",
+            "before robot.center_of_mass[0]",
         ),
     ],
 )

@@ -36,8 +36,7 @@ def test_the_models_run_as_in_a_sweep(found: xr.Dataset) -> None:
     over = {"robot.track": MODELS}
     table = sweep(BASE, over, repeats=REPEATS, vary=VARY, progress=False).rename(track="model")
     for name in table.data_vars:
-        if name != "wall_time":
-            assert found[name].equals(table[name]), name
+        assert found[name].equals(table[name]), name
     assert found.attrs["reference"] == "belt"
     assert found.attrs["scenario"] == BASE.to_json()
 
@@ -120,6 +119,42 @@ def test_models_in_a_sequence_are_labelled_in_short() -> None:
     assert quiet(counts, repeats=1, reference=5).attrs["reference"] == 5
 
 
+def test_fields_are_compared_as_models_are() -> None:
+    heavy = {"robot.mass": 30.0, "robot.center_of_mass[0]": -0.05}
+    step = c2d.Solver(time_step=5e-4)
+    other = c2d.robots.absolem(flippers=None)
+    models = {
+        "as it is": {},
+        "heavy": heavy,
+        "fine": step,
+        "other": other,
+        "skids": c2d.ForceTrack(),
+    }
+    pair = quiet(models, repeats=2, vary=VARY)
+    assert pair["model"].values.tolist() == list(models)
+    assert pair["rate"].dims == ("model",)
+    first = Scenario.from_json(pair["scenario"].values[0, 0])
+    draws = {path: pair[f"drawn_{path.rpartition('.')[2]}"].values[0, 0] for path in VARY}
+    assert first == BASE.replace(draws)
+    replaced: dict[str, Any] = {
+        "heavy": heavy,
+        "fine": {"solver": step},
+        "other": {"robot": other},
+        "skids": {"robot.track": c2d.ForceTrack()},
+    }
+    for label, fields in replaced.items():
+        text = pair["scenario"].sel(model=label).values[0]
+        assert Scenario.from_json(text) == first.replace(fields)
+
+
+def test_what_models_replace_is_told_of_their_axis() -> None:
+    models = [{"robot.mass": 20.0}, {"robot.mass": 22.0, "gravity": 9.0}]
+    pair = quiet(models, repeats=1, vary={})
+    assert pair["model"].attrs["path"] == "robot.mass, gravity"
+    assert pair["mass"].values.tolist() == [20.0, 22.0]
+    assert "gravity" not in pair  # the first model leaves it as it is
+
+
 @pytest.mark.parametrize(
     ("models", "options", "path"),
     [
@@ -132,7 +167,16 @@ def test_models_in_a_sequence_are_labelled_in_short() -> None:
         (MODELS, {"repeats": 0}, "repeats"),
         (MODELS, {"seed": -1}, "seed"),
         (MODELS, {"vary": {"robot.track": 3}}, "vary['robot.track']"),
-        ({**MODELS, "wall": "brick"}, {}, "cell[model=wall].robot.track"),
+        ({**MODELS, "wall": "brick"}, {}, "models['wall']"),
+        ({"robot.mass": [20.0, 22.0], "robot.gauge": [0.2, 0.3]}, {}, "models['robot.mass']"),
+        ({**MODELS, "all": BASE}, {}, "models['all']"),
+        ({**MODELS, "heavy": {"robot.mas": 30.0}}, {}, "cell[model=heavy].robot.mas"),
+        ({**MODELS, "heavy": {3: 30.0}}, {}, "cell[model=heavy].path"),
+        (
+            {"a": {}, "b": {"terrain.friction": 0.5}},
+            {"vary": {"terrain.friction": uniform(0.4, 0.6)}},
+            "vary['terrain.friction']",
+        ),
         ({**MODELS, "one": c2d.LineOfWheels(1)}, {}, "cell[model=one].robot.track.count"),
     ],
 )

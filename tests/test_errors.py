@@ -12,6 +12,7 @@ EXAMPLES = [
     errors.ScenarioError("robot.mass", -1.0, "must be > 0 kg"),
     errors.SimulationDiverged("chassis is not finite", step=7, body="chassis"),
     errors.SimulationDiverged("unknown place"),
+    errors.RunUnfinished("interrupted"),
     errors.LimitError("too many"),
     errors.InternalError("a fault"),
 ]
@@ -27,16 +28,20 @@ def test_an_error_survives_pickling_with_text_and_attributes(error: Exception) -
 
 
 def test_an_interrupt_survives_pickling_with_its_runs(run: c2d.Run) -> None:
-    copy = pickle.loads(pickle.dumps(c2d.BatchInterrupted([run, None])))
-    assert str(copy) == "interrupted after 1 of 2 runs; .runs keeps them"
+    refused = c2d.Run(run.scenario, {}, errors.ScenarioError("gravity", -1.0, "must be > 0 m/s^2"))
+    rest = c2d.Run(run.scenario, {}, c2d.RunUnfinished("interrupted"))
+    copy = pickle.loads(pickle.dumps(c2d.BatchInterrupted([run, rest, refused])))
+    assert str(copy) == "interrupted after 2 of 3 runs; .runs keeps them"
     assert copy.runs[0].outcome == run.outcome
-    assert copy.runs[1] is None
+    assert copy.runs[1].scenario == run.scenario
+    assert isinstance(copy.runs[1].error, c2d.RunUnfinished)
 
 
 def test_every_error_is_in_the_tree_and_is_what_python_calls_it() -> None:
     kinds: dict[type[Exception], type[Exception]] = {
         errors.ScenarioError: ValueError,
         errors.SimulationDiverged: RuntimeError,
+        errors.RunUnfinished: RuntimeError,
         errors.LimitError: ValueError,
         errors.InternalError: RuntimeError,
     }

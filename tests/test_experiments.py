@@ -74,7 +74,10 @@ def table() -> xr.Dataset:
             "mechanism": (dims, mechanisms),
             "cause": (dims, causes),
             **{name: (dims, values) for name, values in figures.items()},
-            "distinct_poses": (dims[:2], np.full((2, 4), 3)),
+            # Three poses of each cell: 1.2 mm apart, in metres.
+            "final_x": (dims, zero + 1.2e-3 * (np.arange(10) % 3)),
+            "final_y": (dims, zero),
+            "final_angle": (dims, zero),
         },
         coords={"track": ["first", "second"], "height": [0.02, 0.04, 0.06, 0.08]},
         attrs={"scenario": Scenario(ROBOT, c2d.terrains.step(0.05)).to_json()},

@@ -27,9 +27,12 @@ try:
 except c2d.BatchInterrupted as interrupt:
     now = time.monotonic()
     runs = interrupt.runs
-    kept = [run is not None for run in runs]
+    kept = [run.outcome is not None for run in runs]
     again = c2d.simulate(scenarios[0], record="summary").metrics == runs[0].metrics
-    print(now, len(runs), sum(kept), all(kept[:3]), again, flush=True)
+    known = [run.scenario for run in runs] == scenarios
+    rest = [type(run.error).__name__ for run in runs if run.outcome is None]
+    told = f"after {sum(kept)} of {len(runs)} runs" in str(interrupt)
+    print(now, len(runs), sum(kept), all(kept[:3]), again, known, told, *set(rest), flush=True)
 """
 
 RUN = """
@@ -106,14 +109,15 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to a 
 
 def check_batch(delay: float) -> float:
     """Interrupt a batch `delay` seconds after its third run; return the latency [s]."""
-    latency, (total, kept, first_three, repeats) = interrupted(BATCH, delay)
+    latency, (total, kept, *facts, unfinished) = interrupted(BATCH, delay)
     assert latency < SLACK
-    assert (total, first_three, repeats) == ("23", "True", "True")
+    assert (total, unfinished) == ("23", "RunUnfinished")
+    assert facts == ["True"] * 4
     assert int(kept) >= 3
     return latency
 
 
-def test_a_batch_answers_ctrl_c_and_keeps_the_finished_runs(say: Say) -> None:
+def test_a_batch_answers_ctrl_c_and_keeps_the_finished_runs_and_all_scenarios(say: Say) -> None:
     say(f"a batch answered Ctrl-C after {1000 * check_batch(0.1):.0f} ms")
 
 

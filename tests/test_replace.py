@@ -1,11 +1,15 @@
 """Variants by dotted path."""
 
 import dataclasses
+import json
+from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
+from crawler2d._paths import read_path
 from crawler2d.scenario import Scenario
 
 
@@ -27,6 +31,66 @@ def test_paths_are_replaced_in_order() -> None:
 def test_a_path_reaches_into_lanes() -> None:
     scenario = VARIANTS["belt-lanes"].replace({"terrain.left.height": 0.1})
     assert scenario.to_json().count('"height":0.1') == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "value", "whole", "expected"),
+    [
+        ("belt-step", "robot.center_of_mass[0]", -0.05, "robot.center_of_mass", (-0.05, 0.02)),
+        ("belt-step", "robot.center_of_mass[1]", 0, "robot.center_of_mass", (0.0, 0.0)),
+        (
+            "belt-points",
+            "terrain.points[3]",
+            np.array([4.0, 0.06]),
+            "terrain.points",
+            ((-3.0, 0.0), (0.0, 0.0), (0.0, 0.05), (4.0, 0.06)),
+        ),
+        (
+            "belt-points",
+            "terrain.points[2][1]",
+            np.float32(0.5),
+            "terrain.points",
+            ((-3.0, 0.0), (0.0, 0.0), (0.0, 0.5), (3.0, 0.05)),
+        ),
+        ("flippers-climb", "drive.schedule[0][1]", 0.3, "drive.schedule", ((1.0, 0.3), (2.0, 0.4))),
+        (
+            "hybrid-gap",
+            "robot.track.placements[1][2]",
+            0.03,
+            "robot.track.placements",
+            ((-0.1875, 0.0, 0.0625), (0.0, -0.03125, 0.03), (0.1875, 0.0, 0.0625)),
+        ),
+        ("flippers-hold", "drive.gait.schedule[0][1]", 0.1, "drive.gait.schedule", ((0.5, 0.1),)),
+    ],
+)
+def test_an_index_replaces_one_element_and_nothing_else(
+    name: str, path: str, value: Any, whole: str, expected: Any
+) -> None:
+    scenario = VARIANTS[name]
+    variant = scenario.replace({path: value})
+    assert variant == scenario.replace({whole: expected})
+    assert variant != scenario
+    assert read_path(variant, whole) == expected
+
+
+def test_every_number_of_every_scenario_has_a_path_that_replaces_it() -> None:
+    def paths(node: Any, path: str = "") -> Any:
+        if isinstance(node, dict):
+            for key, value in node.items():
+                if key != "kind":
+                    yield from paths(value, f"{path}.{key}".removeprefix("."))
+        elif isinstance(node, list):
+            for index, value in enumerate(node):
+                yield from paths(value, f"{path}[{index}]")
+        elif type(node) in (int, float):
+            yield path, node
+
+    for scenario in VARIANTS.values():
+        for path, number in paths(json.loads(scenario.to_json())):
+            assert read_path(scenario, path) == number
+            other = scenario.replace({path: number + 1})
+            assert read_path(other, path) == number + 1
+            assert other.replace({path: number}) == scenario
 
 
 def test_nothing_to_replace_is_the_same_scenario(scenario: Scenario) -> None:
@@ -54,13 +118,46 @@ def test_the_original_does_not_change(scenario: Scenario) -> None:
         ("robot.flippers.length", "robot.flippers = None has none"),
         ("", "a field of Scenario"),
         ("robot..mass", "a field of Robot"),
+        ("robot.center_of_mass[2]", "robot.center_of_mass has 2, counted from 0"),
+        ("robot.center_of_mass[-1]", "robot.center_of_mass has 2, counted from 0"),
+        ("robot.center_of_mass[00]", "a field of Robot"),
+        ("robot.center_of_mass[x]", "(did you mean center_of_mass?)"),
+        ("robot.center_of_mass[0", "(did you mean center_of_mass?)"),
+        ("robot.center_of_mass.x", "robot.center_of_mass = (0.0, 0.02) has none"),
+        ("robot.center_of_mass[0].x", "robot.center_of_mass[0] = 0.0 has none"),
+        ("robot.center_of_mass[0][0]", "robot.center_of_mass[0] = 0.0 has no elements"),
+        ("robot.belly[7][0]", "robot.belly has 4, counted from 0"),
+        ("robot.belly[3][2]", "robot.belly[3] has 2, counted from 0"),
+        ("robot.name[0]", "robot.name = 'engineer' has no elements"),
+        ("drive.schedule[0]", "drive.schedule = None has no elements"),
+        ("robot[0]", "robot = Robot("),
+        ("[0]", "a field of Scenario"),
+        (3, "path must be a text"),
     ],
 )
-def test_an_unknown_path_lists_the_fields_and_the_nearest(path: str, message: str) -> None:
+def test_an_unknown_path_lists_the_fields_and_the_nearest(path: Any, message: str) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         VARIANTS["line-flat"].replace({path: 1.0})
     assert message in str(caught.value)
-    assert caught.value.path == path
+    assert caught.value.path == (path if isinstance(path, str) else "path")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("terrain.points[3][1]", "high", "terrain.points[3][1] must be a number, got high"),
+        ("terrain.points[3][1]", None, "terrain.points[3][1] must be a number, got None"),
+        ("terrain.points[3]", (1.0, 2.0, 3.0), "terrain.points[3] must have shape (2,)"),
+        ("terrain.points[3]", 1.0, "terrain.points[3] must have shape (2,)"),
+        ("robot.center_of_mass[0]", True, "robot.center_of_mass[0] must be a number, got True"),
+    ],
+)
+def test_an_element_of_another_kind_is_refused_by_its_path(
+    path: str, value: Any, message: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        VARIANTS["belt-points"].replace({path: value})
+    assert str(caught.value).startswith(message)
 
 
 def test_another_track_is_the_same_robot() -> None:

@@ -1,6 +1,7 @@
 """Sweeps: every combination, the same draws in every cell, and a table that replays."""
 
 import itertools
+import json
 import os
 import signal
 import sys
@@ -14,7 +15,7 @@ import xarray as xr
 import crawler2d as c2d
 from conftest import ROBOT
 from crawler2d._units import METRICS
-from crawler2d.draws import scaled, uniform
+from crawler2d.draws import scaled, uniform, uniform_int
 from crawler2d.scenario import Scenario
 from crawler2d.sweep import sweep
 
@@ -63,7 +64,7 @@ def test_the_table_has_units_paths_and_provenance(table: xr.Dataset) -> None:
     assert {name: table[name].attrs["units"] for name in METRICS} == METRICS
     assert all("long_name" in variable.attrs for variable in table.variables.values())
     assert Scenario.from_json(table.attrs["scenario"]) == BASE
-    assert (table.attrs["seed"], table.attrs["repeats"]) == (0, 3)
+    assert (table["seed"] == 0).all()
     assert "'drive.speed': Scaled(low=0.98, high=1.02)" in table.attrs["vary"]
     assert table.attrs["build_version"] == c2d.__version__
 
@@ -123,14 +124,15 @@ def test_another_seed_draws_other_numbers() -> None:
 
 def test_nothing_varied_repeats_the_same_run() -> None:
     found = quiet(BASE, {"terrain.height": [0.03, 0.05]}, repeats=3, vary={})
-    assert found["distinct_poses"].values.tolist() == [1, 1]
-    assert found["distinct_outcomes"].values.tolist() == [1, 1]
+    assert c2d.rate(found)["distinct"].values.tolist() == [1, 1]
     assert len(set(found["identity"].values.ravel().tolist())) == 2
     assert not [name for name in found if str(name).startswith("drawn_")]
     assert found.attrs["vary"] == "{}"
 
 
-def test_distinct_outcomes_and_poses_are_counted_in_each_cell(table: xr.Dataset) -> None:
+def test_distinct_poses_are_counted_in_each_cell(table: xr.Dataset) -> None:
+    distinct = c2d.rate(table)["distinct"]
+    assert distinct.max() > 1
     for cell in itertools.product((0, 1), (0, 1)):
         at = table.isel(dict(zip(("height", "track"), cell, strict=True)))
         poses = {
@@ -139,8 +141,7 @@ def test_distinct_outcomes_and_poses_are_counted_in_each_cell(table: xr.Dataset)
                 at["final_x"].values, at["final_y"].values, at["final_angle"].values, strict=True
             )
         }
-        assert at["distinct_poses"].item() == len(poses)
-        assert at["distinct_outcomes"].item() == len(set(at["outcome"].values.tolist()))
+        assert distinct.values[cell] == len(poses)
 
 
 def test_stops_have_their_mechanism_and_others_none(table: xr.Dataset) -> None:
@@ -170,9 +171,7 @@ def test_a_tried_belt_has_its_columns() -> None:
     assert found["belt_distance"].attrs["units"] == "m"
     # Trying a belt changes nothing else.
     plain = quiet(seizing, over)
-    xr.testing.assert_identical(
-        found.drop_vars(["belt_freed", "belt_distance", "wall_time"]), plain.drop_vars("wall_time")
-    )
+    xr.testing.assert_identical(found.drop_vars(["belt_freed", "belt_distance"]), plain)
 
 
 def test_a_belt_that_was_asked_for_has_its_columns_though_nothing_stopped() -> None:
@@ -183,9 +182,17 @@ def test_a_belt_that_was_asked_for_has_its_columns_though_nothing_stopped() -> N
 
 def test_the_number_of_threads_does_not_change_the_table() -> None:
     tables = [quiet(BASE, {"robot.track": MODELS}, threads=threads) for threads in (1, 2, 3)]
-    one, *others = (found.drop_vars("wall_time") for found in tables)
-    for other in others:
-        xr.testing.assert_identical(one, other)
+    for other in tables[1:]:
+        xr.testing.assert_identical(tables[0], other)
+
+
+def test_computing_times_are_a_column_where_they_are_asked_for() -> None:
+    found = quiet(BRIEF, {"terrain.height": [0.02, -0.1]}, wall_time=True, on_error="record")
+    assert (found["wall_time"].sel(height=0.02) > 0.0).all()
+    assert found["wall_time"].sel(height=-0.1).isnull().all()
+    assert found["wall_time"].attrs["units"] == "s"
+    without = quiet(BRIEF, {"terrain.height": [0.02, -0.1]}, on_error="record")
+    xr.testing.assert_identical(found.drop_vars("wall_time"), without)
 
 
 @pytest.mark.parametrize(
@@ -194,7 +201,7 @@ def test_the_number_of_threads_does_not_change_the_table() -> None:
         ({"terrain.hight": [0.1]}, "cell[hight=0.1].terrain.hight", "did you mean height?"),
         (
             {"robot.track": MODELS, "robot.track.count": [3]},
-            "cell[track=belt, count=3].robot.track.count",
+            "cell[track=belt, robot_track_count=3].robot.track.count",
             "a field of BeltTrack",
         ),
         ({"terrain.height": [0.1, -0.1]}, "cell[height=-0.1].terrain.height", "> 0 m"),
@@ -244,11 +251,72 @@ def test_a_draw_that_breaks_a_rule_names_cell_and_repeat() -> None:
         ("vary", {"terrain.height": uniform(0.0, 0.1)}, "vary['terrain.height']"),
         ("vary", {"start.approach": 0.1}, "vary['start.approach']"),
         ("on_error", "ignore", "on_error"),
+        ("wall_time", 1, "wall_time"),
         ("progress", "yes", "progress"),
     ],
 )
 def test_a_wrong_argument_is_refused_by_name(argument: str, value: Any, path: str) -> None:
     assert refusal(BASE, {"terrain.height": [0.1]}, **{argument: value}).path == path
+
+
+def test_a_sweep_over_nothing_repeats_the_one_scenario() -> None:
+    found = quiet(BASE, {}, repeats=3)
+    assert found["outcome"].dims == ("repeat",)
+    axis = quiet(BASE, {"terrain.height": [0.03]}, repeats=3).isel(height=0, drop=True)
+    xr.testing.assert_identical(found, axis)
+    assert c2d.rate(found)["rate"].item() == 1.0
+    vary = {"drive.speed": scaled(4.0, 4.0)}
+    assert refusal(BASE, {}, vary=vary).path == "cell[repeat=0].drive.speed"
+
+
+def test_the_largest_friction_is_swept_with_its_own_draws() -> None:
+    slippery = BRIEF.replace({"terrain.friction": 100.0})
+    found = quiet(slippery, {"drive.speed": [0.4, 1.39]}, repeats=40)["drawn_friction"]
+    assert found.max() == 100.0
+    kept = (found == 100.0).mean("repeat")
+    assert (abs(kept - 0.5) < 0.3).all()  # four standard errors of 40
+    assert (found.min("repeat") < 98.5).all()
+    speed = quiet(BRIEF, {"drive.speed": [0.4, 1.39]}, repeats=40)["drawn_speed"]
+    assert speed.max("repeat").values.tolist() == [pytest.approx(0.408, rel=2e-3), 1.39]
+
+
+def test_a_draw_that_breaks_a_rule_leaves_the_other_draws_alone() -> None:
+    slippery = BRIEF.replace({"terrain.friction": 100.0})
+    plain, found = quiet(BRIEF, {}, repeats=20), quiet(slippery, {}, repeats=20)
+    for name in ("drawn_approach", "drawn_track_phase", "drawn_speed"):
+        assert found[name].equals(plain[name])
+
+
+def test_whole_numbers_are_drawn() -> None:
+    field = Scenario(ROBOT, c2d.terrains.random_stepfield(0), duration=0.0)
+    vary = {"terrain.seed": uniform_int(1, 1000), "drive.speed": scaled(0.9, 1.1)}
+    found = quiet(field, {}, vary=vary, repeats=10)
+    seeds = [json.loads(text)["terrain"]["seed"] for text in found["scenario"].values]
+    assert found["drawn_terrain_seed"].values.tolist() == seeds
+    assert len(set(seeds)) > 5
+    assert "'terrain.seed': UniformInt(low=1, high=1000)" in found.attrs["vary"]
+
+
+@pytest.mark.parametrize("distribution", [uniform(1.0, 9.0), scaled(1.0, 2.0)])
+def test_a_whole_number_is_not_drawn_between_two(distribution: Any) -> None:
+    field = Scenario(ROBOT, c2d.terrains.random_stepfield(0), duration=0.0)
+    error = refusal(field, {}, vary={"terrain.seed": distribution})
+    assert error.path == "cell[repeat=0].terrain.seed"
+    assert "uniform_int(low, high)" in error.rule
+    wheels = BRIEF.replace({"robot.track": c2d.SegmentalTrack(shoe_count=None)})
+    error = refusal(wheels, {}, vary={"robot.track.shoe_count": distribution})
+    assert "uniform_int(low, high)" in error.rule
+
+
+def test_an_element_is_drawn() -> None:
+    found = quiet(BRIEF, {}, vary={"robot.center_of_mass[0]": uniform(-0.01, 0.01)}, repeats=4)
+    texts = found["scenario"].values
+    drawn = [Scenario.from_json(text).robot.center_of_mass[0] for text in texts]
+    assert found["drawn_center_of_mass_0"].values.tolist() == drawn
+    assert found["drawn_center_of_mass_0"].attrs["units"] == "m"
+    over = {"robot.center_of_mass[0]": [0.0]}
+    vary = {"robot.center_of_mass[0]": uniform(0.0, 0.1)}
+    assert refusal(BRIEF, over, vary=vary).path == "vary['robot.center_of_mass[0]']"
 
 
 def test_what_is_no_valid_scenario_is_refused() -> None:
@@ -265,15 +333,14 @@ def test_a_refused_cell_can_be_recorded_and_the_others_do_not_notice() -> None:
     alone = quiet(BASE, {"terrain.height": [0.03]})
     good = found.sel(height=[0.03])
     for name in alone.data_vars:
-        if name != "wall_time":
-            assert good[name].equals(alone[name]), name
+        assert good[name].equals(alone[name]), name
     bad = found.sel(height=-0.1)
     assert bad["outcome"].values.tolist() == ["refused"] * 2
     assert bad["error"].values[1].startswith("cell[height=-0.1].terrain.height must be > 0 m")
     assert bad["scenario"].values.tolist() == bad["identity"].values.tolist() == [""] * 2
-    for name in [*METRICS, "wall_time", "drawn_speed"]:
+    for name in [*METRICS, "drawn_speed"]:
         assert bad[name].isnull().all()
-    assert bad["distinct_poses"].item() == bad["distinct_outcomes"].item() == 0
+    assert c2d.rate(found)["distinct"].values.tolist() == [2, 0]
 
 
 def test_a_sweep_of_refused_cells_alone_has_no_metrics() -> None:
@@ -301,7 +368,7 @@ def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) ->
     assert found["outcome"].values.tolist() == [["timed_out"] * 2, ["timed_out", "diverged"]]
     assert found["error"].values.tolist() == [["", ""], ["", "chassis is not finite"]]
     assert np.isnan(found["final_x"].values).tolist() == [[False, False], [False, True]]
-    assert found["distinct_outcomes"].values.tolist() == [1, 1]
+    assert c2d.rate(found)["count"].values.tolist() == [2, 1]
     Scenario.from_json(found["scenario"].values[1, 1]).validate()
 
 
@@ -330,7 +397,10 @@ def test_ctrl_c_keeps_the_finished_runs() -> None:
             quiet(long, over, threads=2)
     finally:
         timer.cancel()
-    assert [run is not None for run in caught.value.runs] == [True, True, False, False]
+    runs = caught.value.runs
+    assert [run.outcome is not None for run in runs] == [True, True, False, False]
+    assert [run.scenario.duration for run in runs] == [0.1, 0.1, 10_000.0, 10_000.0]
+    assert runs[2].scenario != runs[3].scenario  # with its draws
 
 
 def test_a_missing_xarray_names_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:

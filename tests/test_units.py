@@ -3,6 +3,8 @@
 import inspect
 import re
 
+import pytest
+
 import crawler2d as c2d
 from crawler2d import flippers, gaits, robot, scenario, terrain, track
 from crawler2d._json import Parameters
@@ -11,6 +13,24 @@ from crawler2d._units import METRICS, unit_of
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:
     assert set(run.metrics) == set(METRICS)
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        ("robot.center_of_mass[0]", "m"),
+        ("terrain.left.points[3]", "m"),
+        ("terrain.points[3][1]", "m"),
+        ("robot.track.placements[0][2]", "m"),
+        ("drive.schedule[0][0]", "s"),
+        ("drive.schedule[12][1]", "m/s"),
+        ("drive.gait.schedule[0][1]", "rad"),
+        ("drive.schedule[0]", None),  # two units
+        ("drive.schedule", None),
+    ],
+)
+def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> None:
+    assert unit_of(path) == unit
 
 
 def test_units_are_those_of_the_docstrings() -> None:

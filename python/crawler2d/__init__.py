@@ -15,12 +15,13 @@ from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
 from crawler2d.compare import compare
 from crawler2d.diagnosis import Diagnosis, Mechanism
-from crawler2d.draws import scaled, uniform
+from crawler2d.draws import scaled, uniform, uniform_int
 from crawler2d.errors import (
     BatchInterrupted,
     Crawler2dError,
     InternalError,
     LimitError,
+    RunUnfinished,
     ScenarioError,
     ScenarioWarning,
     SimulationDiverged,
@@ -70,6 +71,7 @@ __all__ = [
     "Robot",
     "RoundWheel",
     "Run",
+    "RunUnfinished",
     "Scenario",
     "ScenarioError",
     "ScenarioWarning",
@@ -92,6 +94,7 @@ __all__ = [
     "sweep",
     "terrains",
     "uniform",
+    "uniform_int",
     "wilson",
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,14 @@ from crawler2d.errors import ScenarioError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Axis", "coordinates", "field_attributes", "read_axes", "short_names"]
+__all__ = ["COLUMNS", "Axis", "coordinates", "field_attributes", "read_axes", "short_names"]
+
+COLUMNS = (
+    *("repeat", "seed", "outcome", "error", "mechanism", "cause", "seized_at_tips"),
+    *("belt_freed", "belt_distance", "wall_time", "identity", "scenario"),
+    *("rate", "low", "high", "count", "distinct"),
+)
+"""What a sweep and its rates have beside the metrics; no axis goes by such a name."""
 
 Coordinate = tuple[str, "NDArray[Any]", dict[str, str]]
 """Dimension, values and attributes, as xarray takes them."""
@@ -29,13 +37,13 @@ class Axis:
 
     name: str
     paths: tuple[str, ...]
-    values: Mapping[Label, tuple[Any, ...]]
-    """By label, one value a path."""
+    values: Mapping[Label, Mapping[str, Any]]
+    """By label, then by path; what a label has no value for stays as it is."""
 
-    def points(self) -> Iterator[tuple[str, dict[str, Any]]]:
+    def points(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
         """Yield what each point is called in messages, and its values by path."""
         for label, row in self.values.items():
-            yield f"{self.name}={label}", dict(zip(self.paths, row, strict=True))
+            yield f"{self.name}={label}", row
 
 
 def read_axes(over: object) -> list[Axis]:
@@ -48,8 +56,6 @@ def read_axes(over: object) -> list[Axis]:
     """
     if not isinstance(over, Mapping):
         raise ScenarioError("over", over, "must be a mapping from paths to values")
-    if not over:
-        raise ScenarioError("over", over, "must have at least one path")
     keys = {key: _paths(key) for key in over}
     every = [path for paths in keys.values() for path in paths]
     _refuse_undoing(every)
@@ -59,9 +65,9 @@ def read_axes(over: object) -> list[Axis]:
         place = f"over[{key!r}]"
         values = labelled(over[key], place)
         if isinstance(key, tuple):
-            rows = {label: _row(value, len(paths), place) for label, value in values.items()}
+            rows = {label: _row(value, paths, place) for label, value in values.items()}
         else:
-            rows = {label: (value,) for label, value in values.items()}
+            rows = {label: {key: value} for label, value in values.items()}
         axes.append(Axis(name, paths, rows))
     return axes
 
@@ -72,7 +78,8 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
     found: dict[str, Coordinate] = {}
     for axis in axes:
         labels = list(axis.values)
-        columns = [_numbers(column) for column in zip(*axis.values.values(), strict=True)]
+        rows = axis.values.values()
+        columns = [_numbers([row.get(path) for row in rows]) for path in axis.paths]
         attributes = field_attributes(axis.paths)
         if columns != [labels]:
             attributes.pop("units", None)  # a label has none, even if it is a number
@@ -86,7 +93,7 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
 
 def field_attributes(paths: Sequence[str]) -> dict[str, str]:
     """Say which fields an array is about, and the unit of the numbers of a single field."""
-    lasts = [_last(path) for path in paths]
+    lasts = [path.rpartition(".")[2] for path in paths]
     attributes = {
         "path": ", ".join(paths),
         "long_name": " and ".join(dict.fromkeys(lasts)).replace("_", " "),
@@ -98,16 +105,16 @@ def field_attributes(paths: Sequence[str]) -> dict[str, str]:
 
 
 def short_names(paths: Sequence[str]) -> dict[str, str]:
-    """Name each path by its last part; by the whole path where another or a metric is so called."""
-    uses = Counter([*map(_last, paths), *METRICS])
-    return {p: _last(p) if uses[_last(p)] == 1 else p.replace(".", "_") for p in paths}
+    """Name each path by its last part; by the whole path where that name is taken."""
+    uses = Counter([*map(_last, paths), *METRICS, *COLUMNS])
+    return {p: _last(p) if uses[_last(p)] == 1 else _name(p) for p in paths}
 
 
 def _dimensions(axes: Sequence[tuple[str, ...]]) -> list[str]:
     """Name the axes: paths swept together join their last names, each once."""
     names = short_names([path for paths in axes for path in paths])
     joined = ["_".join(dict.fromkeys(map(_last, paths))) for paths in axes]
-    taken = [*joined, *names.values(), *METRICS]
+    taken = [*joined, *names.values(), *METRICS, *COLUMNS]
     return [
         name if len(paths) > 1 and taken.count(name) == 1 else "_".join(names[p] for p in paths)
         for name, paths in zip(joined, axes, strict=True)
@@ -115,7 +122,12 @@ def _dimensions(axes: Sequence[tuple[str, ...]]) -> list[str]:
 
 
 def _last(path: str) -> str:
-    return path.rpartition(".")[2]
+    return _name(path.rpartition(".")[2])
+
+
+def _name(path: str) -> str:
+    """Write a path as an identifier."""
+    return re.sub(r"\[(\d+)\]", r"_\1", path).replace(".", "_")
 
 
 def _paths(key: object) -> tuple[str, ...]:
@@ -130,7 +142,7 @@ def _refuse_undoing(paths: Sequence[str]) -> None:
         for earlier in paths[:index]:
             if earlier == path:
                 raise ScenarioError("over", path, "must have each path once")
-            if earlier.startswith(f"{path}."):
+            if earlier.startswith((f"{path}.", f"{path}[")):
                 raise ScenarioError("over", path, f"must come before {earlier}, which it replaces")
 
 
@@ -139,9 +151,9 @@ def _numbers(column: Sequence[Any]) -> list[int | float] | None:
     return numbers if all(type(number) in (int, float) for number in numbers) else None
 
 
-def _row(value: Any, count: int, place: str) -> tuple[Any, ...]:
+def _row(value: Any, paths: Sequence[str], place: str) -> dict[str, Any]:
     if isinstance(value, np.ndarray):
         value = value.tolist()
-    if not isinstance(value, (tuple, list)) or len(value) != count:
-        raise ScenarioError(place, value, f"must have tuples of {count} values, one a path")
-    return tuple(value)
+    if not isinstance(value, (tuple, list)) or len(value) != len(paths):
+        raise ScenarioError(place, value, f"must have tuples of {len(paths)} values, one a path")
+    return dict(zip(paths, value, strict=True))

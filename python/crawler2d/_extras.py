@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import signal
+import threading
+from collections.abc import Iterator
 from typing import Any
 
 
@@ -19,11 +23,39 @@ def extra(module: str, name: str) -> Any:
     Raises
     ------
     ImportError
-        If it is not installed; the message names the extra.
+        If it is not installed; the message names the extra. If it is, but its import fails; the
+        message says why.
     """
+    top = module.partition(".")[0]
     try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        top = module.partition(".")[0]
-        message = f"this needs {top}: pip install crawler2d[{name}]"
+        with _without_interrupt():
+            return importlib.import_module(module)
+    except Exception as error:
+        if isinstance(error, ModuleNotFoundError) and error.name in (top, module):
+            message = f"this needs {top}: pip install crawler2d[{name}]"
+        else:
+            message = (
+                f"{top} is installed, but its import failed: {type(error).__name__}: {error}"
+                " (if an earlier import of it was interrupted, only a new Python process helps)"
+            )
         raise ImportError(message, name=top) from error
+
+
+@contextlib.contextmanager
+def _without_interrupt() -> Iterator[None]:
+    """Answer Ctrl-C afterwards: what was imported by half can often not be imported again.
+
+    Nor does it help to forget the half: pandas and matplotlib then fail the more.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    held: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: held.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if held:
+            signal.raise_signal(signal.SIGINT)

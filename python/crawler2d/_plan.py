@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from crawler2d._axes import Axis
+from crawler2d._paths import read_path
 from crawler2d.draws import Variation, uniform_numbers
 from crawler2d.errors import ScenarioError
 from crawler2d.scenario import Scenario
@@ -40,12 +41,13 @@ def plan_runs(
     streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
     plans = []
     for points in itertools.product(*(axis.points() for axis in axes)):
-        name = ", ".join(point for point, _ in points)
-        with _named(f"cell[{name}]"):
+        names = [point for point, _ in points]
+        cell_place = f"cell[{', '.join(names)}]"
+        with _named(cell_place):
             cell = base.replace({path: v for _, values in points for path, v in values.items()})
-        refused = _refusal(cell, f"cell[{name}]")
+        refused = _refusal(cell, cell_place)
         for repeat in range(repeats):
-            place = f"cell[{name}, repeat={repeat}]"
+            place = f"cell[{', '.join([*names, f'repeat={repeat}'])}]"
             if refused is not None:
                 plans.append(Plan(place, cell, {}, refused))
                 continue
@@ -53,8 +55,21 @@ def plan_runs(
                 numbers = {path: float(stream[repeat]) for path, stream in streams.items()}
                 drawn = variation.draw(cell, numbers)
                 variant = cell.replace(drawn)
-            plans.append(Plan(place, variant, drawn, _refusal(variant, place)))
+            broken = _refusal(variant, place)
+            if broken is not None and variation.is_default:
+                drawn, broken = _legal(cell, drawn), None
+                variant = cell.replace(drawn)
+            plans.append(Plan(place, variant, drawn, broken))
     return plans
+
+
+def _legal(cell: Scenario, drawn: Mapping[str, float]) -> dict[str, float]:
+    """Leave what breaks a rule at the cell's own value, which breaks none."""
+    kept: dict[str, float] = {}
+    for path, value in drawn.items():
+        is_legal = _refusal(cell.replace({**kept, path: value}), path) is None
+        kept[path] = value if is_legal else read_path(cell, path)
+    return kept
 
 
 @contextlib.contextmanager

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
+from crawler2d._extras import extra
 from crawler2d.errors import ScenarioError
 
 Progress = Callable[[int, int], None]
@@ -46,8 +47,8 @@ def reporter(progress: bool | Progress | None, total: int) -> Iterator[Progress 
 @contextlib.contextmanager
 def _bar(total: int) -> Iterator[Progress]:
     try:
-        from tqdm.auto import tqdm  # noqa: PLC0415 - optional
-    except ImportError:
+        tqdm = extra("tqdm.auto", "progress").tqdm
+    except ImportError:  # a line tells as much
         yield _line()
         return
     with tqdm(total=total, unit="run") as bar:

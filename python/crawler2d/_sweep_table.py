@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from crawler2d._plan import Plan
 from crawler2d._units import METRICS
 from crawler2d.diagnosis import Diagnosis
 from crawler2d.draws import Distribution
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, SimulationDiverged
 from crawler2d.run import Run
 
 if TYPE_CHECKING:
@@ -23,12 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["NO_RESULT", "to_table"]
 
-NO_RESULT = ("diverged", "refused")
+NO_RESULT = ("diverged", "refused", "failed")
 """Outcomes of runs without a result: the state became non-finite, or a rule is broken."""
-
-# [m], [rad] Final poses closer than this are one pose.
-_DISTANCE = 1e-3
-_ANGLE = math.radians(0.1)
 
 _Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
 
@@ -39,9 +35,14 @@ def to_table(
     plans: Sequence[Plan],
     runs: Sequence[Run],
     *,
+    seed: int,
     with_belts: bool,
+    with_times: bool,
 ) -> xarray.Dataset:
-    """Arrange what is known of the runs, which are in the order of their plans; see `sweep`."""
+    """Arrange what is known of the runs, which are in the order of their plans; see `sweep`.
+
+    Every column has every dimension, and none knows of other runs than its own: so tables join.
+    """
     xr = extra("xarray", "analysis")
     cells = [axis.name for axis in axes]
     sizes = [len(axis.values) for axis in axes]
@@ -49,11 +50,6 @@ def to_table(
 
     def by_run(values: list[Any], kind: type, **attributes: str) -> _Variable:
         return [*cells, "repeat"], np.array(values, kind).reshape(*sizes, repeats), attributes
-
-    def by_cell(count: Callable[[Sequence[Run]], int]) -> _Variable:
-        starts = range(0, len(runs), repeats)
-        counts = np.array([count(runs[start : start + repeats]) for start in starts])
-        return cells, counts.reshape(sizes), {"units": "1"}
 
     variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
     why = [run.diagnosis for run in runs]
@@ -71,10 +67,10 @@ def to_table(
     for path, name in short_names(list(distributions)).items():
         drawn = [plan.drawn.get(path, math.nan) for plan in plans]
         variables[f"drawn_{name}"] = by_run(drawn, float, **field_attributes([path]))
-    times = [run.wall_time if run.error is None else math.nan for run in runs]
-    variables["wall_time"] = by_run(times, float, units="s")
-    variables["distinct_outcomes"] = by_cell(_distinct_outcomes)
-    variables["distinct_poses"] = by_cell(_distinct_poses)
+    if with_times:
+        times = [run.wall_time if run.error is None else math.nan for run in runs]
+        variables["wall_time"] = by_run(times, float, units="s")
+    variables["seed"] = by_run([seed] * len(runs), np.int64 if seed < 2**63 else np.uint64)
     # Python's texts: in an array of texts each would take the room of the longest.
     errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
     variables["error"] = by_run([str(error) for error in errors], object)
@@ -90,28 +86,18 @@ def to_table(
 
 
 def _outcome(run: Run) -> str:
-    diverged, refused = NO_RESULT
-    if run.error is None:
-        return str(run.outcome)
-    return refused if isinstance(run.error, ScenarioError) else diverged
+    diverged, refused, failed = NO_RESULT
+    match run.error:
+        case None:
+            return str(run.outcome)
+        case SimulationDiverged():
+            return diverged
+        case ScenarioError():
+            return refused
+        case _:  # beyond memory, or a fault of the program
+            return failed
 
 
 def _cause(why: Diagnosis | None) -> str:
     """Write the sets of conditions, such as ``pocket or belly+torque``."""
     return " or ".join("+".join(each) for each in why.cause) if why else ""
-
-
-def _distinct_outcomes(runs: Sequence[Run]) -> int:
-    return len({run.outcome for run in runs if run.error is None})
-
-
-def _distinct_poses(runs: Sequence[Run]) -> int:
-    return len({_rounded(run.metrics) for run in runs if run.error is None})
-
-
-def _rounded(metrics: Mapping[str, float]) -> tuple[int, int, int]:
-    return (
-        round(metrics["final_x"] / _DISTANCE),
-        round(metrics["final_y"] / _DISTANCE),
-        round(metrics["final_angle"] / _ANGLE),
-    )

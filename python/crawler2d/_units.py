@@ -42,10 +42,16 @@ FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in name
 
 _FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
 
+_COLUMNS = {"drive.schedule": ("s", "m/s"), "drive.gait.schedule": ("s", "rad")}
+"""Units of rows whose numbers have not all the same."""
+
 
 def unit_of(path: str) -> str | None:
-    """Look up the unit of the field at a path; None if it is no number."""
-    return _FIELDS_BY_PLACE.get(path, FIELDS.get(path.rpartition(".")[2]))
+    """Look up the unit of the field or the element at a path; None if it is no number."""
+    field, *indices = path.replace("]", "").split("[")
+    if field in _COLUMNS:
+        return _COLUMNS[field][int(indices[1])] if len(indices) == 2 else None
+    return _FIELDS_BY_PLACE.get(field, FIELDS.get(field.rpartition(".")[2]))
 
 
 METRICS = {

@@ -9,7 +9,13 @@ from crawler2d import _core
 from crawler2d._progress import Progress, reporter
 from crawler2d._recording import Recording, recording, yes_or_no
 from crawler2d._threads import thread_count
-from crawler2d.errors import BatchInterrupted, Crawler2dError, InternalError, ScenarioError
+from crawler2d.errors import (
+    BatchInterrupted,
+    Crawler2dError,
+    InternalError,
+    RunUnfinished,
+    ScenarioError,
+)
 from crawler2d.robot import Robot
 from crawler2d.run import Run
 from crawler2d.scenario import Scenario
@@ -119,7 +125,7 @@ def simulate_many(
     SimulationDiverged
         If a state became non-finite.
     BatchInterrupted
-        On Ctrl-C; its `runs` keeps what was finished.
+        On Ctrl-C; its `runs` keeps what was finished, and the scenarios of the others.
 
     Examples
     --------
@@ -148,10 +154,9 @@ def simulate_many(
     ]
     if interrupted:
         raise BatchInterrupted(runs)
-    finished = [run for run in runs if run is not None]
     if on_error == "raise":
-        _raise_first([run.error for run in finished])
-    return finished
+        _raise_first([run.error for run in runs])
+    return runs
 
 
 def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
@@ -181,9 +186,11 @@ def _raise_first(results: Iterable[object]) -> None:
             raise result
 
 
-def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run | None:
+def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run:
     if result is None:
-        return None
+        return Run(
+            scenario, {}, RunUnfinished("the batch was interrupted before this run had ended")
+        )
     if isinstance(result, ScenarioError):
         return Run(scenario, {}, result)
     error = result.get("error")

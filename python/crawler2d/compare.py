@@ -1,4 +1,4 @@
-"""Track models compared in pairs: the same scenario, the same draws, one model against another."""
+"""Variants compared in pairs: the same scenario, the same draws, one variant against another."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d._axes import Axis
+from crawler2d._json import Parameters
 from crawler2d._labels import Label, labelled
 from crawler2d._progress import Progress
 from crawler2d._units import METRICS
@@ -17,7 +18,6 @@ from crawler2d.rates import rate
 from crawler2d.scenario import Scenario
 from crawler2d.statistics import bootstrap_mean, mcnemar, newcombe_paired
 from crawler2d.sweep import tabulate
-from crawler2d.track import Track
 
 if TYPE_CHECKING:
     import xarray
@@ -25,13 +25,16 @@ if TYPE_CHECKING:
 
 __all__ = ["compare"]
 
+Variant = Parameters | Mapping[str, Any]
+"""What takes its place in the scenario, such as a track; or new values by dotted path."""
+
 _COSTS = ("time_to_clear", "drive_work")
 """Metrics that are compared where both models cleared."""
 
 
 def compare(
     scenario: Scenario,
-    models: Mapping[Any, Track] | Sequence[Track],
+    models: Mapping[Any, Variant] | Sequence[Variant],
     *,
     repeats: int = 20,
     seed: int = 0,
@@ -40,14 +43,17 @@ def compare(
     threads: int | None = None,
     progress: bool | Progress | None = True,
 ) -> xarray.Dataset:
-    """Compare models of a track with one of them, run by run under the same draws.
+    """Compare models of a track, or any variants, with one of them, under the same draws.
 
     Parameters
     ----------
     scenario : Scenario
-        What all runs share; its own track is replaced.
-    models : mapping of str to track, or sequence of tracks
-        At least two models; in a sequence their short texts are their labels.
+        What all runs share.
+    models : mapping of str to model, or sequence of models
+        At least two; in a sequence their short texts are their labels. A model is a track, a robot
+        or another part of a scenario, such as a `Solver`, which takes the place of the scenario's
+        own; or a mapping from dotted paths to values, as of `Scenario.replace`, where ``{}`` is the
+        scenario as it is.
     repeats : int
         Runs a model, 1 to 1,000,000.
     seed, vary, threads, progress
@@ -80,7 +86,7 @@ def compare(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     BatchInterrupted
-        On Ctrl-C; its `runs` keeps what was finished.
+        On Ctrl-C; its `runs`, model by model, keeps what was finished, and the other scenarios.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -92,22 +98,31 @@ def compare(
     >>> found = c2d.compare(base, models, repeats=5, progress=False).sel(model="skids")
     >>> found.difference.item(), found.only_reference.item(), found.p_value.item()
     (-1.0, 5, 0.0625)
+
+    One robot, with its centre of mass where it is and further back:
+
+    >>> steep = base.replace({"terrain": c2d.terrains.ramp(0.6)})
+    >>> robots = {"as it is": {}, "tail heavy": {"robot.center_of_mass[0]": -0.15}}
+    >>> found = c2d.compare(steep, robots, repeats=5, progress=False)
+    >>> found.rate.values.tolist()
+    [1.0, 0.0]
     """
-    tracks = labelled(models, "models")
-    if len(tracks) < 2:
+    variants = {label: _fields(model, label) for label, model in labelled(models, "models").items()}
+    if len(variants) < 2:
         raise ScenarioError("models", models, "must be at least two")
-    labels = list(tracks)
+    labels = list(variants)
     if reference is not None and reference not in labels:
         names = ", ".join(map(str, labels))
         raise ScenarioError("reference", reference, f"must be a label of the models: {names}")
-    axis = Axis("model", ("robot.track",), {label: (track,) for label, track in tracks.items()})
+    paths = dict.fromkeys(path for fields in variants.values() for path in fields)
     table = tabulate(
         scenario,
-        [axis],
+        [Axis("model", tuple(paths), variants)],
         repeats=repeats,
         seed=seed,
         vary=vary,
         counterfactual=False,
+        wall_time=False,
         threads=threads,
         progress=progress,
         on_error="raise",
@@ -117,6 +132,18 @@ def compare(
     rows = [_against(table, index, base) for index in range(len(labels))]
     columns = {name: ("model", [row[name] for row in rows], _attributes(name)) for name in rows[0]}
     return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
+
+
+def _fields(model: object, label: Label) -> Mapping[str, Any]:
+    """Return what a model replaces, by path."""
+    if isinstance(model, Mapping):
+        return model
+    if isinstance(model, Parameters) and model.place:
+        return {model.place: model}
+    rule = (
+        "must be a track, a robot or another part of a scenario, or a mapping from paths to values"
+    )
+    raise ScenarioError(f"models[{label!r}]", model, rule)
 
 
 def _against(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:

@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d._arrays import real_number
-from crawler2d._paths import replace_path
+from crawler2d._arrays import frozen_scalar, real_number
+from crawler2d._paths import is_whole, read_path
 from crawler2d.errors import ScenarioError
 from crawler2d.scenario import Scenario
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Distribution", "Scaled", "Uniform", "Variation", "scaled", "uniform"]
+__all__ = [
+    "Distribution",
+    "Scaled",
+    "Uniform",
+    "UniformInt",
+    "Variation",
+    "scaled",
+    "uniform",
+    "uniform_int",
+]
+
+# A float64 from 0 to 1 tells so many whole numbers apart.
+_MOST = 2**53
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +65,45 @@ class Uniform:
 
 
 @dataclass(frozen=True, slots=True)
+class UniformInt:
+    """Every whole number from `low` to `high`, both included, is as likely as another.
+
+    Parameters
+    ----------
+    low, high : int
+        Bounds, for a field of whole numbers such as ``terrain.seed``.
+
+    Raises
+    ------
+    ScenarioError
+        If they are no whole numbers in this order, or 2^53 apart or more.
+
+    Examples
+    --------
+    >>> UniformInt(1, 6).value(0.5, nominal=None)
+    4
+    """
+
+    low: int
+    high: int
+
+    def __post_init__(self) -> None:
+        """Check the bounds."""
+        for name in ("low", "high"):
+            number = frozen_scalar(getattr(self, name), whole=True)
+            if type(number) is not int:
+                raise ScenarioError(name, number, "must be a whole number")
+            object.__setattr__(self, name, number)
+        _in_order(self)
+        if self.high - self.low >= _MOST:
+            raise ScenarioError("high", self.high, f"must be < low + 2^53 = {self.low + _MOST}")
+
+    def value(self, number: float, nominal: object) -> int:  # noqa: ARG002 - replaces it
+        """Map a uniform number from 0 to 1 to a value; the field's own does not matter."""
+        return self.low + int((self.high - self.low + 1) * number)
+
+
+@dataclass(frozen=True, slots=True)
 class Scaled:
     """The scenario's own value times a factor from `low` to `high`, each as likely as another.
 
@@ -85,24 +135,29 @@ class Scaled:
         return nominal * _between(self, number)
 
 
-Distribution = Uniform | Scaled
+Distribution = Uniform | UniformInt | Scaled
 """Every distribution."""
 
 uniform = Uniform
+uniform_int = UniformInt
 scaled = Scaled
 
 
-def _order(bounds: Distribution) -> None:
+def _order(bounds: Uniform | Scaled) -> None:
     for name in ("low", "high"):
         number = real_number(getattr(bounds, name), name)
         if not math.isfinite(number):
             raise ScenarioError(name, number, "must be finite")
         object.__setattr__(bounds, name, number)
+    _in_order(bounds)
+
+
+def _in_order(bounds: Distribution) -> None:
     if bounds.high < bounds.low:
         raise ScenarioError("high", bounds.high, f"must be >= low = {bounds.low}")
 
 
-def _between(bounds: Distribution, number: float) -> float:
+def _between(bounds: Uniform | Scaled, number: float) -> float:
     # Rounding could lead beyond the upper bound.
     return min(bounds.low + (bounds.high - bounds.low) * number, bounds.high)
 
@@ -144,9 +199,9 @@ class Variation:
             if not isinstance(path, str):
                 raise ScenarioError("vary", path, "must have dotted paths as keys")
             if not isinstance(distribution, Distribution):
-                rule = "must be uniform(low, high) or scaled(low, high)"
+                rule = "must be uniform(low, high), uniform_int(low, high) or scaled(low, high)"
                 raise ScenarioError(f"vary[{path!r}]", distribution, rule)
-            if isinstance(distribution, Uniform) and path in swept:
+            if not isinstance(distribution, Scaled) and path in swept:
                 rule = "must not replace the values of `over`; scaled(low, high) varies about them"
                 raise ScenarioError(f"vary[{path!r}]", distribution, rule)
         return cls(dict(vary), is_default=False)
@@ -157,20 +212,19 @@ class Variation:
         Raises
         ------
         ScenarioError
-            If the cell lacks a path, or has no number to scale there.
+            If the cell lacks a path, has no number to scale there, or a whole number.
         """
         values = {}
         for path, distribution in self.distributions.items():
             if self.is_default and path == _FRICTION and not hasattr(cell.terrain, "friction"):
                 continue
-            nominal = _field(cell, path)
+            nominal = read_path(cell, path)
+            if not isinstance(distribution, UniformInt) and is_whole(cell, path):
+                rule = "must be drawn by uniform_int(low, high), for it is a whole number"
+                raise ScenarioError(path, distribution, rule)
             if isinstance(distribution, Scaled) and type(nominal) not in (int, float):
                 raise ScenarioError(path, nominal, "must be a number to be scaled")
             values[path] = distribution.value(numbers[path], nominal)
-        if self.is_default:
-            # A command beyond the largest speed is one of the largest speed.
-            limit = cell.robot.drivetrain.max_speed
-            values[_SPEED] = min(max(values[_SPEED], -limit), limit)
         return values
 
 
@@ -184,8 +238,3 @@ def _default(scenario: Scenario, swept: Collection[str]) -> dict[str, Distributi
     }
     kept = {path: d for path, d in start.items() if path not in swept and "start" not in swept}
     return {**kept, _SPEED: Scaled(0.98, 1.02), _FRICTION: Scaled(0.98, 1.02)}
-
-
-def _field(scenario: Scenario, path: str) -> Any:
-    replace_path(scenario, path, None)  # tells what is wrong with a path that names no field
-    return functools.reduce(getattr, path.split("."), scenario)

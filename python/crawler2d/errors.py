@@ -19,6 +19,7 @@ __all__ = [
     "Crawler2dError",
     "InternalError",
     "LimitError",
+    "RunUnfinished",
     "ScenarioError",
     "ScenarioWarning",
     "SimulationDiverged",
@@ -94,6 +95,10 @@ class SimulationDiverged(Crawler2dError, RuntimeError):
         return str(self.args[0])
 
 
+class RunUnfinished(Crawler2dError, RuntimeError):
+    """The batch was interrupted before this run had ended; it has no result."""
+
+
 class LimitError(Crawler2dError, ValueError):
     """A request is larger than this machine or this program can serve.
 
@@ -129,17 +134,17 @@ class BatchInterrupted(KeyboardInterrupt):
 
     Parameters
     ----------
-    runs : sequence of (Run or None)
-        One entry a scenario, in order; None where the run was not finished.
+    runs : sequence of Run
+        One a scenario, in order. Where a run was not finished, its `error` is a `RunUnfinished`.
     """
 
-    runs: list[Run | None]
+    runs: list[Run]
 
-    def __init__(self, runs: Sequence[Run | None]) -> None:
+    def __init__(self, runs: Sequence[Run]) -> None:
         super().__init__(list(runs))
         self.runs = list(runs)
 
     def __str__(self) -> str:
         """Say how far the batch came."""
-        finished = sum(run is not None for run in self.runs)
+        finished = sum(not isinstance(run.error, RunUnfinished) for run in self.runs)
         return f"interrupted after {finished} of {len(self.runs)} runs; .runs keeps them"

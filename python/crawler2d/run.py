@@ -50,7 +50,7 @@ class Run:
     wall_time : float
         [s] Computing time of one thread.
     error : Crawler2dError or None
-        Why there is no result, in a batch with ``on_error="record"``.
+        Why there is no result, in a batch with ``on_error="record"`` or one that was interrupted.
     trunk : tuple of Scenario and float, or None
         For a branch: what was simulated before it, and until when [s].
 

@@ -236,7 +236,8 @@ class Scenario(Parameters):
         Parameters
         ----------
         fields : mapping of str to object
-            New values by dotted path, such as ``{"robot.track.count": 5}``, set in order.
+            New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Indices
+            name elements: ``{"terrain.points[3][1]": 0.06}``.
 
         Returns
         -------
@@ -246,7 +247,8 @@ class Scenario(Parameters):
         Raises
         ------
         ScenarioError
-            If a path names no field; the message lists the fields and the nearest name.
+            If a path names no field; the message lists the fields and the nearest name. If an
+            index is out of range; the message has the length.
 
         Warns
         -----

@@ -83,6 +83,7 @@ def chain_steps(
         {("solver.time_step", "solver.substeps"): list(steps), "terrain.height": list(heights)},
         repeats=repeats,
         seed=seed,
+        wall_time=True,
         threads=threads,
     )
     level = Scenario(robot, terrains.flat(friction=_FRICTION), drive=drive, duration=_FLAT)

@@ -169,7 +169,7 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
     return Stops(
         obstacle=obstacle,
         model=model,
-        count=int(outcomes.size - counts["diverged"] - counts["refused"]),
+        count=sum(counts[each] for each in Outcome),
         cleared=counts["cleared"],
         **{name: counts[name] for name in STOPS},
         mechanism=str(mechanism),

@@ -149,7 +149,7 @@ class Study:
         return self._sweep(self._flat(), self._tracks(), self.design.ride_repeats)
 
     def over_phases(self) -> xarray.Dataset:
-        """Run lines of gear wheels over flat ground: count, phase_fraction, repeat."""
+        """Run lines of gear wheels on the flat: robot_track_count, phase_fraction, repeat."""
         over = {
             "robot.track.count": [3, 4, 5],
             "robot.track.wheel.phase_fraction": self.design.phase_fractions,
@@ -190,5 +190,6 @@ class Study:
             progress=self.progress,
             on_error="record",
             counterfactual=counterfactual,
+            wall_time=True,
         )
         return table.rename({"track_time_step": "track"}) if _TRACK_AND_STEP in over else table

@@ -125,7 +125,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
                     rate=own["rate"].item(),
                     low=own["low"].item(),
                     high=own["high"].item(),
-                    poses=table["distinct_poses"].sel(place).item(),
+                    poses=own["distinct"].item(),
                     others=", ".join(f"{n} {name}" for name, n in endings.most_common()),
                 )
             )
@@ -170,14 +170,14 @@ def rides(table: xarray.Dataset) -> list[Ride]:
 
 
 def phases(table: xarray.Dataset) -> list[Phase]:
-    """Average a sweep over count and phase_fraction on flat ground."""
+    """Average a sweep over robot_track_count and phase_fraction on flat ground."""
     return [
         Phase(
             count=int(count),
             phase_fraction=float(fraction),
-            **_shaking(table.sel(count=count, phase_fraction=fraction)),
+            **_shaking(table.sel(robot_track_count=count, phase_fraction=fraction)),
         )
-        for count in table["count"].to_numpy()
+        for count in table["robot_track_count"].to_numpy()
         for fraction in table["phase_fraction"].to_numpy()
     ]
 
