@@ -34,8 +34,8 @@ def rate(
     table : xarray.Dataset or iterable of str or None
         What `sweep` returned; or outcomes, None for a run without a result.
     outcome : str
-        Name of an `Outcome`, or "stopped" for all that are stops: seized, hung_up, stalled,
-        slipping and cycling.
+        Name of an `Outcome`, or "stopped" for all that are stops: cycling, seized, hung_up,
+        stalled and slipping.
     dim : str
         The dimension of a table that is counted over.
 

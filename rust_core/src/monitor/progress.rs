@@ -1,5 +1,8 @@
 //! Progress over a sliding window, and the stops that its lack makes.
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
