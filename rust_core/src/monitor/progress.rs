@@ -13,7 +13,7 @@ use crate::reading::Reading;
 /// How far the robot has come, and when it came no further.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
-    /// +1 or -1, as commanded.
+    /// +1 or -1, as commanded; 0 in a pause.
     direction: f64,
     history: VecDeque<Look>,
     best_advance: f64,
@@ -68,9 +68,13 @@ impl Default for Progress {
 impl Progress {
     /// Takes in one step of `dt` [s] of a robot of a `length` [m] between its end axles.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
-        let direction = if command < 0.0 { -1.0 } else { 1.0 };
+        let direction = if command == 0.0 {
+            0.0
+        } else {
+            command.signum()
+        };
         if direction * self.direction <= 0.0 {
-            // What was gained the other way is no measure of what comes now.
+            // What was gained the other way, or before a pause, is no measure of what comes now.
             self.direction = direction;
             self.history.clear();
             (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);

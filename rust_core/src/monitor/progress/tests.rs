@@ -160,13 +160,32 @@ fn a_new_direction_begins_anew() {
     for forwards in [1.0, -1.0] {
         let mut way = Way::new(forwards);
         way.stands(3.0, SPAN + 1);
-        assert_eq!(way.progress.stop_since, Some(1.0));
         way.command = -forwards;
         assert_eq!(way.at(3.0), Some(1.0));
         way.stands(3.0, SPAN - 1);
         assert_eq!(way.progress.stop_since, None);
         way.at(3.0);
         assert_eq!(way.progress.stop_since, Some(SPAN as f64 + 2.0));
+    }
+}
+
+#[test]
+fn a_pause_begins_anew_in_either_direction() {
+    for forwards in [1.0, -1.0] {
+        let mut way = Way::new(forwards);
+        way.stands(3.0, SPAN + 1);
+        way.command = 0.0;
+        assert_eq!(way.at(3.0), Some(1.0));
+        way.at(3.0);
+        let resumed = way.time + 1.0;
+        way.command = forwards;
+        way.stands(3.0, SPAN);
+        assert_eq!(
+            way.progress.stop_since, None,
+            "the pause is no part of a stop"
+        );
+        way.at(3.0);
+        assert_eq!(way.progress.stop_since, Some(resumed));
     }
 }
 

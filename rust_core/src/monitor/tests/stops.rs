@@ -77,6 +77,23 @@ fn a_robot_that_is_not_told_to_move_has_not_stopped() {
 }
 
 #[test]
+fn a_pause_parts_a_stop_in_two_that_do_not_overlap() {
+    for speed in [0.4, -0.4] {
+        let mut robot = Watched::with(|_| {});
+        for (until, command) in [(3.0, speed), (3.5, 0.0), (5.0, speed)] {
+            robot.command = command;
+            robot.stands_until(until);
+        }
+        let stops = robot.monitor.events(5.0);
+        let times: Vec<[f64; 2]> = stops.iter().map(|stop| [stop.start, stop.end]).collect();
+        for (found, expected) in times.iter().flatten().zip([0.0, 3.0, 3.5, 5.0]) {
+            assert!((found - expected).abs() < ABOUT, "{times:?}");
+        }
+        assert_eq!(times.len(), 2);
+    }
+}
+
+#[test]
 fn a_slow_robot_is_given_the_time_of_its_grousers_pitches() {
     // Three pitches of 48 mm at 0.05 m/s.
     let window = 2.88;
