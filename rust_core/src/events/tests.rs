@@ -51,7 +51,7 @@ fn an_intrusion_is_one_event_from_its_first_look_to_the_one_that_misses_it() {
         root_depth: 0.005,
         force: 30.0,
     };
-    assert_eq!(going_on, [expected.clone()]);
+    assert_eq!(going_on, std::slice::from_ref(&expected));
 
     watch.look(2.0, std::iter::empty());
     let over: Vec<Event> = watch.events(9.0).collect();

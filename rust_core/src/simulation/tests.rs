@@ -66,6 +66,9 @@ fn skids() -> Scenario {
     scenario
 }
 
+/// What lets an outcome apply no more.
+type NoMore = fn(&mut SeizureCriteria);
+
 #[test]
 fn of_the_outcomes_that_apply_to_a_stop_the_first_counts() {
     // An edge in a pocket has brought the motors to their limit: seized and stalled.
@@ -73,7 +76,6 @@ fn of_the_outcomes_that_apply_to_a_stop_the_first_counts() {
     let criteria = &mut stop.scenario.criteria;
     // With these it moves to and fro, and no load on the belly is little enough, too.
     (criteria.cycling_distance, criteria.belly_load) = (-1.0, 0.0);
-    type NoMore = fn(&mut SeizureCriteria);
     let in_turn: [(Outcome, NoMore); 4] = [
         (Outcome::Cycling, |c| c.cycling_distance = 0.02),
         (Outcome::Seized, |c| {

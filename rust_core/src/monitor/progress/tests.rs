@@ -1,4 +1,5 @@
 //! Windows over synthetic ways.
+#![allow(clippy::float_cmp)] // ways and times here are exact in binary
 
 use rapier2d_f64::math::Vector;
 
@@ -15,6 +16,8 @@ struct Way {
     progress: Progress,
     time: f64,
     command: f64,
+    /// [m/s] Of the drivetrain.
+    set_point: f64,
 }
 
 impl Way {
@@ -23,6 +26,7 @@ impl Way {
             progress: Progress::default(),
             time: 0.0,
             command,
+            set_point: command,
         }
     }
 
@@ -35,7 +39,7 @@ impl Way {
             velocity: Vector::ZERO,
             chassis_angle: angle,
             angular_velocity: 0.0,
-            commanded_speed: self.command,
+            commanded_speed: self.set_point,
             track_speed: 0.0,
             track_position: 0.0,
         };
@@ -140,6 +144,16 @@ fn a_nose_that_rises_makes_way() {
 #[test]
 fn without_a_command_there_is_no_stop() {
     let mut way = Way::new(0.0);
+    way.stands(3.0, 3 * SPAN);
+    assert_eq!(way.progress.stop_since, None);
+    assert_eq!(way.progress.share, 1.0);
+    assert!(!way.progress.falters());
+}
+
+#[test]
+fn a_drivetrain_that_asks_for_no_way_yet_lets_nothing_stop() {
+    let mut way = Way::new(1.0);
+    way.set_point = 0.0;
     way.stands(3.0, 3 * SPAN);
     assert_eq!(way.progress.stop_since, None);
     assert_eq!(way.progress.share, 1.0);
