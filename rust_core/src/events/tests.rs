@@ -75,6 +75,7 @@ fn an_intrusion_is_the_same_while_its_bodies_are_and_an_edge_is_still_inside() {
     };
     assert_eq!(look(1.0, &between([1, 2], &[3, 4])), [1.0]);
     assert_eq!(look(2.0, &between([1, 2], &[4, 5])), [1.0]);
+    assert_eq!(look(2.5, &between([1, 2], &[5])), [1.0]);
     assert_eq!(
         look(3.0, &between([1, 2], &[6])),
         [1.0, 3.0],

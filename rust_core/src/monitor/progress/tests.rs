@@ -184,6 +184,18 @@ fn a_new_direction_begins_anew() {
 }
 
 #[test]
+fn way_that_was_made_forwards_is_made_again_backwards() {
+    for forwards in [1.0, -1.0] {
+        let mut way = Way::new(forwards);
+        way.goes(0.0, 20.0 * forwards, 20);
+        (way.command, way.set_point) = (-forwards, -forwards);
+        way.goes(20.0 * forwards, 0.0, 20);
+        assert_eq!(way.progress.share, 1.0);
+        assert_eq!(way.progress.stop_since, None);
+    }
+}
+
+#[test]
 fn a_pause_begins_anew_in_either_direction() {
     for forwards in [1.0, -1.0] {
         let mut way = Way::new(forwards);
