@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers bench-scaling format build soak tools
+.PHONY: help study test test-browser check bench bench-peers bench-scaling format build mutants soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -66,6 +66,13 @@ soak: $(VENV)/.built ## the long tests, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored
 	CRAWLER2D_SOAK=1 $(BIN)/python -m pytest -m 'soak or not soak'
 
+# The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.
+# An end with 3 says that a fault which loops for ever was noticed by the clock alone.
+mutants: $(BIN)/cargo-mutants ## put small faults into the core, see that its tests notice; about an hour
+	@mkdir -p $(CARGO_TARGET_DIR)/mutants
+	CARGO_TARGET_DIR=$(abspath $(CARGO_TARGET_DIR)) $(BIN)/cargo-mutants mutants \
+		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
+
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
 		echo "crawler2d needs Python 3.11 or newer: no such python3 was found (set PYTHON=...)" >&2; exit 1; fi
@@ -79,6 +86,10 @@ $(VENV)/.dependencies: pyproject.toml | tools
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
+
+# Built aside, so that nothing of it stays in the target folder.
+$(BIN)/cargo-mutants: | tools
+	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-mutants@27.1.0
 
 $(VENV)/.peers: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers

@@ -162,7 +162,7 @@ def test_stops_tell_outcomes_mechanisms_and_what_a_belt_does(table: xr.Dataset) 
     assert (second.at_tips, second.unnatural_passes) == (1, 2)
     assert (second.hung_up, second.slipping, second.cycling) == (0, 0, 0)
     *_, one, other = stops_report.stops_text([first, second]).splitlines()
-    assert one.split()[:5] == ["first", "step", "40", "24", "6"]
+    assert one.split()[:6] == ["first", "step", "40", "24", "-", "6"]
     assert "undercut, 5" in one
     assert one.split()[-6:] == ["83", "100", "50", "-", "2.5", "1.2"]
     assert "none, 33" in other

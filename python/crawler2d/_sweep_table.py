@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["NO_RESULT", "to_table"]
 
 NO_RESULT = ("diverged", "refused", "failed")
-"""Outcomes of runs without a result: the state became non-finite, or a rule is broken."""
+"""Outcomes of runs without a result: the state became non-finite, a rule is broken, all else."""
 
 _Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
 

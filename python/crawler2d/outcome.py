@@ -13,18 +13,18 @@ class Outcome(StrEnum):
     Examples
     --------
     >>> [str(outcome) for outcome in Outcome if outcome.is_stop]
-    ['seized', 'hung_up', 'stalled', 'slipping', 'cycling']
+    ['cycling', 'seized', 'hung_up', 'stalled', 'slipping']
     """
 
     DETRACKED = "detracked"
     TIPPED_OVER = "tipped_over"
     LEFT_TERRAIN = "left_terrain"
     CLEARED = "cleared"
+    CYCLING = "cycling"
     SEIZED = "seized"
     HUNG_UP = "hung_up"
     STALLED = "stalled"
     SLIPPING = "slipping"
-    CYCLING = "cycling"
     TIMED_OUT = "timed_out"
 
     @property
@@ -33,4 +33,4 @@ class Outcome(StrEnum):
         return self in _STOPS
 
 
-_STOPS = (Outcome.SEIZED, Outcome.HUNG_UP, Outcome.STALLED, Outcome.SLIPPING, Outcome.CYCLING)
+_STOPS = (Outcome.CYCLING, Outcome.SEIZED, Outcome.HUNG_UP, Outcome.STALLED, Outcome.SLIPPING)

@@ -40,16 +40,16 @@ def rate(
 ) -> xarray.Dataset:
     """Estimate the rate of an outcome in every cell, with Wilson's 95 % interval.
 
-    Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are runs that were not made,
-    which are missing in a table that was joined.
+    Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are runs that were
+    not made, which are missing in a table that was joined.
 
     Parameters
     ----------
     table : xarray.Dataset or iterable of str or None
         What `sweep` returned; or outcomes, None for a run without a result.
     outcome : str
-        Name of an `Outcome`, or "stopped" for all that are stops: seized, hung_up, stalled,
-        slipping and cycling.
+        Name of an `Outcome`, or "stopped" for all that are stops: cycling, seized, hung_up,
+        stalled and slipping.
     dim : str or iterable of str
         The dimension of a table that is counted over, or several.
 

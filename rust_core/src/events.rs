@@ -1,5 +1,8 @@
 //! What happened during a run, with a beginning and an end: stops, and edges inside the track.
 
+#[cfg(test)]
+mod tests;
+
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Intrusion;

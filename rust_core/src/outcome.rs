@@ -1,5 +1,8 @@
 //! How a run ended.
 
+#[cfg(test)]
+mod tests;
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -15,6 +18,8 @@ pub enum Outcome {
     LeftTerrain,
     /// The goal lies behind the robot.
     Cleared,
+    /// It moves to and fro without gain.
+    Cycling,
     /// Stopped by ground in a pocket of the track.
     Seized,
     /// Stopped with weight on the belly.
@@ -23,8 +28,6 @@ pub enum Outcome {
     Stalled,
     /// Stopped with the surfaces turning.
     Slipping,
-    /// It moves to and fro without gain.
-    Cycling,
     /// The time ran out on the way.
     TimedOut,
 }
@@ -37,11 +40,11 @@ impl Outcome {
             Self::TippedOver => "tipped_over",
             Self::LeftTerrain => "left_terrain",
             Self::Cleared => "cleared",
+            Self::Cycling => "cycling",
             Self::Seized => "seized",
             Self::HungUp => "hung_up",
             Self::Stalled => "stalled",
             Self::Slipping => "slipping",
-            Self::Cycling => "cycling",
             Self::TimedOut => "timed_out",
         }
     }
@@ -50,7 +53,7 @@ impl Outcome {
     pub fn is_stop(self) -> bool {
         matches!(
             self,
-            Self::Seized | Self::HungUp | Self::Stalled | Self::Slipping | Self::Cycling
+            Self::Cycling | Self::Seized | Self::HungUp | Self::Stalled | Self::Slipping
         )
     }
 }

@@ -1,5 +1,8 @@
 //! How much the chassis shakes, as an inertial sensor with a bandwidth of one look would see it.
 
+#[cfg(test)]
+mod tests;
+
 use serde::{Deserialize, Serialize};
 
 use crate::reading::Reading;

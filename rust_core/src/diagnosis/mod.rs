@@ -13,6 +13,8 @@ mod scene;
 mod signals;
 mod statics;
 mod surfaces;
+#[cfg(test)]
+mod tests;
 
 use rapier2d_f64::math::Vector;
 

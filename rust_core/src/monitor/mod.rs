@@ -1,6 +1,8 @@
 //! Watches a run: goal, tip-over, stops. It only reads, and ends a run when its outcome is certain.
 
 mod progress;
+#[cfg(test)]
+mod tests;
 
 use rapier2d_f64::math::Pose;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,8 @@
 //! Progress over a sliding window, and the stops that its lack makes.
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +14,7 @@ use crate::terrain::Profile;
 /// How far the robot has come, and when it came no further.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
-    /// +1 or -1, as commanded.
+    /// +1 or -1, as commanded; 0 in a pause.
     direction: f64,
     history: VecDeque<Look>,
     best_advance: f64,
@@ -82,9 +85,13 @@ impl Progress {
 
     /// Takes in one step of `dt` [s] of a robot of a `length` [m] between its end axles.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
-        let direction = if command < 0.0 { -1.0 } else { 1.0 };
+        let direction = if command == 0.0 {
+            0.0
+        } else {
+            command.signum()
+        };
         if direction * self.direction <= 0.0 {
-            // What was gained the other way is no measure of what comes now.
+            // What was gained the other way, or before a pause, is no measure of what comes now.
             self.direction = direction;
             self.history.clear();
             (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);

@@ -3,6 +3,8 @@
 mod branch;
 mod command;
 mod snapshot;
+#[cfg(test)]
+mod tests;
 mod whole;
 
 use rapier2d_f64::math::Vector;
@@ -167,6 +169,10 @@ impl Simulation {
         if !model.flippers.is_empty() {
             self.state.running_after(0.0, model, &mut self.then);
         }
+        // First: of the outcomes of one step, a chain that has come off counts before all others.
+        if !model.chains.is_empty() {
+            self.monitor.observe_chains(self.dynamics.chain_reading());
+        }
         let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
         let drives = self.state.drives.iter().copied().zip(speeds);
         self.monitor.observe(
@@ -176,9 +182,6 @@ impl Simulation {
             drives,
             &self.then,
         );
-        if !model.chains.is_empty() {
-            self.monitor.observe_chains(self.dynamics.chain_reading());
-        }
     }
 
     /// The state of this instant.

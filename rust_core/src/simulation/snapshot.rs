@@ -1,5 +1,8 @@
 //! A simulation as bytes, and back: built anew from its scenario, then given its state.
 
+#[cfg(test)]
+mod tests;
+
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 

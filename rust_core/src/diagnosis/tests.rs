@@ -1,0 +1,165 @@
+//! Judgements on synthetic stops of a belt.
+#![allow(clippy::float_cmp)] // lengths here are exact in binary
+
+use super::signals::{Bearing, DriveMean};
+use super::*;
+use crate::contact::{Contact, Running, TrackEnvelope};
+use crate::robot::{Model, Mount};
+use crate::scenario::{Scenario, Terrain};
+use crate::terrain::Ground;
+
+/// [m] Half the distance of the end axles.
+const HALF: f64 = 0.25;
+/// [m] Radius at both ends.
+const RADIUS: f64 = 0.0625;
+/// [m] How far two posts on the ground stand out, and how deep they are inside the belt.
+const POST: f64 = 0.02;
+const DEPTH: f64 = 0.005;
+
+/// The Engineer on a belt, with end axles 0.5 m apart, on two posts.
+struct Stage {
+    scenario: Scenario,
+    ground: Ground,
+    model: Model,
+    envelopes: Vec<TrackEnvelope>,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        let outline = &mut scenario.robot.outline;
+        outline.axle_distance = 2.0 * HALF;
+        (outline.front_radius, outline.rear_radius) = (RADIUS, RADIUS);
+        let post = |x: f64| {
+            let (from, to) = (x - 0.005, x + 0.005);
+            [[from, 0.0], [from, POST], [to, POST], [to, 0.0]]
+        };
+        let posts = [post(-0.1), post(0.1)].concat();
+        scenario.terrain = Terrain::Points {
+            points: [vec![[-4.0, 0.0]], posts, vec![[4.0, 0.0]]].concat(),
+            goal: 1.0,
+            edge_radius: 0.0,
+            friction: 0.9,
+        };
+        let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+        let model = Model::on(&scenario.robot, &ground).expect("it can be built");
+        let margin = scenario.criteria.intrusion_depth;
+        let envelope = TrackEnvelope::new(&model.parts, (0, Mount::Chassis), margin);
+        Self {
+            scenario,
+            ground,
+            model,
+            envelopes: vec![envelope],
+        }
+    }
+
+    /// [N]
+    fn weight(&self) -> f64 {
+        self.model.mass * self.scenario.gravity
+    }
+
+    /// At rest on the posts, with these shares of the weight on them.
+    fn stance(&self, shares: [f64; 2]) -> Stance {
+        let bearing = |(x, facet, share): (f64, usize, f64)| Bearing {
+            contact: Contact {
+                part: 0,
+                facet,
+                edge: -1,
+                point: Vector::new(x, POST),
+                normal: Vector::Y,
+                distance: 0.0,
+            },
+            normal_force: share * self.weight(),
+            friction_force: 0.0,
+            slip: 0.0,
+            duration: 1.0,
+        };
+        let places = [(-0.1, 2, shares[0]), (0.1, 6, shares[1])];
+        Stance {
+            position: Vector::new(0.0, POST + RADIUS - DEPTH),
+            angle: 0.0,
+            range: [0.0; 3],
+            bearings: places.map(bearing).to_vec(),
+            drives: vec![DriveMean::default()],
+        }
+    }
+
+    fn diagnose(&self, stance: &Stance) -> Diagnosis {
+        let scene = Scene {
+            model: &self.model,
+            lanes: &self.ground.lanes,
+            envelopes: &self.envelopes,
+            contact: self.scenario.solver.contact,
+            criteria: &self.scenario.criteria,
+            gravity: self.scenario.gravity,
+            command: self.scenario.drive.speed,
+            set_point: self.scenario.drive.speed,
+            half_length: HALF,
+            running: Running::at_start(&self.model, 0.0),
+        };
+        let seen = Seen {
+            time: 3.0,
+            since: 1.0,
+            progress: 0.25,
+        };
+        diagnose(&scene, stance, &seen)
+    }
+}
+
+#[test]
+fn a_diagnosis_is_of_the_most_loaded_ground_and_of_equals_the_left() {
+    let stage = Stage::new();
+    for (shares, side) in [([0.7, 0.3], -1.0), ([0.3, 0.7], 1.0), ([0.5, 0.5], -1.0)] {
+        let found = stage.diagnose(&stage.stance(shares)).intrusion;
+        let found = found.expect("both posts are inside");
+        assert_eq!(found.place.x.signum(), side, "{shares:?}");
+        let most = shares[0].max(shares[1]) * stage.weight();
+        assert!((found.force - most).abs() < 1e-9);
+        assert!((found.place.depth - DEPTH).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_stop_is_stationary_up_to_the_distance_and_cycles_beyond_its_own() {
+    let mut stage = Stage::new();
+    let criteria = &mut stage.scenario.criteria;
+    (criteria.stationary_distance, criteria.cycling_distance) = (0.0625, 0.125);
+    for (axis, lever) in [(0, 1.0), (1, 1.0), (2, HALF)] {
+        let found = |range: f64| {
+            let mut stance = stage.stance([0.5, 0.5]);
+            stance.range[axis] = range / lever;
+            let found = stage.diagnose(&stance);
+            (found.stationary, found.outcome)
+        };
+        assert_eq!(found(0.0625), (true, Outcome::Slipping));
+        assert_eq!(found(0.07), (false, Outcome::Slipping));
+        assert_eq!(found(0.125), (false, Outcome::Slipping));
+        assert_eq!(found(0.13), (false, Outcome::Cycling));
+    }
+}
+
+#[test]
+fn forces_that_balance_are_certified_and_others_not() {
+    let stage = Stage::new();
+    let found = stage.diagnose(&stage.stance([0.5, 0.5]));
+    assert!(found.certified && found.imbalance.is_some_and(|i| i < 1e-9));
+    // Posts that are both behind the centre of mass hold nobody.
+    let mut stance = stage.stance([0.5, 0.5]);
+    stance.bearings[1].contact.point.x = -0.15;
+    let found = stage.diagnose(&stance);
+    assert!(!found.certified && found.imbalance.is_some_and(|i| i > 0.1));
+    assert!(found.escape_force.is_none());
+}
+
+#[test]
+fn a_diagnosis_tells_when_the_stop_was_looked_at_and_where() {
+    let stage = Stage::new();
+    let mut stance = stage.stance([0.5, 0.5]);
+    stance.angle = 0.001;
+    let found = stage.diagnose(&stance);
+    assert_eq!((found.time, found.since, found.progress), (3.0, 1.0, 0.25));
+    let place = [stance.position.x, stance.position.y];
+    assert_eq!((found.position, found.chassis_angle), (place, 0.001));
+    assert!(found.counterfactual.is_none());
+}
