@@ -292,6 +292,8 @@ class Scenario(Parameters):
         ScenarioError
             If the text is no JSON, or a field is missing, unknown, of a wrong type or out of range.
         """
+        if not isinstance(text, str):
+            raise ScenarioError("scenario", text, "must be a text")
         try:
             text.encode()
         except UnicodeEncodeError:

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::error::ScenarioError;
 use crate::robot::{Model, Part};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, parse};
 use crate::start::start_position;
 use crate::terrain::Ground;
 
@@ -14,9 +14,7 @@ impl Scenario {
     /// # Errors
     /// The first broken rule, with the path of its field.
     pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
-        let value: Value = serde_json::from_str(text)
-            .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
-        Self::checked(&value)
+        Self::checked(&parse(text)?)
     }
 
     /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.

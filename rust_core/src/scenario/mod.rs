@@ -6,6 +6,7 @@ mod flippers;
 mod robot;
 mod settings;
 mod terrain;
+mod text;
 mod track;
 mod wheel;
 
@@ -18,6 +19,7 @@ pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
+pub(crate) use text::parse;
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
     HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,
