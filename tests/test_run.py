@@ -82,6 +82,7 @@ def test_on_level_ground_a_belt_goes_as_far_as_its_path_and_does_not_shake() -> 
     assert metrics["angular_velocity"] < 0.01
 
 
+@pytest.mark.filterwarnings("ignore:goal cannot be reached:crawler2d.ScenarioWarning")
 def test_up_a_ramp_the_path_is_longer_than_the_way_along_x() -> None:
     angle = 0.3
     scenario = Scenario(ROBOT, c2d.terrains.ramp(angle, length=5.0), duration=6.0, goal=4.0)

@@ -22,6 +22,7 @@ from crawler2d.errors import (
     InternalError,
     LimitError,
     ScenarioError,
+    ScenarioWarning,
     SimulationDiverged,
 )
 from crawler2d.flippers import Flippers
@@ -71,6 +72,7 @@ __all__ = [
     "Run",
     "Scenario",
     "ScenarioError",
+    "ScenarioWarning",
     "SegmentalTrack",
     "SeizureCriteria",
     "Simulation",

@@ -13,6 +13,7 @@ __all__ = [
     "identity",
     "simulate",
     "simulate_many",
+    "validate",
 ]
 
 @final
@@ -55,3 +56,4 @@ def simulate_many(
     counterfactual: bool,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[list[dict[str, Any] | None], bool]: ...
+def validate(text: str) -> None: ...

@@ -302,14 +302,19 @@ class Scenario(Parameters):
         return from_plain(cls, json.loads(_core.canonical(text)))
 
     def validate(self) -> None:
-        """Check every rule.
+        """Check every rule, and warn of what is unlikely to be meant.
 
         Raises
         ------
         ScenarioError
             The first broken rule: path of the field, value and rule.
+
+        Warns
+        -----
+        ScenarioWarning
+            Of each field whose value is legal but doubtful, such as a step of 75 m.
         """
-        _core.canonical(self.to_json())
+        _core.validate(self.to_json())
 
     @property
     def identity(self) -> str:

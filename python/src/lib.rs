@@ -33,6 +33,13 @@ mod _core {
         errors::guarded(|| Ok(Scenario::from_json(text)?.to_json()))
     }
 
+    /// Checks a scenario, and warns of what is unlikely to be meant.
+    #[pyfunction]
+    fn validate(py: Python<'_>, text: &str) -> PyResult<()> {
+        let (_, doubts) = errors::guarded(|| Ok(Scenario::examined(text)?))?;
+        errors::warn(py, doubts)
+    }
+
     /// SHA-256 of the canonical JSON.
     #[pyfunction]
     fn identity(text: &str) -> PyResult<String> {
@@ -188,15 +195,17 @@ mod _core {
         record: Record,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(Results, Option<PyErr>)> {
-        let scenarios = errors::guarded(|| {
+        let examined = errors::guarded(|| {
             texts
                 .iter()
-                .map(|text| Ok(Scenario::from_json(text)?))
+                .map(|text| Ok(Scenario::examined(text)?))
                 .collect::<Result<Vec<_>, Error>>()
         })?;
+        let (scenarios, doubts): (Vec<_>, Vec<_>) = examined.into_iter().unzip();
         for scenario in &scenarios {
             convert::check_size(scenario, record)?;
         }
+        errors::warn(py, doubts.into_iter().flatten())?;
         let progress = progress.map(Bound::unbind);
         let total = scenarios.len();
         let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);

@@ -19,9 +19,10 @@ pub(crate) struct Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    fn new(text: &str) -> PyResult<Self> {
-        let simulation =
-            errors::guarded(|| crawler2d_core::Simulation::new(&Scenario::from_json(text)?))?;
+    fn new(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let (scenario, doubts) = errors::guarded(|| Ok(Scenario::examined(text)?))?;
+        errors::warn(py, doubts)?;
+        let simulation = errors::guarded(|| crawler2d_core::Simulation::new(&scenario))?;
         Ok(Self {
             inner: Mutex::new(Some(simulation)),
         })

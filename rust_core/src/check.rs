@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::error::ScenarioError;
 use crate::robot::{Model, Part};
-use crate::scenario::{Scenario, parse};
+use crate::scenario::{Doubt, Scenario, parse};
 use crate::start::start_position;
 use crate::terrain::Ground;
 
@@ -14,6 +14,14 @@ impl Scenario {
     /// # Errors
     /// The first broken rule, with the path of its field.
     pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
+        Self::examined(text).map(|(scenario, _)| scenario)
+    }
+
+    /// The same, with what is legal but unlikely to be meant.
+    ///
+    /// # Errors
+    /// The first broken rule, with the path of its field.
+    pub fn examined(text: &str) -> Result<(Self, Vec<Doubt>), ScenarioError> {
         Self::checked(&parse(text)?)
     }
 
@@ -27,14 +35,15 @@ impl Scenario {
         Self::checked(&value).map(|_| ())
     }
 
-    fn checked(value: &Value) -> Result<Self, ScenarioError> {
+    fn checked(value: &Value) -> Result<(Self, Vec<Doubt>), ScenarioError> {
         let scenario = Self::read(value)?;
-        scenario.check()?;
-        Ok(scenario)
+        let to_goal = scenario.check()?;
+        let doubts = scenario.doubts(to_goal);
+        Ok((scenario, doubts))
     }
 
-    /// Rules that join several branches of the tree.
-    fn check(&self) -> Result<(), ScenarioError> {
+    /// Rules that join several branches of the tree; how far [m] the robot has to go to leave its goal behind.
+    fn check(&self) -> Result<f64, ScenarioError> {
         let limit = self.robot.drivetrain.max_speed;
         let (path, speed) = self.drive.fastest();
         if speed.abs() > limit {
@@ -60,8 +69,10 @@ impl Scenario {
             ));
         }
         let ground = Ground::new(&self.terrain, self.robot.gauge)?;
-        start_position(self, &model.placed_on(&ground), &ground)?;
-        Ok(())
+        let start = start_position(self, &model.placed_on(&ground), &ground)?;
+        let outline = &self.robot.outline;
+        let rear = start.x - 0.5 * outline.axle_distance * libm::cos(self.start.angle);
+        Ok(ground.goal_of(self) + outline.rear_radius - rear)
     }
 
     /// What turns farther than this between two collision checks passes over corners unseen.

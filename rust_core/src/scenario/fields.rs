@@ -331,6 +331,6 @@ pub(super) fn joined(path: &str, name: &str) -> String {
     }
 }
 
-pub(super) fn display(path: &str) -> &str {
+fn display(path: &str) -> &str {
     if path.is_empty() { "scenario" } else { path }
 }

@@ -1,5 +1,6 @@
 //! What is simulated: plain data with one set of rules, read from JSON and written back without losing a bit.
 
+mod doubts;
 mod drive;
 mod fields;
 mod flippers;
@@ -14,6 +15,7 @@ use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
 pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};

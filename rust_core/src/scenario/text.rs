@@ -5,7 +5,7 @@ use serde::de::{MapAccess, Visitor};
 use serde_json::value::RawValue;
 use serde_json::{Error, Map, Value, from_str};
 
-use super::fields::{display, joined};
+use super::fields::joined;
 use crate::error::ScenarioError;
 
 /// Objects and lists within each other at most; a scenario has six. Each level is read once more.
@@ -15,28 +15,50 @@ const DEEPEST: usize = 12;
 pub(crate) fn parse(text: &str) -> Result<Value, ScenarioError> {
     let whole: &RawValue = from_str(text)
         .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
-    tree("", whole, 0)
+    tree(&Place::Root, whole, 0)
 }
 
-fn tree(path: &str, raw: &RawValue, depth: usize) -> Result<Value, ScenarioError> {
+/// Where a value is; written out only for an error, for there may be hundreds of thousands.
+enum Place<'a> {
+    Root,
+    Field(&'a Place<'a>, &'a str),
+    Item(&'a Place<'a>, usize),
+}
+
+impl Place<'_> {
+    fn path(&self) -> String {
+        match self {
+            Self::Root => String::new(),
+            Self::Field(object, name) => joined(&object.path(), name),
+            Self::Item(list, i) => format!("{}[{i}]", list.path()),
+        }
+    }
+
+    fn error(&self, raw: &RawValue, rule: &str) -> ScenarioError {
+        let path = match self {
+            Self::Root => "scenario".to_owned(),
+            _ => self.path(),
+        };
+        ScenarioError::new(path, raw.get(), rule)
+    }
+}
+
+fn tree(place: &Place, raw: &RawValue, depth: usize) -> Result<Value, ScenarioError> {
     let text = raw.get();
-    let error = |rule: &str| ScenarioError::new(display(path), text, rule);
     // What is read here has been found to be JSON before, but for the half of a character.
-    let not_unicode = |_: Error| error("must be valid Unicode");
+    let not_unicode = |_: Error| place.error(raw, "must be valid Unicode");
     let first = text.as_bytes().first().copied().unwrap_or_default();
     if matches!(first, b'{' | b'[') && depth == DEEPEST {
         let rule = format!("must not be nested more than {DEEPEST} levels deep");
-        return Err(ScenarioError::new("scenario", text, rule));
+        return Err(Place::Root.error(raw, &rule));
     }
     match first {
         b'{' => {
-            let entries = entries(text).map_err(not_unicode)?;
             let mut map = Map::new();
-            for (name, value) in entries {
-                let inner = joined(path, &name);
+            for (name, value) in entries(text).map_err(not_unicode)? {
+                let inner = Place::Field(place, &name);
                 if map.contains_key(&name) {
-                    let rule = "must be given once";
-                    return Err(ScenarioError::new(inner, value.get(), rule));
+                    return Err(inner.error(value, "must be given once"));
                 }
                 let value = tree(&inner, value, depth + 1)?;
                 map.insert(name, value);
@@ -47,22 +69,23 @@ fn tree(path: &str, raw: &RawValue, depth: usize) -> Result<Value, ScenarioError
             let items: Vec<&RawValue> = from_str(text).map_err(not_unicode)?;
             let items = items.into_iter().enumerate();
             items
-                .map(|(i, item)| tree(&format!("{path}[{i}]"), item, depth + 1))
+                .map(|(i, item)| tree(&Place::Item(place, i), item, depth + 1))
                 .collect::<Result<_, _>>()
                 .map(Value::Array)
         }
         b'-' | b'0'..=b'9' => {
             let read = from_str::<Value>(text).ok();
-            // What is written as more than 0 and read as 0 lies below every float64.
-            let digits = text.split(['e', 'E']).next().unwrap_or_default();
-            let is_zero = |number: &Value| number.as_f64() == Some(0.0);
-            let vanishes =
-                |number: &Value| is_zero(number) && digits.contains(|c| matches!(c, '1'..='9'));
-            read.filter(|number| !vanishes(number))
-                .ok_or_else(|| error("must be a number that fits in float64"))
+            read.filter(|number| number.as_f64() != Some(0.0) || is_zero(text))
+                .ok_or_else(|| place.error(raw, "must be a number that fits in float64"))
         }
         _ => from_str(text).map_err(not_unicode),
     }
+}
+
+/// Whether a number is written as 0: one that is not may be read as 0 if it lies below every float64.
+fn is_zero(number: &str) -> bool {
+    let digits = number.split(['e', 'E']).next().unwrap_or_default();
+    !digits.contains(|c| matches!(c, '1'..='9'))
 }
 
 /// The fields of an object as they are written, also those that are written twice.
