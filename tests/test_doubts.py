@@ -126,6 +126,7 @@ def test_what_is_usual_is_not_doubted(name: str) -> None:
     [
         Scenario(ROBOT, c2d.terrains.step(1.0)),
         Scenario(ROBOT, c2d.terrains.flat(), duration=0.5),
+        Scenario(ROBOT, c2d.terrains.flat(), duration=4.0),
         Scenario(ROBOT, STEP, goal=50.0, duration=0.5),
         Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=0.0)),
         Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=-0.4)),

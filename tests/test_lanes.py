@@ -69,7 +69,6 @@ def test_a_seed_alone_says_how_high_the_posts_are() -> None:
     assert tops == [0.2, 0.2, 0.2]
 
 
-@pytest.mark.filterwarnings("ignore:duration is too short:crawler2d.ScenarioWarning")
 def test_tables_name_the_lane() -> None:
     terrain = c2d.terrains.lanes(
         c2d.terrains.barrier(0.03, 0.05), c2d.terrains.flat(), middle=c2d.terrains.flat()

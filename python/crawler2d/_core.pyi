@@ -14,6 +14,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "validate",
+    "wheels",
 ]
 
 @final
@@ -57,3 +58,4 @@ def simulate_many(
     progress: Callable[[int, int], object] | None,
 ) -> tuple[list[dict[str, Any] | None], bool]: ...
 def validate(text: str) -> None: ...
+def wheels(text: str) -> dict[str, Any]: ...

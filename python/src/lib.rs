@@ -58,6 +58,13 @@ mod _core {
         pictures::of(py, &scenario, &model, &ground)
     }
 
+    /// The wheels of a scenario's robot.
+    #[pyfunction]
+    fn wheels<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
+        let model = errors::guarded(|| Ok(Model::new(&Scenario::from_json(text)?.robot)?))?;
+        convert::wheels(py, &model)
+    }
+
     /// One run.
     #[pyfunction]
     fn simulate<'py>(

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use super::fields::joined;
 use super::{CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, Terrain, Track};
 
-/// Lengths of the robot: no obstacle is as high, and a run that is longer is meant to arrive.
+/// So many times the robot's length is farther than it climbs; so many times a run's way, than it was cut short by.
 const FAR: f64 = 3.0;
 
 /// Of a field; nothing is refused for it.
@@ -98,16 +98,21 @@ impl Scenario {
         }
         let (time, reach) = (self.duration, fastest * self.duration);
         let gets = format!("{fastest} m/s gets the robot {reach:.3} m in {time} s");
-        // Less than that is a short look, not a run that is meant to arrive.
-        if to_goal > reach && reach > FAR * self.robot.length() {
-            let reason = format!("cannot be reached: it is {to_goal:.3} m to there, and {gets}");
+        // A run of a few lengths is a short look, and one that ends on a terrain may be cut short, but by less.
+        if reach > FAR * self.robot.length() {
+            let way = format!("it is {to_goal:.3} m to there, and {gets}");
             match self.goal {
-                Some(goal) => doubts.add("goal", goal, reason),
-                None => doubts.add(
-                    "duration",
-                    time,
-                    reason.replace("cannot be reached", "is too short for the goal"),
-                ),
+                Some(goal) if to_goal > reach => {
+                    doubts.add("goal", goal, format!("cannot be reached: {way}"));
+                }
+                None if to_goal > FAR * reach => {
+                    doubts.add(
+                        "duration",
+                        time,
+                        format!("is too short for the goal: {way}"),
+                    );
+                }
+                _ => {}
             }
         }
         let approach = self.start.approach;
