@@ -20,6 +20,9 @@ from crawler2d.diagnosis import Mechanism
 from crawler2d.outcome import Outcome
 from judge import STOPS
 
+# Drawn scenarios may be odd.
+pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+
 # Runs of each stratum in the whole census.
 SIZES = {
     "anything": 1200,

@@ -20,6 +20,9 @@ from census_models import STRATA
 from crawler2d.diagnosis import Mechanism
 from crawler2d.outcome import Outcome
 
+# Drawn scenarios may be odd.
+pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+
 # Runs of each stratum in the whole census.
 SIZES = {
     "grouser belts": 200,

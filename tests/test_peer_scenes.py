@@ -38,9 +38,15 @@ def by_place(points: Any) -> np.ndarray[Any, Any]:
     return np.asarray(points[np.lexsort(np.round(points, 9).T)])
 
 
+def left_wheels(scenario: Scenario) -> dict[str, np.ndarray[Any, Any]]:
+    """The wheels of one side; a scene's are those of both sides together."""
+    wheels = scenario.robot.wheels()
+    return {name: column[wheels["side"] == "left"] for name, column in wheels.items()}
+
+
 def wheel_order(scene: Scene, scenario: Scenario) -> list[int]:
     """The scenario's wheel at each of the scene's joints."""
-    wheels = scenario.robot.wheels()
+    wheels = left_wheels(scenario)
     centers = np.column_stack([wheels["x"], wheels["y"]])
     return [int(np.hypot(*(centers - joint.pa).T).argmin()) for joint in scene.joints]
 
@@ -57,13 +63,15 @@ def test_mass_and_inertia_are_the_same(name: str) -> None:
     assert center == near(np.array(robot.center_of_mass))
     inertia = sum(body.inertia for body in scene.bodies) + masses @ (offsets**2).sum(1)
     assert inertia - mass * center @ center == near(robot.moment_of_inertia)
-    assert [body.inertia for body in wheels] == near(robot.wheels()["moment_of_inertia"].tolist())
+    assert [body.inertia for body in wheels] == near(
+        2.0 * left_wheels(scenario)["moment_of_inertia"]
+    )
 
 
 @every_scene
 def test_wheels_sit_at_the_same_places(name: str) -> None:
     scene, scenario = pair(name)
-    wheels, order = scenario.robot.wheels(), wheel_order(scene, scenario)
+    wheels, order = left_wheels(scenario), wheel_order(scene, scenario)
     assert sorted(order) == list(range(len(wheels["x"])))
     assert [joint.pa for joint in scene.joints] == [
         near((float(wheels["x"][i]), float(wheels["y"][i]))) for i in order
@@ -79,7 +87,7 @@ def test_wheels_sit_at_the_same_places(name: str) -> None:
 def test_motors_have_the_same_speed_and_limit(name: str) -> None:
     scene, scenario = pair(name)
     robot, outline = scenario.robot, scenario.robot.outline
-    radii = robot.wheels()["radius"]
+    radii = left_wheels(scenario)["radius"]
     # Both sprockets act at the belt radius, and each wheel has its share of that force.
     force = 2.0 * robot.drivetrain.max_torque / (outline.rear_radius - outline.grouser_height)
     for joint, wheel in zip(scene.joints, wheel_order(scene, scenario), strict=True):
@@ -91,7 +99,7 @@ def test_motors_have_the_same_speed_and_limit(name: str) -> None:
 def test_wheels_have_the_same_outline(name: str) -> None:
     scene, scenario = pair(name)
     wheel = scene.bodies[1]
-    radius = scenario.robot.wheels()["radius"][0]
+    radius = left_wheels(scenario)["radius"][0]
     if not wheel.polygons:
         assert wheel.radius == near(radius)
         return

@@ -8,9 +8,11 @@ import pytest
 
 import crawler2d as c2d
 from conftest import GEAR, PLACEMENTS, POINTS, ROBOT
+from crawler2d.scenario import Scenario
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.text import Text
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 
@@ -40,6 +42,15 @@ def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
     assert left < x.min() < x.max() < right
     assert bottom < y.min() < y.max() < top
     assert side.get_aspect() == 1.0
+
+
+@pytest.mark.parametrize("name", ["$5", "a $ b $ c", "$\\frac{$", "\\$", "x_{$1^$", "100 %"])
+def test_a_name_is_no_formula(scenario: Scenario, name: str) -> None:
+    run = c2d.simulate(scenario.replace({"robot.name": name, "duration": 0.1}))
+    side = run.plot()[0]
+    side.figure.canvas.draw()
+    title = next(text for text in side.findobj(Text) if text.get_text().startswith(name))
+    assert not title.get_parse_math()
 
 
 def test_one_axes_takes_the_side_view_alone(run: c2d.Run) -> None:

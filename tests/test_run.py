@@ -1,9 +1,11 @@
 """A run: its arrays, tables and ways out."""
 
 import copy
+import json
 import math
 import pickle
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -80,6 +82,7 @@ def test_on_level_ground_a_belt_goes_as_far_as_its_path_and_does_not_shake() -> 
     assert metrics["angular_velocity"] < 0.01
 
 
+@pytest.mark.filterwarnings("ignore:goal cannot be reached:crawler2d.ScenarioWarning")
 def test_up_a_ramp_the_path_is_longer_than_the_way_along_x() -> None:
     angle = 0.3
     scenario = Scenario(ROBOT, c2d.terrains.ramp(angle, length=5.0), duration=6.0, goal=4.0)
@@ -103,6 +106,77 @@ def test_the_angular_velocity_is_a_root_mean_square(run: c2d.Run) -> None:
 def test_an_array_cannot_be_written_to(run: c2d.Run, name: str) -> None:
     with pytest.raises(ValueError, match="read-only"):
         getattr(run, name)[0] = 0.0
+
+
+def arrays_given_out() -> dict[str, np.ndarray[Any, Any]]:
+    """Every array of a run that ends in a stop, and of a simulation's state."""
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+    run = c2d.simulate(robot, c2d.terrains.step(0.10), start=c2d.Start(approach=0.02))
+    sim = c2d.Simulation(run.scenario)
+    state, inside = sim.state(), sim.intrusions()
+    assert run.diagnosis is not None
+    of_run = {name: getattr(run, name) for name in UNITS}
+    of_state = {name: getattr(state, name) for name in ("position", "velocity", "flipper_angles")}
+    tables = {
+        "contacts": run.contacts,
+        "edges": run.edges,
+        "events": run.events,
+        "diagnosis": run.diagnosis.contacts,
+        "state": state.contacts,
+        "intrusions": inside,
+        "wheels": robot.wheels(),
+        "pickled": pickle.loads(pickle.dumps(run)).contacts,
+    }
+    columns = {
+        f"{t}.{name}": column for t, table in tables.items() for name, column in table.items()
+    }
+    return of_run | of_state | columns
+
+
+def test_an_array_that_comes_back_cannot_be_unlocked() -> None:
+    for name, array in arrays_given_out().items():
+        assert not array.flags.writeable, name
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.flags.writeable = True
+
+
+def test_a_table_leaves_the_array_it_was_made_from_alone() -> None:
+    mine = np.zeros(3)
+    rows = np.zeros((3, 2))
+    table = Table({"own": mine, "view": rows[:, 0]})
+    mine[0] = rows[0, 0] = 1.0
+    assert table["own"].tolist() == table["view"].tolist() == [0.0, 0.0, 0.0]
+
+
+CHANGES: list[Any] = [
+    lambda metrics: metrics.__setitem__("time", 0.0),
+    lambda metrics: metrics.__delitem__("time"),
+    lambda metrics: metrics.update(time=0.0),
+    lambda metrics: metrics.setdefault("mine", 0.0),
+    lambda metrics: metrics.pop("time"),
+    lambda metrics: metrics.popitem(),
+    lambda metrics: metrics.clear(),
+    lambda metrics: metrics.__ior__({"time": 0.0}),
+]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_the_figures_of_a_run_cannot_be_changed(run: c2d.Run, change: Any) -> None:
+    before = dict(run.metrics)
+    with pytest.raises(TypeError, match="cannot be changed"):
+        change(run.metrics)
+    assert run.metrics == before
+
+
+def test_the_figures_of_a_run_are_a_dict_to_everybody_else(run: c2d.Run) -> None:
+    plain = dict(run.metrics)
+    for twin in (pickle.loads(pickle.dumps(run.metrics)), copy.deepcopy(run.metrics)):
+        assert twin == plain
+        assert type(twin) is type(run.metrics)
+    assert json.loads(json.dumps(run.metrics)) == plain
+    plain["time"] = -1.0
+    assert run.metrics != plain
+    assert run.metrics | {"time": -1.0} == plain
 
 
 def test_a_summary_has_the_same_figures_and_refuses_arrays_clearly(run: c2d.Run) -> None:

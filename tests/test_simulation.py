@@ -106,10 +106,24 @@ def test_a_broken_scenario_is_refused(scenario: Scenario) -> None:
     assert caught.value.path == "robot.mass"
 
 
-@pytest.mark.parametrize("copied", [copy.deepcopy, pickle.dumps])
-def test_a_simulation_says_that_it_cannot_be_copied(scenario: Scenario, copied: Any) -> None:
-    with pytest.raises(TypeError, match="Simulation"):
-        copied(c2d.Simulation(scenario))
+def pickled(sim: c2d.Simulation) -> c2d.Simulation:
+    twin: c2d.Simulation = pickle.loads(pickle.dumps(sim))
+    return twin
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, pickled])
+def test_a_copied_simulation_goes_its_own_way(scenario: Scenario, copied: Any) -> None:
+    sim = c2d.Simulation(scenario)
+    sim.advance(0.5)
+    before = sim.snapshot()
+    twin = copied(sim)
+    assert type(twin) is c2d.Simulation
+    assert twin.scenario == scenario
+    assert twin.snapshot() == before
+    twin.command(speed=-0.1)
+    twin.advance(0.5)
+    assert sim.snapshot() == before
+    assert sim.time == pytest.approx(0.5)
 
 
 def test_threads_take_turns_on_one_simulation(scenario: Scenario) -> None:

@@ -173,7 +173,7 @@ def test_a_model_without_driven_wheels_has_one_motor(track: Any) -> None:
 def test_every_driven_wheel_may_have_a_motor_of_its_own(model: Any, wheel: Any) -> None:
     scenario = Scenario(ROBOT.with_track(model(wheel)), c2d.terrains.flat(), duration=0.3)
     run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": "wheel"}))
-    count = len(run.scenario.robot.wheels())
+    count = len(run.scenario.robot.wheels()) // 2  # both sides
     assert run.drive_speeds.shape[1] == run.drive_positions.shape[1] == count
     assert run.metrics["distance"] > 0.0
 

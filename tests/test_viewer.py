@@ -214,6 +214,7 @@ def test_fifteen_seconds_take_less_than_500_kb(
     assert size < 500_000
 
 
+@pytest.mark.filterwarnings("ignore:goal cannot be reached:crawler2d.ScenarioWarning")
 def test_a_long_run_is_thinned_and_the_page_says_so() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=4.0, sample_interval=1e-3, goal=1e3)
     assert run.time.size > MOST_FRAMES

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from conftest import GEAR, PLACEMENTS, ROBOT, refusal
+from conftest import GEAR, PLACEMENTS, ROBOT, refusal, with_flippers
 from crawler2d import _core
 from crawler2d.scenario import Scenario
 
@@ -27,8 +27,14 @@ def gears(robot: c2d.Robot) -> list[dict[str, Any]]:
     return gears
 
 
-def centers(robot: c2d.Robot) -> np.ndarray[Any, Any]:
+def of_one_side(robot: c2d.Robot) -> dict[str, np.ndarray[Any, Any]]:
+    """The wheels of the left side; those of the right are alike."""
     wheels = robot.wheels()
+    return {name: column[wheels["side"] == "left"] for name, column in wheels.items()}
+
+
+def centers(robot: c2d.Robot) -> np.ndarray[Any, Any]:
+    wheels = of_one_side(robot)
     return np.column_stack([wheels["x"], wheels["y"]])
 
 
@@ -89,7 +95,7 @@ def test_spaced_wheels_sit_at_equal_ways_round_the_outline(robot: c2d.Robot, rad
         places = centers(wheels)
         expected = [on_path_of_centers(robot, radius, i / count) for i in range(count)]
         assert places == pytest.approx(np.array(expected), abs=EXACTLY), count
-        assert wheels.wheels()["radius"].tolist() == [radius] * count
+        assert of_one_side(wheels)["radius"].tolist() == [radius] * count
         assert [depth_inside(robot, p) for p in places] == pytest.approx([radius] * count)
 
 
@@ -97,7 +103,7 @@ def test_spaced_wheels_sit_at_equal_ways_round_the_outline(robot: c2d.Robot, rad
 def test_tight_wheels_touch_their_neighbours_and_nobody_else(robot: c2d.Robot, least: int) -> None:
     for count in range(least, 41):
         wheels = ring(robot, count)
-        places, radii = centers(wheels), wheels.wheels()["radius"]
+        places, radii = centers(wheels), of_one_side(wheels)["radius"]
         assert np.ptp(radii) == 0.0
         assert len(places) == count
         apart = np.linalg.norm(places[:, None] - places, axis=2)
@@ -121,7 +127,7 @@ def test_circumferential_wheels_are_counted_along_belt_travel_from_the_lower_rea
     assert np.all(np.diff(turns) < 0.0)  # clockwise
     assert x[-1] > x[0]
     assert y[-1] == pytest.approx(y[0])
-    assert robot.wheels()["body"].tolist() == list(range(24))
+    assert robot.wheels()["body"].tolist() == [*range(24), *range(24)]
     assert robot.wheels()["body"].dtype == np.int64
 
 
@@ -158,7 +164,7 @@ def test_circumferential_wheels_are_smaller_than_the_smaller_end(radius: float) 
 
 
 def test_a_line_of_wheels_tapers_with_the_outline() -> None:
-    wheels = TAPERED.with_track(c2d.LineOfWheels(4)).wheels()
+    wheels = of_one_side(TAPERED.with_track(c2d.LineOfWheels(4)))
     assert wheels["radius"] == pytest.approx([0.08, 0.07, 0.06, 0.05])
     assert wheels["x"] == pytest.approx(OUTLINE.axle_distance * np.array([-3, -1, 1, 3]) / 6)
     assert wheels["y"].tolist() == [0.0] * 4
@@ -168,7 +174,7 @@ def test_a_line_of_wheels_tapers_with_the_outline() -> None:
 
 
 def test_hybrid_wheels_sit_where_they_are_placed() -> None:
-    wheels = ROBOT.with_track(c2d.HybridWheels(PLACEMENTS)).wheels()
+    wheels = of_one_side(ROBOT.with_track(c2d.HybridWheels(PLACEMENTS)))
     assert np.column_stack([wheels["x"], wheels["y"], wheels["radius"]]).tolist() == PLACEMENTS
 
 
@@ -253,11 +259,73 @@ def test_a_gear_is_as_large_and_heavy_as_its_outline(name: str) -> None:
         assert wheels["mass"][index] == pytest.approx(mass, rel=1e-3)
 
 
-@pytest.mark.parametrize("track", [c2d.BeltTrack(), c2d.ForceTrack()], ids=["belt", "skids"])
+@pytest.mark.parametrize("name", MODELS)
+def test_both_sides_are_listed_and_are_alike(name: str) -> None:
+    wheels = ROBOT.with_track(MODELS[name]).wheels()
+    half = len(wheels) // 2
+    assert wheels["side"].tolist() == ["left"] * half + ["right"] * half
+    assert set(wheels["carrier"]) == {"chassis"}
+    for column in set(wheels) - {"side"}:
+        assert wheels[column][:half].tolist() == wheels[column][half:].tolist()
+    # What circulates, of both sides together.
+    circulating = (wheels["moment_of_inertia"] / wheels["radius"] ** 2).sum()
+    assert circulating == pytest.approx(ROBOT.track_mass)
+
+
+@pytest.mark.parametrize("ends", ["front", "rear", "both"])
+@pytest.mark.parametrize("arms", [None, c2d.LineOfWheels(4, wheel=GEAR)], ids=["own", "gears"])
+@pytest.mark.parametrize("track", [c2d.LineOfWheels(5), c2d.BeltTrack()], ids=["line", "belt"])
+def test_the_wheels_of_flippers_are_listed(ends: str, arms: Any, track: Any) -> None:
+    robot = with_flippers(track, arms, ends)
+    flippers, wheels = robot.flippers, robot.wheels()
+    assert flippers is not None
+    there = [end for end in ("front", "rear") if ends in (end, "both")]
+    on_arms = arms if arms is not None else track
+    count = getattr(on_arms, "count", 0)
+    of_chassis = getattr(track, "count", 0)
+    carriers = ["chassis"] * of_chassis + [f"{e} flipper" for e in there for _ in range(count)]
+    assert wheels["carrier"].tolist() == 2 * carriers
+    bodies = {part for part, kind in bodies_of(robot).items() if kind == WHEEL}
+    assert bodies <= set(wheels["body"].tolist())
+    for end in there if count else []:
+        of_arm = wheels["carrier"] == f"{end} flipper"
+        assert of_arm.sum() == 2 * count
+        sign = 1.0 if end == "front" else -1.0
+        pivot = np.array([0.5 * sign * OUTLINE.axle_distance, 0.0])
+        along = np.array([sign * math.cos(flippers.angle), math.sin(flippers.angle)])
+        places = np.column_stack([wheels["x"], wheels["y"]])[of_arm] - pivot
+        ways = np.sort(places @ along)[::2]
+        assert ways == pytest.approx(np.linspace(0.0, flippers.length, count), abs=1e-12)
+        assert places @ [along[1], -along[0]] == pytest.approx(0.0, abs=1e-12)
+        at_root = wheels["radius"][of_arm][np.argmin(places @ along)]
+        assert at_root == pytest.approx(flippers.root_radius)
+        # A tenth of both arms at this end.
+        circulating = (wheels["moment_of_inertia"] / wheels["radius"] ** 2)[of_arm].sum()
+        assert circulating == pytest.approx(0.1 * 2.0 * flippers.mass)
+
+
+WHEEL = 0
+
+
+def bodies_of(robot: c2d.Robot) -> dict[int, int]:
+    """Kinds of the bodies that touch the ground while arms swing down and up."""
+    run = c2d.simulate(
+        robot, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0, gait=c2d.Hold(-0.5)), duration=1.5
+    )
+    contacts = run.contacts
+    return dict(zip(contacts["body"].tolist(), contacts["body_kind"].tolist(), strict=True))
+
+
+@pytest.mark.parametrize(
+    "track",
+    [c2d.BeltTrack(), c2d.ForceTrack(), c2d.SegmentalTrack(mechanism="sprocket")],
+    ids=["belt", "skids", "chain"],
+)
 def test_a_model_without_wheels_lists_none(track: Any) -> None:
     wheels = ROBOT.with_track(track).wheels()
     assert len(wheels) == 0
-    assert list(wheels) == ["body", "x", "y", "radius", "area", "mass", "moment_of_inertia"]
+    names = "side carrier body x y radius area mass moment_of_inertia"
+    assert list(wheels) == names.split()
 
 
 def test_a_robot_that_breaks_a_rule_has_no_wheels() -> None:
@@ -272,6 +340,6 @@ def test_the_wheels_of_a_slow_a_fast_or_a_huge_robot_are_listed() -> None:
             ROBOT.with_track(c2d.LineOfWheels(2, wheel_radius=0.001)),
             drivetrain=dataclasses.replace(ROBOT.drivetrain, max_speed=speed),
         )
-        assert len(robot.wheels()) == 2
+        assert len(robot.wheels()) == 4
     huge = c2d.Robot.simple(1e3, axle_distance=100.0, radius=50.0, track=c2d.LineOfWheels(2))
-    assert huge.wheels()["x"].tolist() == [-50.0, 50.0]
+    assert huge.wheels()["x"].tolist() == [-50.0, 50.0, -50.0, 50.0]

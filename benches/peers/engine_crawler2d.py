@@ -60,13 +60,15 @@ class Crawler2D:
         poses = np.empty((len(run.time), len(scene.bodies), 3))
         poses[:, 0, :2], poses[:, 0, 2] = run.position, run.chassis_angle
         wheels = ready.robot.wheels()
-        centers = np.column_stack([wheels["x"], wheels["y"]])
+        # Both sides are alike: the wheels of the left one.
+        left = wheels["side"] == "left"
+        centers, radii = np.column_stack([wheels["x"], wheels["y"]])[left], wheels["radius"][left]
         for index, joint in enumerate(scene.joints):
             # Wheels are counted along the belt here.
             drive = int(np.argmin(np.hypot(*(centers - joint.pa).T)))
             poses[:, index + 1] = _wheel(poses[:, 0], centers[drive])
             way = run.drive_positions[:, drive]
-            poses[:, index + 1, 2] -= way / wheels["radius"][drive]
+            poses[:, index + 1, 2] -= way / radii[drive]
         return Motion.of(run.time, poses, run.metrics["max_penetration"])
 
 
@@ -96,12 +98,13 @@ def as_it_is(name: str) -> Scenario:
     if not name.startswith("lwa3"):
         return base
     wheels, robot = base.robot.wheels(), base.robot
+    without = np.flatnonzero(np.isin(wheels["body"], (1, 3)))
     return base.replace(
         {
-            # Each wheel of 1 kg takes its mass and its inertia along.
+            # Each wheel, half of 1 kg, takes its mass and its inertia along.
             "robot.mass": robot.mass - 2.0,
             "robot.moment_of_inertia": robot.moment_of_inertia
-            - sum(1.0 * wheels["x"][i] ** 2 + wheels["moment_of_inertia"][i] for i in (1, 3)),
+            - sum(0.5 * wheels["x"][i] ** 2 + wheels["moment_of_inertia"][i] for i in without),
             "robot.track_mass": robot.track_mass * 3 / 5,
             "robot.drivetrain.max_torque": robot.drivetrain.max_torque * 3 / 5,
             "robot.track.count": 3,

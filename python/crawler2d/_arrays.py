@@ -28,7 +28,7 @@ def frozen_scalar(value: Any, *, whole: bool) -> Any:
     Returns
     -------
     object
-        An equal Python object.
+        An equal Python object; there is one zero, 0.0.
     """
     if isinstance(value, np.generic) or (type(value) is np.ndarray and value.ndim == 0):
         value = value.item()
@@ -36,7 +36,7 @@ def frozen_scalar(value: Any, *, whole: bool) -> Any:
         value = float(value)  # its .item() is itself
     if not whole and type(value) is int and abs(value) <= _EXACT:
         value = float(value)
-    return value
+    return value + 0.0 if type(value) is float else value
 
 
 def real_number(value: Any, path: str) -> float:
@@ -99,7 +99,7 @@ def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
         exact = array.astype(np.float64)
     if not _same_numbers(array, exact):
         raise ScenarioError(path, _described(value, array), "must hold numbers that fit in float64")
-    numbers = exact.tolist()
+    numbers = (exact + 0.0).tolist()  # there is one zero
     return tuple(map(tuple, numbers)) if rows else tuple(numbers)
 
 

@@ -13,6 +13,8 @@ __all__ = [
     "identity",
     "simulate",
     "simulate_many",
+    "validate",
+    "wheels",
 ]
 
 @final
@@ -55,3 +57,5 @@ def simulate_many(
     counterfactual: bool,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[list[dict[str, Any] | None], bool]: ...
+def validate(text: str) -> None: ...
+def wheels(text: str) -> dict[str, Any]: ...

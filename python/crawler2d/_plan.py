@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from crawler2d import _core
 from crawler2d._axes import Axis
 from crawler2d._paths import read_path
 from crawler2d.draws import Variation, uniform_numbers
@@ -84,7 +85,7 @@ def _named(place: str) -> Iterator[None]:
 def _refusal(scenario: Scenario, place: str) -> ScenarioError | None:
     try:
         with _named(place):
-            scenario.validate()
+            _core.canonical(scenario.to_json())  # doubts are told once, by what runs the batch
     except ScenarioError as error:
         return error
     return None

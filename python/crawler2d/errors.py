@@ -1,7 +1,8 @@
 """What can go wrong, as exceptions.
 
 Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`: an interrupt must
-not be swallowed by ``except Exception``. All of them survive pickling with their attributes.
+not be swallowed by ``except Exception``. A `ScenarioWarning` stops nothing. All of them survive
+pickling with their attributes.
 """
 
 from __future__ import annotations
@@ -66,7 +67,36 @@ class ScenarioError(Crawler2dError, ValueError):
 
 
 class ScenarioWarning(UserWarning):
-    """A scenario is legal but unlikely to be what was meant."""
+    """A scenario is legal but unlikely to be what was meant; it is simulated as it is.
+
+    Parameters
+    ----------
+    path : str
+        Dotted path of the field, such as ``terrain.height``.
+    value : object
+        The value found there.
+    reason : str
+        What makes it doubtful, starting with a verb: "is usually ...".
+
+    Examples
+    --------
+    >>> print(ScenarioWarning("terrain.height", 75.0, "is usually at most 1.5 m"))
+    terrain.height is usually at most 1.5 m, got 75.0
+    """
+
+    path: str
+    value: object
+    reason: str
+
+    def __init__(self, path: str, value: object, reason: str) -> None:
+        super().__init__(path, value, reason)
+        self.path = path
+        self.value = value
+        self.reason = reason
+
+    def __str__(self) -> str:
+        """Name the field, the reason and the value."""
+        return f"{self.path} {self.reason}, got {self.value}"
 
 
 class SimulationDiverged(Crawler2dError, RuntimeError):

@@ -32,7 +32,7 @@ class Flippers(Parameters):
         [m] From the pivot to the axle at the tip.
     root_radius, tip_radius : float
         [m] Radius about the pivot and about the axle at the tip, to the grouser tips. The grousers
-        are those of `robot.outline`.
+        are those of `robot.outline`. A line of wheels with a `wheel_radius` has that one instead.
     mass : float
         [kg] Of one arm with its track; part of `robot.mass`. It is spread evenly from the pivot to
         the axle at the tip.

@@ -44,7 +44,8 @@ def plot_run(
         axes = (axes,)
     if len(axes) not in (1, 4):
         raise ScenarioError("axes", f"{len(axes)} axes", "must be one Axes or four")
-    axes[0].set_title(_title(run), loc="left", fontsize="medium")
+    # The robot's name is no formula, whatever it holds.
+    axes[0].set_title(_title(run), loc="left", fontsize="medium", parse_math=False)
     side_view(run, times, axes[0])
     if len(axes) == 4:
         time_strips(run, tuple(axes[1:]))

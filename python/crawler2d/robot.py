@@ -201,16 +201,20 @@ class Robot(Parameters):
         return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
 
     def wheels(self) -> Table:
-        """List the wheels of the track model, those of both sides as one.
+        """List every wheel of the track model, of both sides and of the flippers.
 
         Returns
         -------
         Table
-            One row a wheel, in the order of eq. (1); empty for belts and skids. Columns: `body`
-            (as in the contacts), `x` and `y` [m] (axle in the chassis frame), `radius` [m] (of the
-            circumscribed circle), `area` [m^2] (of the true outline), `moment_of_inertia` [kg m^2]
-            (the wheel's share of the circulating track's) and `mass` [kg] (of the uniform wheel of
-            this outline that has this moment of inertia).
+            One row a wheel, first those of the left side, of each side first those of the chassis,
+            in the order of eq. (1); empty for belts, skids and chains of shoes. Columns: `side`
+            ("left", "right"), `carrier` ("chassis", "front flipper", "rear flipper"), `body` (as in
+            the contacts where both tracks meet the same ground, one number for the wheels of both
+            sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at their `angle`),
+            `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true outline),
+            `moment_of_inertia` [kg m^2] (this wheel's share of what circulates: the wheels of the
+            chassis have `track_mass` together, those of a flipper a tenth of its mass) and `mass`
+            [kg] (of the uniform wheel of this outline that has this moment of inertia).
 
         Raises
         ------
@@ -221,8 +225,10 @@ class Robot(Parameters):
         --------
         >>> import crawler2d as c2d
         >>> wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3)).wheels()
-        >>> wheels["x"].tolist(), wheels["mass"].tolist()
-        ([-0.1825, 0.0, 0.1825], [1.6, 1.6, 1.6])
+        >>> wheels["side"].tolist()
+        ['left', 'left', 'left', 'right', 'right', 'right']
+        >>> wheels["x"][:3].tolist(), wheels["mass"][:3].tolist()
+        ([-0.1825, 0.0, 0.1825], [0.8, 0.8, 0.8])
         """
         from crawler2d.scenario import Drive, Scenario, Solver  # noqa: PLC0415 - it imports us
         from crawler2d.terrain import Points  # noqa: PLC0415
@@ -231,7 +237,7 @@ class Robot(Parameters):
         # At rest and in the shortest steps, the robot alone decides what is refused.
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
         scenario = Scenario(self, ground, drive=drive, solver=solver)
-        return Table(_core.geometry(scenario.to_json())["wheels"])
+        return Table(_core.wheels(scenario.to_json()))
 
     @staticmethod
     def simple(

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from crawler2d import branch as branching
+from crawler2d._frozen import Figures, read_only
 from crawler2d._recording import Recording
 from crawler2d.diagnosis import Counterfactual, Diagnosis, Mechanism
 from crawler2d.errors import Crawler2dError
 from crawler2d.outcome import Outcome
-from crawler2d.table import Table, read_only
+from crawler2d.table import Table
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -42,7 +43,8 @@ class Run:
     diagnosis : Diagnosis or None
         Why it stopped, if it ended in a stop; ``print(run.diagnosis)`` says it in a sentence.
     metrics : dict of str to float
-        Figures of the whole run, see the notes.
+        Figures of the whole run, see the notes; ``dict(run.metrics)`` is a copy that can be
+        changed.
     edges : Table
         Corners of the ground: `id`, `lane`, `x`, `y` [m], `angle` [rad] (convex > 0), `radius` [m].
     events : Table
@@ -127,7 +129,7 @@ class Run:
         self.outcome = Outcome(result["outcome"]) if error is None else None
         why = result.get("diagnosis")
         self.diagnosis = None if why is None else Diagnosis.from_core(why)
-        self.metrics: dict[str, float] = dict(result.get("metrics", {}))
+        self.metrics = Figures(result.get("metrics", {}))
         self.edges = Table(result.get("edges", {}))
         self.events = Table(result.get("events", {}))
         self.wall_time: float = result.get("wall_time", 0.0)

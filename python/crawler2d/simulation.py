@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d._arrays import real_number
+from crawler2d._frozen import read_only
 from crawler2d.diagnosis import Diagnosis
 from crawler2d.errors import ScenarioError
 from crawler2d.outcome import Outcome
 from crawler2d.scenario import Scenario
-from crawler2d.table import Table, read_only
+from crawler2d.table import Table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,7 +64,7 @@ class Simulation:
     """A scenario under way.
 
     Nothing ends it: it can be advanced beyond the scenario's duration and outcome. Any thread may
-    use it, one at a time.
+    use it, one at a time. A copy, also by `copy` or `pickle`, is independent, as by `snapshot`.
 
     Parameters
     ----------
@@ -208,6 +209,10 @@ class Simulation:
         simulation.scenario = Scenario.from_json(simulation._core.scenario())
         return simulation
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle by way of a snapshot: the twin is independent, of the same build."""
+        return type(self).from_snapshot, (self.snapshot(),)
+
     def diagnosis(self) -> Diagnosis | None:
         """Say why the robot has stopped.
 
@@ -225,11 +230,11 @@ class Simulation:
         Returns
         -------
         State
-            A copy; advancing the simulation does not change it.
+            A copy, read-only; advancing the simulation does not change it.
         """
         state = self._core.state()
-        state["position"] = read_only(state["position"])
-        state["velocity"] = read_only(state["velocity"])
+        for name in ("position", "velocity", "flipper_angles"):
+            state[name] = read_only(state[name])
         state["contacts"] = Table(state["contacts"])
         state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])
         return State(**state)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from crawler2d._arrays import frozen_scalar
 from crawler2d._axes import Axis, read_axes
-from crawler2d._core import build_info
+from crawler2d._core import build_info, canonical
 from crawler2d._extras import extra
 from crawler2d._plan import plan_runs
 from crawler2d._progress import Progress
@@ -195,7 +195,7 @@ def tabulate(
     with_times = yes_or_no(wall_time, "wall_time")
     repeats = _whole(repeats, "repeats", 1, 10**6)
     seed = _whole(seed, "seed", 0, 2**64 - 1)
-    scenario.validate()
+    canonical(scenario.to_json())
     variation = Variation.of(scenario, vary, [path for axis in axes for path in axis.paths])
     plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed)
     if on_error == "raise":

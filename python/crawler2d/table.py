@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d._extras import extra
+from crawler2d._frozen import read_only
 
 if TYPE_CHECKING:
     import pandas
@@ -92,13 +93,6 @@ class Table(Mapping[str, "NDArray[Any]"]):
         )
         more = f"<p>{len(self)} rows, {_SHOWN} shown</p>" if len(self) > _SHOWN else ""
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
-
-
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """View an array without the right to write: a result is not changed by accident."""
-    view = array.view()
-    view.flags.writeable = False
-    return view
 
 
 def _column(values: Any) -> NDArray[Any]:

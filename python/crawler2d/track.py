@@ -44,8 +44,8 @@ class GearWheel(Parameters):
     Parameters
     ----------
     grouser_count : int, optional
-        Grousers round the wheel, 3 to 200. None takes as many as fit at the robot's grouser pitch
-        on the root circle, or 8 where that is fewer than 6.
+        Grousers round the wheel, 3 to 200. None takes the whole number that comes nearest to the
+        robot's grouser pitch on the root circle, or 8 where that is fewer than 6.
     grouser_height : float, optional
         [m] Radius of the wheel less that of its root circle. None takes the robot's, at most a
         quarter of the radius.

@@ -216,9 +216,14 @@ pub(crate) fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py,
     Ok(columns)
 }
 
-/// Wheels of both sides together, as an engine of bodies and joints would hold them.
+/// The wheels of both sides, those of the left one first.
 pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
-    let (_, wheels) = model.bodies();
+    let of_side = || model.wheels().into_iter().map(WheelBody::of_one_side);
+    let sides = ["left", "right"];
+    let rows = sides
+        .iter()
+        .flat_map(|side| of_side().map(move |wheel| (*side, wheel)));
+    let (side, wheels): (Vec<&str>, Vec<WheelBody>) = rows.unzip();
     let columns = PyDict::new(py);
     let column = |value: fn(&WheelBody) -> f64| {
         wheels
@@ -231,6 +236,9 @@ pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py,
         .iter()
         .filter_map(|w| i64::try_from(w.part).ok())
         .collect();
+    let carrier: Vec<&str> = wheels.iter().map(|w| model.carrier(w.mount)).collect();
+    columns.set_item("side", side)?;
+    columns.set_item("carrier", carrier)?;
     columns.set_item("body", body.into_pyarray(py))?;
     columns.set_item("x", column(|w| w.center.x))?;
     columns.set_item("y", column(|w| w.center.y))?;

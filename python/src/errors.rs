@@ -1,6 +1,8 @@
-//! Errors of the core as the Python exceptions of `crawler2d.errors`; no panic leaves this file.
+//! Errors and doubts of the core as the Python exceptions of `crawler2d.errors`; no panic leaves this file.
 
-use crawler2d_core::{Error, LimitError, check_rounding};
+use std::collections::HashSet;
+
+use crawler2d_core::{Doubt, Error, LimitError, check_rounding};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -59,6 +61,18 @@ pub(crate) fn limit(message: &str) -> PyErr {
 /// A wrong argument that is no field of the scenario.
 pub(crate) fn argument(path: &str, value: &str, rule: &str) -> PyErr {
     Python::attach(|py| raise(py, "ScenarioError", (path, value, rule), None))
+}
+
+/// Warns of doubts at the line of the caller's own code; of each field once, whatever a batch has there.
+pub(crate) fn warn(py: Python<'_>, doubts: impl IntoIterator<Item = Doubt>) -> PyResult<()> {
+    let mut seen = HashSet::new();
+    for doubt in doubts {
+        if seen.insert(doubt.path.clone()) {
+            let warn = py.import("crawler2d._doubts")?.getattr("warn")?;
+            warn.call1((doubt.path, doubt.value, doubt.reason))?;
+        }
+    }
+    Ok(())
 }
 
 /// The exceptions are defined in Python so that they pickle.

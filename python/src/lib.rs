@@ -15,7 +15,7 @@ mod _core {
     use std::sync::Mutex;
     use std::time::{Duration, Instant};
 
-    use crawler2d_core::{Cancel, Error, Ground, Model, Progress, Record, Run, Scenario};
+    use crawler2d_core::{Cancel, Doubt, Error, Ground, Model, Progress, Record, Run, Scenario};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -35,6 +35,13 @@ mod _core {
         built(py, text, |text| Ok(Scenario::from_json(text)?.to_json()))
     }
 
+    /// Checks a scenario, and warns of what is unlikely to be meant.
+    #[pyfunction]
+    fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
+        let (_, doubts) = built(py, text, Scenario::examined)?;
+        errors::warn(py, doubts)
+    }
+
     /// SHA-256 of the canonical JSON.
     #[pyfunction]
     fn identity(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
@@ -51,6 +58,13 @@ mod _core {
             Ok((scenario, model, ground))
         })?;
         pictures::of(py, &scenario, &model, &ground)
+    }
+
+    /// The wheels of a scenario's robot.
+    #[pyfunction]
+    fn wheels<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
+        let model = errors::guarded(|| Ok(Model::new(&Scenario::from_json(text)?.robot)?))?;
+        convert::wheels(py, &model)
     }
 
     /// One run.
@@ -162,7 +176,8 @@ mod _core {
         record: Record,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(Results, Option<PyErr>)> {
-        let scenarios = read_all(py, texts)?;
+        let (scenarios, doubts): (Vec<_>, Vec<_>) = read_all(py, texts)?.into_iter().unzip();
+        errors::warn(py, doubts.into_iter().flatten())?;
         let progress = progress.map(Bound::unbind);
         let total = scenarios.len();
         let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);
@@ -194,8 +209,8 @@ mod _core {
         Ok((results, interrupted.into_inner().unwrap_or_default()))
     }
 
-    /// Reads scenarios, and looks for Ctrl-C now and then.
-    fn read_all(py: Python<'_>, texts: &[PyBackedStr]) -> PyResult<Vec<Scenario>> {
+    /// Reads scenarios with what is doubtful in them, and looks for Ctrl-C now and then.
+    fn read_all(py: Python<'_>, texts: &[PyBackedStr]) -> PyResult<Vec<(Scenario, Vec<Doubt>)>> {
         const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
         let mut looked = Instant::now();
@@ -204,7 +219,7 @@ mod _core {
                 py.check_signals()?;
                 looked = Instant::now();
             }
-            built(py, text.clone_ref(py), Scenario::from_json)
+            built(py, text.clone_ref(py), Scenario::examined)
         };
         texts.iter().map(read).collect()
     }

@@ -5,7 +5,7 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::convert::{edges, rows, wheels};
+use crate::convert::{edges, rows};
 
 /// Everything a picture needs; of two tracks the right one, which is in front in a side view.
 pub(crate) fn of<'py>(
@@ -44,7 +44,6 @@ pub(crate) fn of<'py>(
     result.set_item("shoes", shoes)?;
     let sprocket = model.chains.last().map(|chain| sprocket(py, chain));
     result.set_item("sprocket", sprocket.transpose()?.flatten())?;
-    result.set_item("wheels", wheels(py, model)?)?;
     let none = || points(py, &[]).into_any();
     result.set_item("belly", belly.get_item(0).unwrap_or_else(|_| none()))?;
     result.set_item("flippers", flippers)?;

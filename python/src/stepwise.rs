@@ -28,9 +28,11 @@ type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, text: PyBackedStr) -> PyResult<Self> {
-        let simulation = beside(py, &Cancel::default(), move || {
-            crawler2d_core::Simulation::new(&Scenario::from_json(&text)?)
+        let (simulation, doubts) = beside(py, &Cancel::default(), move || {
+            let (scenario, doubts) = Scenario::examined(&text)?;
+            Ok((crawler2d_core::Simulation::new(&scenario)?, doubts))
         })?;
+        errors::warn(py, doubts)?;
         Ok(Self::of(simulation))
     }
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::error::{Error, ScenarioError};
 use crate::needs;
 use crate::robot::{Model, Part};
-use crate::scenario::Scenario;
+use crate::scenario::{Doubt, Scenario, parse};
 use crate::start::start_position;
 use crate::terrain::Ground;
 
@@ -31,10 +31,16 @@ impl Scenario {
     /// # Errors
     /// The first broken rule, with the path of its field; a text or a ground beyond what memory holds.
     pub fn from_json(text: &str) -> Result<Self, Error> {
+        Self::examined(text).map(|(scenario, _)| scenario)
+    }
+
+    /// The same, with what is legal but unlikely to be meant.
+    ///
+    /// # Errors
+    /// As [`Self::from_json`].
+    pub fn examined(text: &str) -> Result<(Self, Vec<Doubt>), Error> {
         check_text(text)?;
-        let value: Value = serde_json::from_str(text)
-            .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
-        Self::checked(&value)
+        Self::checked(&parse(text)?)
     }
 
     /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
@@ -47,14 +53,15 @@ impl Scenario {
         Self::checked(&value).map(|_| ())
     }
 
-    fn checked(value: &Value) -> Result<Self, Error> {
+    fn checked(value: &Value) -> Result<(Self, Vec<Doubt>), Error> {
         let scenario = Self::read(value)?;
-        scenario.check()?;
-        Ok(scenario)
+        let to_goal = scenario.check()?;
+        let doubts = scenario.doubts(to_goal);
+        Ok((scenario, doubts))
     }
 
-    /// Rules that join several branches of the tree.
-    fn check(&self) -> Result<(), Error> {
+    /// Rules that join several branches of the tree; how far [m] the robot has to go to leave its goal behind.
+    fn check(&self) -> Result<f64, Error> {
         self.drive.check(&self.robot.drivetrain)?;
         let limit = self.robot.drivetrain.max_speed;
         let model = Model::new(&self.robot)?;
@@ -78,8 +85,10 @@ impl Scenario {
         }
         needs::ask_for_ground(&self.terrain)?;
         let ground = Ground::new(&self.terrain, self.robot.gauge)?;
-        start_position(self, &model.placed_on(&ground), &ground)?;
-        Ok(())
+        let start = start_position(self, &model.placed_on(&ground), &ground)?;
+        let outline = &self.robot.outline;
+        let rear = start.x - 0.5 * outline.axle_distance * libm::cos(self.start.angle);
+        Ok(ground.goal_of(self) + outline.rear_radius - rear)
     }
 
     /// What turns farther than this between two collision checks passes over corners unseen.

@@ -70,11 +70,11 @@ pub use robot::{BodyKind, Model, Mount, Part, Shape};
 pub use rounding::check_rounding;
 pub use run::{Metrics, Run, branch, counterfactual, simulate};
 pub use scenario::{
-    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Drive, Drivetrain, End,
-    Ends, FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack,
-    Hold, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario, SegmentalTrack,
-    SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing, Track,
-    TrackOutline, Wheel,
+    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Doubt, Drive,
+    Drivetrain, End, Ends, FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel,
+    GrouserBeltTrack, Hold, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario,
+    SegmentalTrack, SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing,
+    Track, TrackOutline, Wheel,
 };
 pub use simulation::{Counterfactual, Simulation};
 pub use terrain::{Edge, Ground, Profile, Side};

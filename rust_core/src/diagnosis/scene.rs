@@ -235,11 +235,12 @@ impl Scene<'_> {
             (supports, closed),
             stance.drives.iter().map(stands).collect(),
             self.hinges(pose),
-            (
-                self.direction(),
+            self.direction(),
+            [
                 self.model.drive_force / weight,
+                self.criteria.torque_limit,
                 self.half_length,
-            ),
+            ],
         )
     }
 

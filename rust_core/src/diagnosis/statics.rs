@@ -13,9 +13,6 @@ use super::hinges::Hinge;
 use crate::dynamics::{Direction, push_axis};
 use crate::robot::Model;
 
-/// Share of its limit that a motor at its limit has at least.
-const AT_LIMIT: f64 = 0.98;
-
 /// A stop as forces that could be.
 #[derive(Clone, Debug)]
 pub(super) struct Statics {
@@ -28,6 +25,8 @@ pub(super) struct Statics {
     stalled: Vec<f64>,
     /// Largest force of a motor, in weights.
     torque: f64,
+    /// Share of it that a motor at its limit has at least.
+    at_limit: f64,
     /// [m] Moments count as forces at this lever.
     lever: f64,
     radius: f64,
@@ -105,15 +104,17 @@ enum Drives {
 }
 
 impl Statics {
-    /// `command` is the sign of the commanded speed, `torque` the largest force of a motor in
-    /// weights, `lever` [m] makes moments comparable with forces.
+    /// `command` is the sign of the commanded speed, `torque` the largest force of a motor in weights,
+    /// `at_limit` the share of it from which a motor is at its limit, `lever` [m] makes moments
+    /// comparable with forces.
     pub(super) fn new(
         model: &Model,
         angle: f64,
         (supports, closed): (Vec<Support>, Vec<Support>),
         stalled: Vec<f64>,
         hinges: Vec<Hinge>,
-        (command, torque, lever): (f64, f64, f64),
+        command: f64,
+        [torque, at_limit, lever]: [f64; 3],
     ) -> Self {
         let bears = |k: usize| {
             (model.pushes_chassis && k == 0) || supports.iter().any(|s| s.drive == Some(k))
@@ -137,6 +138,7 @@ impl Statics {
             motors,
             stalled,
             torque,
+            at_limit,
             lever,
             radius: model.drive_radius,
             push,
@@ -264,14 +266,15 @@ impl Statics {
         } else {
             self.torque
         };
+        let at_limit = self.at_limit * torque;
         for (k, motor) in self.motors.iter().enumerate().filter(|(_, m)| **m != 0.0) {
             // A motor with nothing left to bear on turns freely.
             let bears = self.push.is_some() || bearing.iter().any(|s| s.drive == Some(k));
             let bounds = match drives {
                 _ if !bears => (-torque, torque),
                 Drives::Stand => (motor * torque, motor * torque),
-                Drives::Hold if self.stalled[k] > 0.0 => (AT_LIMIT * torque, torque),
-                Drives::Hold if self.stalled[k] < 0.0 => (-torque, -AT_LIMIT * torque),
+                Drives::Hold if self.stalled[k] > 0.0 => (at_limit, torque),
+                Drives::Hold if self.stalled[k] < 0.0 => (-torque, -at_limit),
                 _ => (-torque, torque),
             };
             forces.push(Source::Motor(k), self.motor_column(k), bounds);

@@ -1,5 +1,6 @@
 //! Watches a run: goal, tip-over, stops. It only reads, and ends a run when its outcome is certain.
 
+mod bearing;
 mod progress;
 #[cfg(test)]
 mod tests;
@@ -143,7 +144,8 @@ struct Anchor {
     x: f64,
     y: f64,
     angle: f64,
-    contacts: u64,
+    /// Of what bears there.
+    bearing: u64,
 }
 
 impl Monitor {
@@ -303,33 +305,19 @@ impl Monitor {
 
     /// A state that does not change at all will not change later: the run may end.
     fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[LoadedContact]) {
-        let contacts = loaded
-            .iter()
-            .filter(|l| l.normal_force > 0.0)
-            .fold(0_u64, |sum, l| {
-                // Order does not matter, and neither does on which side of a vertex an edge was found.
-                let place = if l.contact.edge >= 0 {
-                    l.contact.edge as u64 + (1 << 32)
-                } else {
-                    l.contact.facet as u64
-                };
-                sum.wrapping_add(
-                    (place << 8 | l.contact.part as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15),
-                )
-            });
         let here = Anchor {
             since: now.time,
             x: now.position.x,
             y: now.position.y,
             angle: now.chassis_angle,
-            contacts,
+            bearing: bearing::signature(loaded),
         };
         let tolerance = self.criteria.stationary_distance;
         let seen = &mut self.seen;
         let anchor = *seen.anchor.get_or_insert(here);
         let moved = (here.x - anchor.x).abs().max((here.y - anchor.y).abs());
         let turned = (here.angle - anchor.angle).abs() * self.half_length;
-        if moved > tolerance || turned > tolerance || here.contacts != anchor.contacts {
+        if moved > tolerance || turned > tolerance || here.bearing != anchor.bearing {
             seen.anchor = Some(here);
             return;
         }

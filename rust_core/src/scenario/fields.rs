@@ -82,11 +82,7 @@ impl<'a> Fields<'a> {
 
     /// Path of a field of this object.
     pub(crate) fn path(&self, name: &str) -> String {
-        if self.path.is_empty() {
-            name.to_owned()
-        } else {
-            format!("{}.{name}", self.path)
-        }
+        joined(&self.path, name)
     }
 
     /// An error about a field of this object.
@@ -290,12 +286,16 @@ fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioErro
             .as_f64()
             .ok_or_else(|| ScenarioError::new(path, other, "must be a number"))?,
     };
-    // Subnormal inputs are typing errors or overflow elsewhere; they would lose digits silently.
-    if range.holds(x) && (x == 0.0 || x.is_normal()) {
-        Ok(x)
-    } else {
-        Err(ScenarioError::new(path, value, range.rule()))
+    if !range.holds(x) {
+        return Err(ScenarioError::new(path, value, range.rule()));
     }
+    // Subnormal inputs are typing errors or overflow elsewhere; they would lose digits silently.
+    if x.is_subnormal() {
+        let rule = format!("must be 0 or at least {:e} in size", f64::MIN_POSITIVE);
+        return Err(ScenarioError::new(path, value, rule));
+    }
+    // There is one zero: -0.0 equals it, and has to be the same scenario and the same motion.
+    Ok(x + 0.0)
 }
 
 /// "must be one of ...", with the nearest name where there is one.
@@ -328,6 +328,15 @@ fn edit_distance(a: &str, b: &str) -> usize {
         }
     }
     row[b.len()]
+}
+
+/// Path of a field of the object at a path.
+pub(super) fn joined(path: &str, name: &str) -> String {
+    if path.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{path}.{name}")
+    }
 }
 
 fn display(path: &str) -> &str {

@@ -1,11 +1,13 @@
 //! What is simulated: plain data with one set of rules, read from JSON and written back without losing a bit.
 
+mod doubts;
 mod drive;
 mod fields;
 mod flippers;
 mod robot;
 mod settings;
 mod terrain;
+mod text;
 mod track;
 mod wheel;
 
@@ -13,11 +15,13 @@ use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
 pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
+pub(crate) use text::parse;
 pub use track::{
     BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
     HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,

@@ -193,6 +193,15 @@ fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
             ));
         }
     }
+    // Left turns alone may still add up to more than one round, as in a pentagram.
+    let is_up = |i: usize| {
+        let ([ax, ay], [bx, by]) = (points[i % n], points[(i + 1) % n]);
+        (by, bx) > (ay, ax)
+    };
+    if (0..n).filter(|i| !is_up(*i) && is_up(i + 1)).count() != 1 {
+        let rule = "must be a convex counter-clockwise polygon: this one goes round more than once";
+        return Err(f.error("belly", format!("{n} points"), rule));
+    }
     Ok(Some(points))
 }
 

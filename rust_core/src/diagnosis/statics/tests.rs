@@ -31,6 +31,7 @@ fn block(supports: Vec<Support>) -> Statics {
         motors: vec![0.0],
         stalled: vec![0.0],
         torque: 0.0,
+        at_limit: 0.98,
         lever: 1.0,
         radius: 1.0,
         push: None,
@@ -70,6 +71,28 @@ fn an_arm_bears_no_more_than_its_motor_holds() {
         let expected = (0.25 - torque) / 1.5;
         let imbalance = on_an_arm(torque).imbalance().unwrap();
         assert!((imbalance - expected).abs() < 1e-8, "{torque}: {imbalance}");
+    }
+}
+
+#[test]
+fn a_stalled_motor_holds_from_the_share_of_its_limit_that_the_criteria_say() {
+    // On a slope that takes 0.9 of what the motor can do, on supports before and behind the centre of mass.
+    let (sine, cosine) = libm::sincos(0.5_f64);
+    let on_slope = |lever: f64| {
+        let mut on = support(Vector::new(-sine, cosine), [lever, 0.0], 1.0);
+        (on.drive, on.tangent.drive_lever) = (Some(0), 1.0);
+        on
+    };
+    for (at_limit, holds) in [(0.98, false), (0.91, false), (0.89, true)] {
+        let stalled = Statics {
+            motors: vec![1.0],
+            stalled: vec![1.0],
+            torque: sine / 0.9,
+            at_limit,
+            ..block(vec![on_slope(-1.0), on_slope(1.0)])
+        };
+        let imbalance = stalled.forces(Drives::Hold, &[]).imbalance().unwrap();
+        assert_eq!(imbalance < 1e-6, holds, "{at_limit}: {imbalance}");
     }
 }
 

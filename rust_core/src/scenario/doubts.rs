@@ -1,0 +1,246 @@
+//! What is legal but unlikely to be meant: a size in another unit, an angle in degrees, a field that others overrule.
+//!
+//! Bounds are lengths of the robot itself where they can be, and lie far beyond what anyone builds or drives over.
+
+use std::f64::consts::PI;
+
+use super::fields::joined;
+use super::{CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, Terrain, Track};
+
+/// So many times the robot's length is farther than it climbs; so many times a run's way, than it was cut short by.
+const FAR: f64 = 3.0;
+
+/// Of a field; nothing is refused for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// Dotted path of the field, for example `terrain.height`.
+    pub path: String,
+    /// What was found there.
+    pub value: f64,
+    /// What makes it doubtful, beginning with a verb: "is usually ...".
+    pub reason: String,
+}
+
+/// Doubts as they are found.
+#[derive(Default)]
+struct Doubts(Vec<Doubt>);
+
+impl Doubts {
+    fn add(&mut self, path: impl Into<String>, value: f64, reason: impl Into<String>) {
+        let (path, reason) = (path.into(), reason.into());
+        self.0.push(Doubt {
+            path,
+            value,
+            reason,
+        });
+    }
+
+    /// Doubts a magnitude beyond what is usual, which is what the words say.
+    fn at_most(&mut self, path: String, value: f64, (most, unit): (f64, &str), what: &str) {
+        if value.abs() > most {
+            self.add(
+                path,
+                value,
+                format!("is usually at most {most:.3} {unit}, {what}"),
+            );
+        }
+    }
+
+    fn angle(&mut self, path: String, value: f64) {
+        if value.abs() > PI {
+            self.add(
+                path,
+                value,
+                "is usually between -3.14 and 3.14 rad, as angles are in radians",
+            );
+        }
+    }
+}
+
+impl Scenario {
+    /// Everything that is doubtful, `to_goal` [m] before its goal; no more than a few comparisons.
+    pub(crate) fn doubts(&self, to_goal: f64) -> Vec<Doubt> {
+        let mut doubts = Doubts::default();
+        self.robot.add_doubts(&mut doubts);
+        self.terrain
+            .add_doubts("terrain", self.robot.length(), &mut doubts);
+        self.add_doubts_of_drive(to_goal, &mut doubts);
+        let most = (30.0, "m/s^2");
+        doubts.at_most(
+            "gravity".into(),
+            self.gravity,
+            most,
+            "more than on any planet",
+        );
+        doubts.0
+    }
+
+    fn add_doubts_of_drive(&self, to_goal: f64, doubts: &mut Doubts) {
+        let drive = &self.drive;
+        match &drive.gait {
+            Some(Gait::Hold(hold)) => {
+                doubts.angle("drive.gait.angle".into(), hold.angle);
+                for (i, [_, angle]) in hold.schedule.iter().flatten().enumerate() {
+                    doubts.angle(format!("drive.gait.schedule[{i}][1]"), *angle);
+                }
+            }
+            Some(Gait::Climb(climb)) => {
+                doubts.angle("drive.gait.reach_angle".into(), climb.reach_angle);
+                doubts.angle("drive.gait.sweep_angle".into(), climb.sweep_angle);
+                doubts.angle("drive.gait.push_angle".into(), climb.push_angle);
+            }
+            None => {}
+        }
+        let later = drive.schedule.iter().flatten().map(|[_, speed]| *speed);
+        let fastest = later.fold(drive.speed, f64::max);
+        if fastest <= 0.0 {
+            return;
+        }
+        let (time, reach) = (self.duration, fastest * self.duration);
+        let gets = format!("{fastest} m/s gets the robot {reach:.3} m in {time} s");
+        // A run of a few lengths is a short look, and one that ends on a terrain may be cut short, but by less.
+        if reach > FAR * self.robot.length() {
+            let way = format!("it is {to_goal:.3} m to there, and {gets}");
+            match self.goal {
+                Some(goal) if to_goal > reach => {
+                    doubts.add("goal", goal, format!("cannot be reached: {way}"));
+                }
+                None if to_goal > FAR * reach => {
+                    doubts.add(
+                        "duration",
+                        time,
+                        format!("is too short for the goal: {way}"),
+                    );
+                }
+                _ => {}
+            }
+        }
+        let approach = self.start.approach;
+        if approach > reach.max(self.robot.length()) {
+            let reason = format!("is longer than the run: {gets}");
+            doubts.add("start.approach", approach, reason);
+        }
+    }
+}
+
+impl Robot {
+    /// [m] Of its track.
+    fn length(&self) -> f64 {
+        let o = &self.outline;
+        o.axle_distance + o.front_radius + o.rear_radius
+    }
+
+    fn add_doubts(&self, doubts: &mut Doubts) {
+        let o = &self.outline;
+        let length = self.length();
+        for (i, value) in self.center_of_mass.into_iter().enumerate() {
+            let path = format!("robot.center_of_mass[{i}]");
+            doubts.at_most(path, value, (length, "m"), "the robot's length");
+        }
+        let most = (self.mass * length * length, "kg m^2");
+        let what = "mass x the square of the robot's length";
+        doubts.at_most(
+            "robot.moment_of_inertia".into(),
+            self.moment_of_inertia,
+            most,
+            what,
+        );
+        let radii = [o.front_radius, o.rear_radius];
+        add_doubts_of_wheels(&self.track, "robot.track", radii, o.axle_distance, doubts);
+        if let Some(flippers) = &self.flippers {
+            flippers.add_doubts(self, doubts);
+        }
+    }
+}
+
+impl Flippers {
+    fn add_doubts(&self, robot: &Robot, doubts: &mut Doubts) {
+        doubts.angle("robot.flippers.angle".into(), self.angle);
+        let radii = [self.root_radius, self.tip_radius];
+        let (path, track) = match &self.track {
+            Some(track) => ("robot.flippers.track", track),
+            None => ("robot.track", &robot.track),
+        };
+        if self.track.is_some() {
+            add_doubts_of_wheels(track, path, radii, self.length, doubts);
+        }
+        let Track::Line(line) = track else { return };
+        let Some(radius) = line.wheel_radius else {
+            return;
+        };
+        // The wheels of a line may be a little smaller than what was built, so that they just touch.
+        if (radius - self.tip_radius).abs() > 0.1 * self.tip_radius {
+            let reason = format!(
+                "has no effect beside {path}.wheel_radius = {radius} m, which all wheels of the arms take"
+            );
+            doubts.add("robot.flippers.tip_radius", self.tip_radius, reason);
+        }
+    }
+}
+
+/// Wheels that are no part of a track of this size: `radii` of its ends and `length` between its axles.
+fn add_doubts_of_wheels(
+    track: &Track,
+    path: &str,
+    radii: [f64; 2],
+    length: f64,
+    doubts: &mut Doubts,
+) {
+    let built = radii[0].max(radii[1]);
+    let most = ((2.0 * built).max(0.5 * length), "m");
+    let what = "twice the outline's radius or half its axle distance";
+    match track {
+        Track::Line(LineOfWheels { wheel_radius, .. })
+        | Track::Circumferential(CircumferentialWheels { wheel_radius, .. }) => {
+            if let Some(radius) = wheel_radius {
+                doubts.at_most(joined(path, "wheel_radius"), *radius, most, what);
+            }
+        }
+        Track::Hybrid(wheels) => {
+            let farthest = (length + 2.0 * built, "m");
+            for (i, [x, y, radius]) in wheels.placements.iter().enumerate() {
+                let path = |column| format!("{path}.placements[{i}][{column}]");
+                doubts.at_most(path(0), *x, farthest, "the length of the outline");
+                doubts.at_most(path(1), *y, farthest, "the length of the outline");
+                doubts.at_most(path(2), *radius, most, what);
+            }
+        }
+        Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {}
+    }
+}
+
+impl Terrain {
+    /// Obstacles that no robot of that length [m] could be sent over.
+    fn add_doubts(&self, path: &str, length: f64, doubts: &mut Doubts) {
+        let mut size = |name: &str, value: f64| {
+            let what = "three times the robot's length";
+            doubts.at_most(joined(path, name), value, (FAR * length, "m"), what);
+        };
+        match self {
+            Self::Step { height, .. }
+            | Self::Barrier { height, .. }
+            | Self::Ridge { height, .. }
+            | Self::DiagonalBarrier { height, .. } => size("height", *height),
+            Self::Gap { width, .. } => size("width", *width),
+            Self::Stairs { rise, .. } => size("rise", *rise),
+            Self::HalfRound { radius, .. } => size("radius", *radius),
+            Self::RandomStepfield(field) => {
+                size("rise", field.rise);
+                size("post", field.post);
+                size("barrier_height", field.barrier_height);
+            }
+            Self::Flat { .. } | Self::Ramp { .. } | Self::Points { .. } => {}
+            Self::Lanes {
+                left,
+                right,
+                middle,
+            } => {
+                left.add_doubts(&joined(path, "left"), length, doubts);
+                right.add_doubts(&joined(path, "right"), length, doubts);
+                if let Some(middle) = middle {
+                    middle.add_doubts(&joined(path, "middle"), length, doubts);
+                }
+            }
+        }
+    }
+}
