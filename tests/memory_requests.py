@@ -1,6 +1,6 @@
 """Requests that want more than 512 MB, made in a process that has no more; run as a program.
 
-Prints how each kind ended, as JSON. That it prints at all is what is asked: nothing ended the process.
+Prints how each kind ended, as JSON. That it prints at all is asked: nothing ended the process.
 """
 
 import json

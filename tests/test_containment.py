@@ -1,6 +1,6 @@
 """Whatever one run does, or one number is, the others come back and the interpreter goes on."""
 
-import ctypes
+import platform
 import subprocess
 import sys
 from dataclasses import replace
@@ -33,7 +33,7 @@ def test_a_slow_command_is_never_called_a_stop_before_its_window_is_over() -> No
 def test_a_history_that_outgrows_memory_takes_no_other_run_with_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    # More contacts than are counted on: every one of the wheels that touch each other, all the time.
+    # More contacts than are counted on: all of the wheels bear all the time.
     wheels = ENGINEER.with_track(c2d.LineOfWheels(200))
     base = c2d.Scenario(wheels, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0))
     long = base.replace({"duration": 100.0, "criteria.stop_window": 1000.0})
@@ -72,7 +72,7 @@ def test_a_limit_of_memory_that_makes_no_sense_is_refused(
 def test_a_name_of_a_hundred_megabytes_is_refused() -> None:
     with pytest.raises(errors.ScenarioError, match=r"scenario must be at most 64 MiB"):
         c2d.simulate(replace(ENGINEER, name="x" * 100_000_000), c2d.terrains.flat())
-    with pytest.raises(errors.ScenarioError, match=r"robot\.name must have at most 1000 characters"):
+    with pytest.raises(errors.ScenarioError, match=r"robot\.name must have at most 1000"):
         c2d.simulate(replace(ENGINEER, name="x" * 1001), c2d.terrains.flat())
     assert replace(ENGINEER, name="x" * 1000).wheels() is not None
 
@@ -91,7 +91,9 @@ def test_a_number_of_grousers_left_to_the_program_has_the_bounds_of_a_given_one(
     outline = replace(
         ENGINEER.outline, axle_distance=20.0, grouser_pitch=pitch, grouser_thickness=5e-4
     )
-    robot = replace(ENGINEER.with_track(track), outline=outline, belly=None, moment_of_inertia=900.0)
+    robot = replace(
+        ENGINEER.with_track(track), outline=outline, belly=None, moment_of_inertia=900.0
+    )
     with pytest.raises(errors.ScenarioError, match=f"must leave at most {most} grousers") as caught:
         c2d.simulate(robot, c2d.terrains.flat())
     assert caught.value.path == "robot.outline.grouser_pitch"
@@ -132,7 +134,7 @@ print(refused, len(calls), again)
 
 
 @pytest.mark.skipif(
-    not (sys.platform == "linux" and ctypes.sizeof(ctypes.c_void_p) == 8 and "x86" in np.__config__.CONFIG["Machine Information"]["host"]["cpu"]),
+    (sys.platform, platform.machine()) != ("linux", "x86_64"),
     reason="the codes of the modes are those of x86",
 )
 @pytest.mark.parametrize("mode", [0x400, 0x800, 0xC00], ids=["down", "up", "towards zero"])

@@ -166,9 +166,7 @@ def test_the_snapshot_of_another_build_names_both(scenario: Scenario) -> None:
 
 FORGED = {
     "belt": c2d.robots.engineer(flippers=None),
-    "gears": c2d.robots.engineer(
-        flippers=None, track=c2d.LineOfWheels(3, wheel=c2d.GearWheel())
-    ),
+    "gears": c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=c2d.GearWheel())),
     "arms": c2d.robots.engineer(track=c2d.LineOfWheels(4)),
     "chain": c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack()),
 }
