@@ -55,10 +55,12 @@ def test_every_file_that_is_named_in_a_room_is_there(root: Path) -> None:
 @pytest.mark.parametrize("root", ROOMS, ids=lambda root: root.name)
 def test_every_room_is_named(root: Path) -> None:
     named = {name.strip("/").split("/")[0] for names, _ in ROOMS[root] for name in names}
+    files = {path.name for path in root.iterdir() if path.name != "py.typed"}
     there = {
-        path.name
-        for path in root.iterdir()
-        if not path.name.startswith("__") and path.name != "py.typed" and path.suffix != ".so"
+        name
+        for name in files
+        # Tests beside a file lie in a folder of its name.
+        if not name.startswith("__") and not name.endswith(".so") and f"{name}.rs" not in files
     }
     assert there - named == set()
 

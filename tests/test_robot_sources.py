@@ -188,11 +188,24 @@ def wheels_of(links: list[Link], start: str) -> list[tuple[Array, float]]:
     return [(link.rounds[0].place, link.rounds[0].radius) for link in found]
 
 
+def wheels_of_chassis(robot: c2d.Robot) -> dict[str, Array]:
+    """Columns of those that the chassis carries on one side; the other has the same."""
+    table = robot.wheels()
+    chosen = {
+        side: (table["carrier"] == "chassis") & (table["side"] == side)
+        for side in ("left", "right")
+    }
+    columns = {name: table[name][chosen["left"]] for name in ("x", "y", "radius")}
+    for name, column in columns.items():
+        assert column.tolist() == table[name][chosen["right"]].tolist()
+    return columns
+
+
 def line_between(robot: c2d.Robot, outline: dict[str, Any], track: c2d.LineOfWheels) -> Array:
     """Places along the line and radii that the model has on a track of such an outline."""
     outline_of_arm = dataclasses.replace(robot.outline, **outline)
     bare = dataclasses.replace(robot, outline=outline_of_arm, flippers=None, track=track)
-    wheels = bare.wheels()
+    wheels = wheels_of_chassis(bare)
     return np.array([wheels["x"] + 0.5 * outline_of_arm.axle_distance, wheels["radius"]]).T
 
 
@@ -201,7 +214,7 @@ def test_public_absolem_has_its_files_wheels_in_side_view(side: str) -> None:
     """Its foremost is 15 mm inboard, across the track: they still lie on one line, evenly."""
     links = robot_files.read_sdf(ABSOLEM)
     found = wheels_of(links, f"{side}_track_wheel")
-    wheels = c2d.robots.absolem(track="public").wheels()
+    wheels = wheels_of_chassis(c2d.robots.absolem(track="public"))
     assert len(found) == len(wheels["x"]) == 8
     for (place, radius), x, y, own in zip(
         reversed(found), wheels["x"], wheels["y"], wheels["radius"], strict=True
@@ -291,7 +304,7 @@ def test_the_engineer_has_the_masses_and_the_wheels_of_its_file() -> None:
     assert PRESETS["engineer"].mass == pytest.approx(links + manipulator, abs=0.05)
     assert arms("engineer").mass == masses["right_flipper"]
     public = c2d.robots.engineer(track="public")
-    own = public.wheels()
+    own = wheels_of_chassis(public)
     for side in ("left", "right"):
         found = sorted(
             (float(w.place[0]), w.radius)
