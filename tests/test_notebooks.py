@@ -1,5 +1,6 @@
 """The notebooks: committed without outputs, and run from top to bottom."""
 
+import re
 from pathlib import Path
 
 import nbclient
@@ -24,6 +25,17 @@ def test_no_output_is_committed(path: Path) -> None:
     for cell in read(path).cells:
         assert not cell.get("outputs")
         assert cell.get("execution_count") is None
+
+
+# What a text may name: what is put in, a level of confidence, a figure of the paper.
+GIVEN = re.compile(r"a step of 75 mm|Fig\. \d+")
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_text_leaves_figures_to_the_runs(path: Path) -> None:
+    texts = [cell.source for cell in read(path).cells if cell.cell_type == "markdown"]
+    stated = [line for text in texts for line in GIVEN.sub("", text).splitlines()]
+    assert [line for line in stated if re.search(r"\d", line)] == []
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
