@@ -126,7 +126,7 @@ pub(crate) fn intrusions<'py>(
 }
 
 /// A run of a batch that gave no result, with its exception.
-pub(crate) fn failure<'py>(py: Python<'py>, error: PyErr) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn failure(py: Python<'_>, error: PyErr) -> PyResult<Bound<'_, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("error", error.into_value(py))?;
     Ok(result)

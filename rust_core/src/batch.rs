@@ -126,6 +126,9 @@ impl Work {
 }
 
 /// Turns a panic into an error: it is a fault of the program, and takes no more than its own run.
+///
+/// # Errors
+/// Those of the call, and [`Error::Internal`] with the text of a panic.
 pub fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
