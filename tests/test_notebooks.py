@@ -27,7 +27,7 @@ def test_no_output_is_committed(path: Path) -> None:
         assert cell.get("execution_count") is None
 
 
-# What a text may name: what is put in, a level of confidence, a figure of the paper.
+# What a text may name: what is put in, and the figures of the paper.
 GIVEN = re.compile(r"a step of 75 mm|Fig\. \d+")
 
 
