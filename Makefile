@@ -68,10 +68,11 @@ soak: $(VENV)/.built ## the long tests, minutes to hours
 
 # The faults and the tests that must notice them are those of .cargo/mutants.toml; a build and a test of each.
 # An end with 3 says that a fault which loops for ever was noticed by the clock alone.
-mutants: $(BIN)/cargo-mutants ## put small faults into the core, see that its tests notice; about an hour
+mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and statistics, see that tests notice; over an hour
 	@mkdir -p $(CARGO_TARGET_DIR)/mutants
 	CARGO_TARGET_DIR=$(abspath $(CARGO_TARGET_DIR)) $(BIN)/cargo-mutants mutants \
 		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
+	$(BIN)/python tests/mutants.py
 
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
