@@ -15,6 +15,7 @@ mod descent;
 mod direct;
 mod flippers;
 mod grip;
+mod impulses;
 mod levers;
 mod motors;
 mod newton;
@@ -26,18 +27,16 @@ mod system;
 mod tests;
 
 use rapier2d_f64::math::Vector;
-use serde::{Deserialize, Serialize};
 
-use crate::bounds::plausible;
 use crate::contact::{Contact, LoadedContact};
 use crate::error::SimulationError;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
-use crate::terrain::Profile;
-use chain::{Chain, ChainImpulses};
+use chain::Chain;
 pub use chains::ChainReading;
 use flippers::Arm;
 pub(crate) use grip::Grip;
+pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
 use motors::Motor;
 pub(crate) use motors::push_axis;
@@ -90,16 +89,6 @@ pub(crate) struct Dynamics {
     pub outer_force: Vector,
 }
 
-/// What a step hands to the next besides the state: where its solves start from.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Impulses {
-    push: Option<f64>,
-    motors: Vec<Motor>,
-    contacts: Vec<LoadedContact>,
-    chains: Vec<ChainImpulses>,
-    flippers: Vec<Motor>,
-}
-
 impl Dynamics {
     pub(crate) fn new(model: Model, frictions: Vec<f64>, gravity: f64, solver: Solver) -> Self {
         let has_motor = |k| k < model.motors && model.drive_force > 0.0;
@@ -128,53 +117,6 @@ impl Dynamics {
             rows: Vec::new(),
             loaded: Vec::new(),
             outer_force: Vector::ZERO,
-        }
-    }
-
-    /// What the next step starts from.
-    pub(crate) fn impulses(&self) -> Impulses {
-        Impulses {
-            push: self.push.as_ref().map(|push| push.force),
-            motors: self.motors.clone(),
-            contacts: self.loaded.clone(),
-            chains: self.chains.iter().map(Chain::impulses).collect(),
-            flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
-        }
-    }
-
-    /// Whether a step of this model can have left them.
-    pub(crate) fn fits(&self, impulses: &Impulses, lanes: &[Profile]) -> bool {
-        let Impulses {
-            push,
-            motors,
-            contacts,
-            chains,
-            flippers,
-        } = impulses;
-        push.is_some() == self.push.is_some()
-            && push.is_none_or(|push| plausible(&[push]))
-            && motors.len() == self.motors.len()
-            && flippers.len() == self.flippers.len()
-            && chains.len() == self.chains.len()
-            && chains
-                .iter()
-                .zip(&self.chains)
-                .all(|(i, chain)| chain.fits(i))
-            && contacts.iter().all(|l| l.fits(&self.model, lanes))
-    }
-
-    /// Starts from what a step of the same model left.
-    pub(crate) fn start_from(&mut self, impulses: Impulses) {
-        if let (Some(push), Some(force)) = (&mut self.push, impulses.push) {
-            push.force = force;
-        }
-        self.motors = impulses.motors;
-        self.loaded = impulses.contacts;
-        for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
-            chain.start_from(impulses);
-        }
-        for (arm, motor) in self.flippers.iter_mut().zip(impulses.flippers) {
-            arm.motor = motor;
         }
     }
 

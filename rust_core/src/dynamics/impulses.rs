@@ -1,0 +1,69 @@
+//! What a step hands to the next besides the state: where its solves start from.
+
+use serde::{Deserialize, Serialize};
+
+use super::Dynamics;
+use super::chain::{Chain, ChainImpulses};
+use super::motors::Motor;
+use crate::bounds::plausible;
+use crate::contact::LoadedContact;
+use crate::terrain::Profile;
+
+/// Of one robot; a snapshot holds them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Impulses {
+    push: Option<f64>,
+    motors: Vec<Motor>,
+    contacts: Vec<LoadedContact>,
+    chains: Vec<ChainImpulses>,
+    flippers: Vec<Motor>,
+}
+
+impl Dynamics {
+    /// What the next step starts from.
+    pub(crate) fn impulses(&self) -> Impulses {
+        Impulses {
+            push: self.push.as_ref().map(|push| push.force),
+            motors: self.motors.clone(),
+            contacts: self.loaded.clone(),
+            chains: self.chains.iter().map(Chain::impulses).collect(),
+            flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
+        }
+    }
+
+    /// Whether a step of this model can have left them.
+    pub(crate) fn fits(&self, impulses: &Impulses, lanes: &[Profile]) -> bool {
+        let Impulses {
+            push,
+            motors,
+            contacts,
+            chains,
+            flippers,
+        } = impulses;
+        push.is_some() == self.push.is_some()
+            && push.is_none_or(|push| plausible(&[push]))
+            && motors.len() == self.motors.len()
+            && flippers.len() == self.flippers.len()
+            && chains.len() == self.chains.len()
+            && chains
+                .iter()
+                .zip(&self.chains)
+                .all(|(i, chain)| chain.fits(i))
+            && contacts.iter().all(|l| l.fits(&self.model, lanes))
+    }
+
+    /// Starts from what a step of the same model left.
+    pub(crate) fn start_from(&mut self, impulses: Impulses) {
+        if let (Some(push), Some(force)) = (&mut self.push, impulses.push) {
+            push.force = force;
+        }
+        self.motors = impulses.motors;
+        self.loaded = impulses.contacts;
+        for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
+            chain.start_from(impulses);
+        }
+        for (arm, motor) in self.flippers.iter_mut().zip(impulses.flippers) {
+            arm.motor = motor;
+        }
+    }
+}
