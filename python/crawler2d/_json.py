@@ -47,7 +47,7 @@ class Parameters:
         """Replace every field by its plain Python form."""
         for name, hint in field_hints(type(self)).items():
             value = getattr(self, name)
-            shape = next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
+            shape = shape_of_rows(hint)
             if shape is not None:
                 rows, columns = shape
                 path = f"{self.place}.{name}"
@@ -74,6 +74,12 @@ def alternatives(hint: Any) -> tuple[Any, ...]:
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         return typing.get_args(hint)
     return (hint,)
+
+
+@functools.cache
+def shape_of_rows(hint: Any) -> tuple[str | None, int] | None:
+    """Look up rows and columns of a field that holds an array; None for any other field."""
+    return next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
 
 
 @functools.cache
@@ -105,7 +111,7 @@ def _plain_field(value: Any, hint: Any, path: str) -> Any:
             names = " or ".join(cls.__name__ for cls in classes)
             raise ScenarioError(path, value, f"must be a {names}")
         return to_plain(value, path)
-    if isinstance(value, tuple):  # only frozen_rows lets tuples in: numbers, or rows of numbers
+    if isinstance(value, tuple) and shape_of_rows(hint) is not None:  # from frozen_rows: numbers
         rows = [[_plain_number(x) for x in v] if isinstance(v, tuple) else v for v in value]
         return [row if isinstance(row, list) else _plain_number(row) for row in rows]
     if isinstance(value, str):
@@ -116,7 +122,7 @@ def _plain_field(value: Any, hint: Any, path: str) -> Any:
         return value
     if value is None or isinstance(value, bool):
         return value
-    if isinstance(value, (int, float)):
+    if isinstance(value, (int, float)) and str not in alternatives(hint):  # "Infinity" is a name
         return _plain_number(value)
     rule = next((_RULES[a] for a in alternatives(hint) if a in _RULES), "must be a text or None")
     raise ScenarioError(path, value, rule)

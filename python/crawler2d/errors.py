@@ -27,6 +27,31 @@ __all__ = [
 ]
 
 
+# As long as the core keeps a value, and in bits what every float is below.
+_LONGEST_TEXT = 80
+_LARGEST_WHOLE = 1024
+
+
+class _Short(reprlib.Repr):
+    """Texts of objects; Python writes no whole number of thousands of digits."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        if x.bit_length() <= _LARGEST_WHOLE:
+            return super().repr_int(x, level)
+        return f"a whole number of {x.bit_length()} bits"
+
+
+def _short(value: object) -> object:
+    """Keep what is small; an arbitrary object may be huge, or refuse to be shown or pickled."""
+    if isinstance(value, str):
+        return value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]}..."
+    if isinstance(value, (float, type(None))):
+        return value
+    if isinstance(value, int) and value.bit_length() <= _LARGEST_WHOLE:
+        return value
+    return _Short().repr(value)
+
+
 class Crawler2dError(Exception):
     """Base of every error that crawler2d raises."""
 
@@ -39,7 +64,8 @@ class ScenarioError(Crawler2dError, ValueError):
     path : str
         Dotted path of the field, such as ``robot.track.count``.
     value : object
-        The value found there. Anything but a number, a text or None is kept as its shortened text.
+        The value found there. Anything but a number, a text or None is kept as its text; long texts
+        are shortened, and so are whole numbers beyond every float.
     rule : str
         The rule it breaks, starting with a verb: "must be ...".
 
@@ -54,11 +80,10 @@ class ScenarioError(Crawler2dError, ValueError):
     rule: str
 
     def __init__(self, path: str, value: object, rule: str) -> None:
-        if not isinstance(value, (str, int, float, type(None))):
-            value = reprlib.repr(value)  # an arbitrary object may be huge, or refuse to be pickled
-        super().__init__(path, value, rule)
+        kept = _short(value)
+        super().__init__(path, kept, rule)
         self.path = path
-        self.value = value
+        self.value = kept
         self.rule = rule
 
     def __str__(self) -> str:

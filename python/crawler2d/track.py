@@ -238,8 +238,8 @@ class SegmentalTrack(Parameters):
     shoe_count : int, optional
         Shoes of one chain, 3 to 400; None takes the whole number that comes nearest to the
         outline's `grouser_pitch`: 22 for the Engineer. A shoe must be no longer than the smaller
-        end is thick, nor than half the distance of the axles, and weigh at least a three-thousandth
-        of the rest of the robot.
+        end is thick, than half the distance of the axles, nor than a straight run, and weigh at
+        least a three-thousandth of the rest of the robot.
     mechanism : {"guide", "sprocket"}
         What the chain runs on and what drives it.
     shoe_shape : {"rectangle", "trapezoid"}
