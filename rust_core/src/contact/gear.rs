@@ -65,7 +65,9 @@ impl Grouser {
 impl GearContact {
     pub(super) fn new(part: usize, center: Vector, gear: Gear) -> Self {
         let corners = gear.corners(0.0);
-        let side = |i: usize| right_of((corners[i + 1] - corners[i]).normalize());
+        // A tip may be thinner than rounding errors; it looks outwards all the same.
+        let way = |i: usize| (corners[i + 1] - corners[i]).try_normalize();
+        let side = |i: usize| way(i).map_or(Vector::X, right_of);
         Self {
             part,
             center,
@@ -73,7 +75,7 @@ impl GearContact {
             directions: gear.directions().map(direction).collect(),
             grouser: Grouser {
                 corners,
-                normals: [side(0), side(1), side(2)],
+                normals: [0, 1, 2].map(side),
             },
             half_base: libm::atan2(corners[3].y, corners[3].x),
         }
