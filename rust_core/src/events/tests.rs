@@ -158,3 +158,120 @@ fn the_kinds_have_the_names_of_the_tables() {
     let names = [EventKind::Stop, EventKind::Intrusion].map(EventKind::name);
     assert_eq!(names, ["stop", "intrusion"]);
 }
+
+/// The lanes of a step up.
+fn lanes() -> Vec<Profile> {
+    let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+    let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    let ground = Ground::new(&scenario.terrain, scenario.robot.gauge);
+    ground.expect("a ground").lanes
+}
+
+/// Bodies 0 to 2.
+const PARTS: usize = 3;
+
+/// An intrusion between the last two of them.
+fn genuine() -> Event {
+    Event {
+        kind: EventKind::Intrusion,
+        start: 1.0,
+        end: 2.0,
+        side: Side::Both,
+        edge: 0,
+        bodies: Some([1, 2]),
+        depth: 0.02,
+        root_depth: 0.01,
+        force: 50.0,
+    }
+}
+
+#[test]
+fn an_event_with_one_number_that_is_not_finite_does_not_fit() {
+    type Number = fn(&mut Event) -> &mut f64;
+    let numbers: [Number; 5] = [
+        |e| &mut e.start,
+        |e| &mut e.end,
+        |e| &mut e.depth,
+        |e| &mut e.root_depth,
+        |e| &mut e.force,
+    ];
+    let lanes = lanes();
+    assert!(genuine().fits(PARTS, &lanes));
+    for (i, number) in numbers.into_iter().enumerate() {
+        for spoilt in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut event = genuine();
+            *number(&mut event) = spoilt;
+            assert!(!event.fits(PARTS, &lanes), "number {i}: {spoilt}");
+        }
+    }
+}
+
+#[test]
+fn an_event_fits_the_bodies_that_a_robot_has_or_none() {
+    let fits = |bodies: Option<[usize; 2]>| {
+        let event = Event {
+            bodies,
+            ..genuine()
+        };
+        event.fits(PARTS, &lanes())
+    };
+    assert!(fits(None));
+    assert!(fits(Some([0, PARTS - 1])));
+    assert!(fits(Some([PARTS - 1, 0])));
+    assert!(!fits(Some([0, PARTS])));
+    assert!(!fits(Some([PARTS, 0])));
+}
+
+#[test]
+fn an_event_fits_the_edges_of_the_lane_that_has_most_or_none() {
+    let fits = |edge: i32, lanes: &[Profile]| Event { edge, ..genuine() }.fits(PARTS, lanes);
+    let all = lanes();
+    let mut bare = all[0].clone();
+    let past = bare.edges.len() as i32;
+    assert!(past > 0, "a step has edges");
+    bare.edges.clear();
+    for lanes in [
+        all.clone(),
+        vec![all[0].clone(), bare.clone()],
+        vec![bare, all[0].clone()],
+    ] {
+        assert!(!fits(-2, &lanes));
+        assert!(fits(-1, &lanes));
+        assert!(fits(past - 1, &lanes));
+        assert!(!fits(past, &lanes));
+    }
+}
+
+#[test]
+fn what_is_followed_with_one_thing_spoilt_does_not_fit() {
+    let lanes = lanes();
+    // One is over and one goes on.
+    let followed = || {
+        let mut watch = IntrusionWatch::default();
+        for (time, edge) in [(1.0, 0), (2.0, 1)] {
+            watch.look(time, std::iter::once((intrusion(&[edge], 0.01), 10.0)));
+        }
+        assert_eq!((watch.past.len(), watch.present.len()), (1, 1));
+        watch
+    };
+    assert!(IntrusionWatch::default().fits(PARTS, &lanes));
+    assert!(followed().fits(PARTS, &lanes));
+    type Spoil = fn(&mut IntrusionWatch);
+    let all: [(&str, Spoil); 6] = [
+        ("past force", |w| w.past[0].force = f64::NAN),
+        ("past body", |w| w.past[0].bodies = Some([0, PARTS])),
+        ("present force", |w| w.present[0].event.force = f64::NAN),
+        ("present body", |w| {
+            w.present[0].event.bodies = Some([0, PARTS]);
+        }),
+        ("no look", |w| w.present[0].looks = 0.0),
+        ("looks that are no number", |w| {
+            w.present[0].looks = f64::NAN;
+        }),
+    ];
+    for (what, spoil) in all {
+        let mut watch = followed();
+        spoil(&mut watch);
+        assert!(!watch.fits(PARTS, &lanes), "{what}");
+    }
+}

@@ -2,6 +2,7 @@
 #![allow(clippy::float_cmp)] // lengths and times here are exact in binary, or told again unchanged
 
 mod ends;
+mod fits;
 mod stationary;
 mod stops;
 

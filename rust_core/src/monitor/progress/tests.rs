@@ -246,3 +246,60 @@ fn a_stop_falters_even_if_a_little_way_is_made_in_the_end() {
     assert!(way.progress.stop_since.is_some());
     assert!(way.progress.falters());
 }
+
+#[test]
+fn progress_with_one_thing_spoilt_does_not_fit() {
+    // No lane is needed for a stop without an edge.
+    let fits = |progress: &Progress| progress.fits(1, &[]);
+    let genuine = || {
+        let mut way = Way::new(1.0);
+        way.stands(3.0, SPAN + 1);
+        let mut progress = way.progress;
+        progress.stops.push(Event::stop(1.0, 2.0, None));
+        assert!(progress.stop_since.is_some());
+        progress
+    };
+    assert!(fits(&genuine()));
+    type Spoil = fn(&mut Progress);
+    let all: [(&str, Spoil); 16] = [
+        ("direction", |p| p.direction = 0.5),
+        ("direction that is no number", |p| p.direction = f64::NAN),
+        ("advance then", |p| p.history[2].advance = f64::NAN),
+        ("angle then", |p| p.history[2].angle = f64::NAN),
+        // Nothing that is made of both is a number.
+        ("advance and angle then", |p| {
+            (p.history[2].advance, p.history[2].angle) = (f64::INFINITY, f64::NEG_INFINITY);
+        }),
+        ("command then", |p| p.history[2].commanded = f64::NAN),
+        ("endless command then", |p| {
+            p.history[2].commanded = f64::INFINITY;
+        }),
+        ("advance", |p| p.best_advance = f64::NAN),
+        ("angle", |p| p.best_angle = f64::NAN),
+        ("advance and angle", |p| {
+            (p.best_advance, p.best_angle) = (f64::INFINITY, f64::NEG_INFINITY);
+        }),
+        ("command", |p| p.commanded = f64::NAN),
+        ("endless command", |p| p.commanded = f64::INFINITY),
+        ("share", |p| p.share = f64::NAN),
+        ("endless share", |p| p.share = f64::INFINITY),
+        ("stop", |p| p.stop_since = Some(f64::INFINITY)),
+        ("earlier stop", |p| p.stops[0].end = f64::NAN),
+    ];
+    for (what, spoil) in all {
+        let mut progress = genuine();
+        spoil(&mut progress);
+        assert!(!fits(&progress), "{what}");
+    }
+}
+
+#[test]
+fn progress_fits_before_its_first_step_and_in_each_direction() {
+    assert!(Progress::default().fits(1, &[]), "nothing gained yet");
+    for command in [1.0, 0.0, -1.0] {
+        let mut way = Way::new(command);
+        way.at(3.0);
+        assert_eq!(way.progress.direction, command);
+        assert!(way.progress.fits(1, &[]), "at {command}");
+    }
+}

@@ -7,7 +7,7 @@ use crate::events::EventKind;
 const ABOUT: f64 = 0.011;
 
 /// A step up at the origin, with its edge inside the belt of a robot that stands astride of it.
-fn astride() -> Watched {
+pub(super) fn astride() -> Watched {
     let mut robot = Watched::with(|scenario| {
         let points = [[-END, 0.0], [0.0, 0.0], [0.0, 0.125], [END, 0.125]];
         scenario.terrain = ground(&points);

@@ -1,5 +1,7 @@
 //! A snapshot forgets nothing, and each thing that it holds decides what comes next.
 
+mod fits;
+
 use rapier2d_f64::math::Vector;
 
 use super::*;
@@ -136,6 +138,15 @@ fn refusal(bytes: &[u8]) -> String {
     }
 }
 
+/// A snapshot whose head and digest are right.
+fn sealed(image: &Image) -> Vec<u8> {
+    let mut snapshot = MAGIC.to_vec();
+    snapshot.extend(bytes(image));
+    let digest = Sha256::digest(&snapshot);
+    snapshot.extend_from_slice(&digest);
+    snapshot
+}
+
 #[test]
 fn bytes_that_are_no_whole_snapshot_are_refused() {
     let snapshot = on_wheels().snapshot();
@@ -157,11 +168,7 @@ fn a_snapshot_of_another_build_is_refused() {
         build: "another".to_owned(),
         rest: Vec::new(),
     };
-    let mut snapshot = MAGIC.to_vec();
-    snapshot.extend(bytes(&image));
-    let digest = Sha256::digest(&snapshot);
-    snapshot.extend_from_slice(&digest);
-    let refusal = refusal(&snapshot);
+    let refusal = refusal(&sealed(&image));
     assert!(refusal.contains("one of build another"), "{refusal}");
     assert!(refusal.contains(BUILD_ID), "{refusal}");
 }

@@ -1,0 +1,145 @@
+//! A snapshot whose head and digest are right may still hold what no simulation came to.
+
+use super::*;
+use crate::contact::Contact;
+
+/// [m] How far beyond the ground a robot may be.
+const FAR: f64 = 1e6;
+
+/// Simulation and moments of it, each as genuine as the last.
+struct Genuine {
+    simulation: Simulation,
+    rest: Vec<u8>,
+}
+
+impl Genuine {
+    fn new() -> Self {
+        let simulation = busy();
+        let snapshot = simulation.snapshot();
+        let body = &snapshot[MAGIC.len()..snapshot.len() - DIGEST];
+        let image: Image = postcard::from_bytes(body).expect("it was just made");
+        let rest = image.rest;
+        Self { simulation, rest }
+    }
+
+    fn moment(&self) -> Moment {
+        postcard::from_bytes(&self.rest).expect("it was just made")
+    }
+
+    /// Whether a moment with one thing changed fits.
+    fn fits(&self, change: impl Fn(&mut Moment)) -> bool {
+        let mut moment = self.moment();
+        change(&mut moment);
+        self.simulation.fits(&moment)
+    }
+}
+
+/// A contact of a part that no robot here has.
+fn of_nobody() -> Contact {
+    Contact {
+        part: 999,
+        facet: 0,
+        edge: -1,
+        point: Vector::ZERO,
+        normal: Vector::Y,
+        distance: -0.001,
+    }
+}
+
+type Spoil = fn(&mut Moment);
+
+/// Each spoils one thing.
+const SPOILS: [(&str, Spoil); 13] = [
+    ("step", |m| m.step += 1000),
+    ("x", |m| m.state.center.x = f64::NAN),
+    ("y", |m| m.state.center.y = f64::NAN),
+    ("endless height", |m| m.state.center.y = f64::INFINITY),
+    ("endless depth", |m| m.state.center.y = f64::NEG_INFINITY),
+    ("command", |m| m.command = f64::NAN),
+    ("set point", |m| m.set_point = f64::NAN),
+    ("driver", |m| m.driver.hold(0, f64::NAN)),
+    ("velocity", |m| m.state.velocity.x = f64::NAN),
+    ("a flipper less", |m| m.state.flippers.clear()),
+    ("impulses of a robot without flippers", |m| {
+        let mut scenario = Scenario::from_json(&m.scenario).expect("it was just made");
+        scenario.robot.flippers = None;
+        let other = Simulation::new(&scenario).expect("the scenario is valid");
+        m.impulses = other.dynamics.impulses();
+    }),
+    ("dents", |m| m.dents = Dents::of(&[of_nobody()])),
+    ("seen", |m| m.seen.max_angle = f64::NAN),
+];
+
+#[test]
+fn a_moment_with_one_thing_spoilt_does_not_fit() {
+    let genuine = Genuine::new();
+    assert!(genuine.fits(|_| {}));
+    for (what, spoil) in SPOILS {
+        assert!(!genuine.fits(spoil), "{what}");
+    }
+}
+
+#[test]
+fn a_snapshot_of_a_moment_that_does_not_fit_is_refused() {
+    let genuine = Genuine::new();
+    for (what, spoil) in SPOILS {
+        let mut moment = genuine.moment();
+        spoil(&mut moment);
+        let refusal = refusal(&sealed(&Image {
+            build: BUILD_ID.to_owned(),
+            rest: bytes(&moment),
+        }));
+        assert!(refusal.contains("must hold what its own"), "{what}");
+    }
+}
+
+#[test]
+fn a_moment_fits_up_to_the_most_steps() {
+    let genuine = Genuine::new();
+    let time_step = genuine.simulation.time_step();
+    let fits = |step: u64| {
+        genuine.fits(|m| {
+            m.step = step;
+            m.seen = Seen::from(step as f64 * time_step);
+        })
+    };
+    let most = 1 << 40;
+    assert!(fits(0));
+    assert!(fits(most));
+    assert!(!fits(most + 1));
+}
+
+#[test]
+fn a_moment_fits_a_thousand_kilometres_beyond_its_ground_and_above_it() {
+    let genuine = Genuine::new();
+    let ground = &genuine.simulation.ground;
+    let (low, high) = ground.extent();
+    let x = |x: f64| genuine.fits(|m| m.state.center.x = x);
+    assert!(x(low - FAR));
+    assert!(!x((low - FAR).next_down()));
+    assert!(x(high + FAR));
+    assert!(!x((high + FAR).next_up()));
+
+    let y = |y: f64| genuine.fits(|m| m.state.center.y = y);
+    let top = FAR + ground.highest();
+    assert!(top > FAR, "the ground is not level");
+    assert!(y(top.next_down()));
+    assert!(!y(top));
+    assert!(!y(top.next_up()));
+    assert!(y(-2.0 * FAR), "what falls");
+}
+
+#[test]
+fn a_moment_fits_up_to_the_speed_of_the_drivetrain_either_way() {
+    let genuine = Genuine::new();
+    let fastest = genuine.simulation.scenario.robot.drivetrain.max_speed;
+    for side in [1.0, -1.0] {
+        let both = |speed: f64| {
+            let command = genuine.fits(|m| m.command = side * speed);
+            let set_point = genuine.fits(|m| m.set_point = side * speed);
+            [command, set_point]
+        };
+        assert_eq!(both(fastest), [true; 2], "to {side}");
+        assert_eq!(both(fastest.next_up()), [false; 2], "to {side}");
+    }
+}
