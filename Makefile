@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers bench-scaling format build soak tools
+.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -61,6 +61,9 @@ format: $(VENV)/.dependencies ## format all code
 	$(BIN)/ruff format .
 
 build: $(VENV)/.built ## the compiled core, in place
+
+fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
+	$(BIN)/python -m pytest -m soak tests/test_fuzz_ways_in.py tests/test_fuzz_runs.py
 
 soak: $(VENV)/.built ## the long tests, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored

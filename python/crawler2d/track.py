@@ -53,8 +53,8 @@ class GearWheel(Parameters):
         [m] Thickness of a grouser at its tip. None takes the robot's, reduced in proportion where
         the height is.
     base_thickness : float, optional
-        [m] Thickness of a grouser at the root circle, at least that of the tip. None is that of the
-        tip: parallel flanks.
+        [m] Thickness of a grouser at the root circle, at least that of the tip, and no more than
+        keeps its flanks outside that circle. None is that of the tip: parallel flanks.
     phase_fraction : float
         [-] Wheel n, counted from 1 at the rear, starts turned by this share of n times the angle
         between two grousers: eq. (1) of the paper, where it is a third.

@@ -73,7 +73,8 @@ impl GearContact {
             directions: gear.directions().map(direction).collect(),
             grouser: Grouser {
                 corners,
-                normals: [side(0), side(1), side(2)],
+                // A tip may be thinner than rounding errors.
+                normals: [side(0), Vector::X, side(2)],
             },
             half_base: libm::atan2(corners[3].y, corners[3].x),
         }

@@ -147,13 +147,17 @@ fn solids_of(part: &Part) -> Vec<SharedShape> {
         Shape::Disc { radius, .. } => vec![SharedShape::ball(*radius)],
         Shape::Gear { gear, .. } => {
             let root = SharedShape::ball(gear.root_radius);
-            let grousers = gear.directions().map(|d| polygon(gear.corners(d).to_vec()));
+            let grousers = gear
+                .directions()
+                .filter_map(|d| polygon(gear.corners(d).to_vec()));
             std::iter::once(root).chain(grousers).collect()
         }
         Shape::Hull { .. } | Shape::Grouser(_) | Shape::Polygon { .. } => Vec::new(),
     }
 }
 
-fn polygon(corners: Vec<Vector>) -> SharedShape {
-    SharedShape::convex_polyline(corners).expect("the corners are those of a convex polygon")
+/// Exactly these corners, however flat they are; none if a rounding error would be as thick.
+fn polygon(mut corners: Vec<Vector>) -> Option<SharedShape> {
+    corners.dedup();
+    SharedShape::convex_polyline_unmodified(corners)
 }

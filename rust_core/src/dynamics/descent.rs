@@ -83,7 +83,8 @@ impl Dynamics {
     fn obey_coulombs_law(&mut self) {
         for row in self.rows.iter_mut().filter(|row| row.bears) {
             let limit = row.friction * row.normal_impulse;
-            row.friction_impulse = row.friction_impulse.clamp(-limit, limit);
+            // A limit that is no number is found after the step, with all else that is none: no clamp, which panics.
+            row.friction_impulse = row.friction_impulse.max(-limit).min(limit);
             row.guess_grip();
         }
     }

@@ -204,3 +204,13 @@ fn non_finite_state_is_an_error_and_names_the_step() {
         .expect_err("not finite");
     assert_eq!(error.step, 7);
 }
+
+#[test]
+fn a_state_that_is_no_number_is_an_error_on_contacts_too() {
+    for value in [f64::NAN, f64::INFINITY, 1e300] {
+        let (mut dynamics, mut state) = setup(|_| {});
+        let contacts = clamped(&state);
+        state.velocity.x = value;
+        assert!(dynamics.advance(&mut state, &contacts, 0.0, 7).is_err());
+    }
+}

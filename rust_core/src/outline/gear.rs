@@ -93,6 +93,15 @@ impl Gear {
             );
             return error(given, base_thickness, rule);
         }
+        // Flanks that meet the root circle from inside would leave a corner of it between them and the arc.
+        let leaning = libm::asin(0.5 * tip_thickness / radius) + libm::acos(root_radius / radius);
+        let most = 2.0 * root_radius * libm::sin(leaning.min(std::f64::consts::FRAC_PI_2));
+        if base_thickness > tip_thickness.max(most) {
+            let rule = format!(
+                "must be at most {most} m on wheel {index}: wider grousers of this height would end inside the root circle"
+            );
+            return error("base_thickness", base_thickness, rule);
+        }
         let ahead = wheel.phase_fraction * (index + 1) as f64;
         Ok(Self {
             radius,

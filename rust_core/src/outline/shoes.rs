@@ -36,13 +36,14 @@ pub struct ShoeLoop {
 
 impl ShoeLoop {
     /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
-    /// a shoe would be longer than half a run, or than the smaller disc is thick, for it would not go round.
+    /// a shoe would be longer than half the distance of the discs, than the smaller one is thick, or than a
+    /// run, for it would not go round.
     pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
         let least = Envelope::new(&discs).length() / count as f64;
         let most = LENGTHENED * least;
         let [rear, front] = discs;
-        let half_a_run = 0.5 * (front.center - rear.center).length();
-        if most > half_a_run.min(2.0 * rear.radius.min(front.radius)) {
+        let half_way = 0.5 * (front.center - rear.center).length();
+        if most > half_way.min(2.0 * rear.radius.min(front.radius)) {
             return None;
         }
         let chain = Self {
@@ -51,11 +52,12 @@ impl ShoeLoop {
             pitch: 0.0,
             teeth: None,
         };
-        Some(chain.taut_between(least, most))
+        chain.taut_between(least, most)
     }
 
-    /// The same chain round a sprocket in place of the rear end: as many teeth as come nearest to it.
-    pub(crate) fn on_sprocket(self) -> Self {
+    /// The same chain round a sprocket in place of the rear end: as many teeth as come nearest to it; none if
+    /// that leaves no run as long as a shoe.
+    pub(crate) fn on_sprocket(self) -> Option<Self> {
         let half = 0.5 * self.pitch;
         let teeth = PI / libm::atan(half / self.discs[0].radius);
         let (least, most) = (0.8 * self.pitch, 1.2 * self.pitch);
@@ -63,14 +65,25 @@ impl ShoeLoop {
         Self { teeth, ..self }.taut_between(least, most)
     }
 
-    /// With the pitch between these at which it is taut in the mean.
-    fn taut_between(self, least: f64, most: f64) -> Self {
+    /// With the pitch between these at which it is taut in the mean; none if its runs are too short for it.
+    fn taut_between(self, least: f64, most: f64) -> Option<Self> {
+        if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
+            return None;
+        }
         let taut = |phase: u32| {
             let share = f64::from(phase) / f64::from(PHASES);
             zero(least, most, |p: f64| self.excess(p, share * p, 0.0))
         };
         let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
-        Self { pitch, ..self }
+        Some(Self { pitch, ..self })
+    }
+
+    /// Whether a shoe of a pitch [m] fits on the runs, even with the front end as far in as `travel` looks.
+    fn has_runs(&self, pitch: f64) -> bool {
+        let [rear, mut front] = self.ends(pitch);
+        front.center.x -= 0.5 * pitch;
+        let (apart, step) = (front.center - rear.center, front.radius - rear.radius);
+        apart.length_squared() - step * step >= pitch * pitch
     }
 
     /// The teeth of its sprocket, if it has one, which reach no farther out than `most` [m] where they can.
@@ -237,6 +250,19 @@ mod tests {
                             assert!(-local.y > disc.radius - 1e-9, "shoe {i} cuts an end");
                         }
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ends_so_unequal_that_no_shoe_fits_between_them_take_no_chain() {
+        for (rear, front) in [(0.05, 0.39), (0.39, 0.05)] {
+            for count in 3..400 {
+                if let Some(chain) = ShoeLoop::new(ends(rear, front), count) {
+                    assert!(chain.pitch < 0.14);
+                    chain.places(0.1);
+                    chain.on_sprocket().map(|chain| chain.places(0.1));
                 }
             }
         }

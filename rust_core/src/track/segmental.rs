@@ -58,14 +58,14 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     }
     let loop_of = |count: usize| {
         let pins = ends(outline.grouser_height + 0.5 * plate(count));
-        ShoeLoop::new(pins, count)
+        let on_guide = ShoeLoop::new(pins, count)?;
+        match track.mechanism {
+            ChainMechanism::Guide => Some(on_guide),
+            ChainMechanism::Sprocket => on_guide.on_sprocket(),
+        }
     };
     let Some(path) = loop_of(count) else {
         return Err(too_long(count, |count| loop_of(count).is_some()));
-    };
-    let path = match track.mechanism {
-        ChainMechanism::Guide => path,
-        ChainMechanism::Sprocket => path.on_sprocket(),
     };
     let tensioner = tensioner(robot, track, path.pitch);
     let shoe_mass = shoe_mass(robot, count)?;
@@ -144,12 +144,23 @@ fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
 /// Shoes of a chain of `count` are too long: which counts are not.
 fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
     let most = MAX_SHOES as usize;
-    let allowed = match (count..=most).find(|count| goes_round(*count)) {
-        Some(least) => format!("must be from {least} to {most} here"),
-        None => format!("must be beyond {most} here, the most there can be"),
+    let allowed = if goes_round(most) {
+        // The shorter they are the better they fit, and to try one count takes some milliseconds.
+        let (mut too_few, mut least) = (count, most);
+        while least - too_few > 1 {
+            let between = too_few.midpoint(least);
+            if goes_round(between) {
+                least = between;
+            } else {
+                too_few = between;
+            }
+        }
+        format!("must be from {least} to {most} here")
+    } else {
+        format!("must be beyond {most} here, the most there can be")
     };
     let rule = format!(
-        "{allowed}: a shoe must be no longer than the smaller end is thick, nor than half the distance of the axles"
+        "{allowed}: a shoe must be no longer than the smaller end is thick, than half the distance of the axles, nor than a straight run"
     );
     ScenarioError::new("robot.track.shoe_count", count, rule)
 }
