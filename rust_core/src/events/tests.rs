@@ -244,6 +244,8 @@ fn an_event_fits_the_edges_of_the_lane_that_has_most_or_none() {
 
 #[test]
 fn what_is_followed_with_one_thing_spoilt_does_not_fit() {
+    type Spoil = fn(&mut IntrusionWatch);
+
     let lanes = lanes();
     // One is over and one goes on.
     let followed = || {
@@ -256,7 +258,6 @@ fn what_is_followed_with_one_thing_spoilt_does_not_fit() {
     };
     assert!(IntrusionWatch::default().fits(PARTS, &lanes));
     assert!(followed().fits(PARTS, &lanes));
-    type Spoil = fn(&mut IntrusionWatch);
     let all: [(&str, Spoil); 6] = [
         ("past force", |w| w.past[0].force = f64::NAN),
         ("past body", |w| w.past[0].bodies = Some([0, PARTS])),

@@ -249,6 +249,8 @@ fn a_stop_falters_even_if_a_little_way_is_made_in_the_end() {
 
 #[test]
 fn progress_with_one_thing_spoilt_does_not_fit() {
+    type Spoil = fn(&mut Progress);
+
     // No lane is needed for a stop without an edge.
     let fits = |progress: &Progress| progress.fits(1, &[]);
     let genuine = || {
@@ -260,13 +262,12 @@ fn progress_with_one_thing_spoilt_does_not_fit() {
         progress
     };
     assert!(fits(&genuine()));
-    type Spoil = fn(&mut Progress);
     let all: [(&str, Spoil); 16] = [
         ("direction", |p| p.direction = 0.5),
         ("direction that is no number", |p| p.direction = f64::NAN),
         ("advance then", |p| p.history[2].advance = f64::NAN),
         ("angle then", |p| p.history[2].angle = f64::NAN),
-        // Nothing that is made of both is a number.
+        // Their sum is no number.
         ("advance and angle then", |p| {
             (p.history[2].advance, p.history[2].angle) = (f64::INFINITY, f64::NEG_INFINITY);
         }),

@@ -6,7 +6,7 @@ use super::*;
 /// [s] When the robots here are looked at.
 const TIME: f64 = 1.0;
 
-/// The robot and the ground of [`astride`] that what it has seen is to fit.
+/// The robot and the ground of [`astride`].
 struct Place {
     model: Model,
     lanes: Vec<Profile>,
@@ -26,12 +26,13 @@ impl Place {
 
 #[test]
 fn what_was_seen_with_one_thing_spoilt_does_not_fit() {
+    type Spoil = fn(&mut Watched);
+
     let mut robot = astride();
     robot.stands_until(TIME);
     let place = Place::new(&robot);
     assert!(place.fits(robot.seen(), TIME));
     assert!(place.fits(&Seen::from(TIME), TIME), "nothing yet");
-    type Spoil = fn(&mut Watched);
     let all: [(&str, Spoil); 16] = [
         ("time to clear", |r| {
             r.monitor.seen.time_to_clear = f64::NAN;

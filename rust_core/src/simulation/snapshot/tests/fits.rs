@@ -6,7 +6,7 @@ use crate::contact::Contact;
 /// [m] How far beyond the ground a robot may be.
 const FAR: f64 = 1e6;
 
-/// Simulation and moments of it, each as genuine as the last.
+/// A simulation, and what its snapshot holds.
 struct Genuine {
     simulation: Simulation,
     rest: Vec<u8>,
