@@ -1,35 +1,11 @@
-//! What can go wrong: a scenario that breaks a rule, a run that cannot go on.
+//! What can go wrong beside a scenario that breaks a rule: a run that cannot go on, a request beyond its memory.
 
 use thiserror::Error;
 
-use crate::memory::MEMORY_VARIABLE;
+use crate::scenario::ScenarioError;
 
-/// A field of a scenario breaks a rule; nothing has been run.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{path} {rule}, got {value}")]
-pub struct ScenarioError {
-    /// Dotted path of the field, for example `robot.track.count`.
-    pub path: String,
-    /// The value found there, shortened for display.
-    pub value: String,
-    /// The rule it breaks, starting with "must".
-    pub rule: String,
-}
-
-impl ScenarioError {
-    #[allow(clippy::needless_pass_by_value)] // numbers and texts come as they are at hand
-    pub(crate) fn new(
-        path: impl Into<String>,
-        value: impl ToString,
-        rule: impl Into<String>,
-    ) -> Self {
-        Self {
-            path: path.into(),
-            value: shorten(&value.to_string()),
-            rule: rule.into(),
-        }
-    }
-}
+/// The environment variable that sets the limit of memory, in GiB.
+pub const MEMORY_VARIABLE: &str = "CRAWLER2D_MEMORY";
 
 /// The state of a run became non-finite; everything after `step` would be noise.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -90,14 +66,4 @@ fn mebibytes(bytes: u64) -> u64 {
 
 fn gibibytes(bytes: u64) -> f64 {
     bytes as f64 / (1_u64 << 30) as f64
-}
-
-/// Long values (point lists) would bury the message.
-fn shorten(text: &str) -> String {
-    const LONGEST: usize = 80;
-    if text.chars().count() <= LONGEST {
-        return text.to_owned();
-    }
-    let head: String = text.chars().take(LONGEST).collect();
-    format!("{head}...")
 }

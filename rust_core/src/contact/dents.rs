@@ -3,11 +3,10 @@
 //! The part is dented there: the overlap that it begins with is no penetration. It may not grow, and
 //! heals as the robot's own motion lets the ground out, so it never gives the robot any energy.
 
-use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use super::{Contact, LoadedContact};
-use crate::bounds::plausible;
+use super::Contact;
+use crate::geometry::{Vector, plausible};
 
 /// [m] A dent moves less than this in a step.
 const SAME_PLACE: f64 = 0.01;
@@ -48,13 +47,13 @@ impl Dents {
     }
 
     /// Lets the dents heal by what the robot has truly moved: these are the contacts after a step.
-    pub(crate) fn heal(&mut self, contacts: &[LoadedContact]) {
+    pub(crate) fn heal<'a>(&mut self, contacts: impl Iterator<Item = &'a Contact>) {
         if self.dents.is_empty() {
             return;
         }
-        let left = contacts.iter().filter_map(|l| {
-            let depth = self.depth_at(&l.contact)? - l.contact.distance.max(0.0);
-            (depth > 0.0).then(|| Dent::of(&l.contact, depth))
+        let left = contacts.filter_map(|contact| {
+            let depth = self.depth_at(contact)? - contact.distance.max(0.0);
+            (depth > 0.0).then(|| Dent::of(contact, depth))
         });
         self.dents = left.collect();
     }
@@ -83,7 +82,6 @@ impl Dent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Grip;
 
     fn contact(x: f64, distance: f64) -> Contact {
         Contact {
@@ -106,16 +104,7 @@ mod tests {
     /// A step that ends with that distance.
     fn step(dents: &mut Dents, x: f64, distance: f64) {
         let contact = contact(x, gap(dents, x, distance));
-        dents.heal(&[LoadedContact {
-            contact,
-            normal_force: 0.0,
-            friction_force: 0.0,
-            surface_speed: 0.0,
-            normal_guess: 0.0,
-            friction_guess: 0.0,
-            grip: Grip::Open,
-            carried_over: false,
-        }]);
+        dents.heal([contact].iter());
     }
 
     #[test]

@@ -1,11 +1,10 @@
 //! Who finds the contacts.
 
-use rapier2d_f64::math::Pose;
-
+use super::Contact;
 use super::own::OwnContact;
 use super::reference::ReferenceContact;
-use super::{Contact, Running};
-use crate::robot::Part;
+use crate::geometry::Pose;
+use crate::robot::{Part, Running};
 use crate::scenario::ContactMethod;
 use crate::terrain::Profile;
 

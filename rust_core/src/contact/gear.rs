@@ -4,13 +4,10 @@
 //! ground, flanks and tips on its corners. Where a corner of the tip and one of the ground have run
 //! into each other, the way out is the shortest of those that both allow.
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
-
 use super::Contact;
 use super::lane::{Lane, On, Touch};
 use super::overlap::{self, Tip};
-use crate::outline::Gear;
-use crate::plane::{direction, right_of};
+use crate::geometry::{Gear, Pose, Rotation, Vector, direction, right_of};
 
 /// [m] Ground does not sink into a flank by more than this.
 const SUNK: f64 = 1e-3;

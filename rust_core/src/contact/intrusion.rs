@@ -4,12 +4,10 @@
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::Contact;
-use crate::outline::cut::{self, Piece};
-use crate::outline::search::maximise;
-use crate::outline::{Disc, Envelope};
+use crate::geometry::cut::{self, Piece};
+use crate::geometry::search::maximise;
+use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::robot::{Mount, Part};
 use crate::terrain::{Profile, Side};
 

@@ -3,10 +3,8 @@
 //! The overlap can be left along each of the four faces that meet there, as far as the other corner is
 //! what the face meets. The shortest of these ways is the contact; the others yield to it.
 
-use rapier2d_f64::math::Vector;
-
 use super::lane::{Corner, Lane, On, ROUNDING, Touch};
-use crate::plane::cross;
+use crate::geometry::{Vector, cross};
 
 /// Cosine of the angle up to which two normals of an overlap both count: faces that all but lie on each
 /// other bear at both ends of their overlap.

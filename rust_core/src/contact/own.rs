@@ -5,14 +5,12 @@
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::gear::GearContact;
 use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
-use super::{Contact, Running, without_redundant};
-use crate::outline::Grouser;
-use crate::robot::{Mount, Part, Shape};
+use super::{Contact, without_redundant};
+use crate::geometry::{Grouser, Pose, Vector};
+use crate::robot::{Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
 /// Outlines of one robot and one ground.

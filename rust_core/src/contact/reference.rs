@@ -3,7 +3,6 @@
 //! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
 //! kept from step to step, so a contact is always of this pose.
 
-use rapier2d_f64::math::{Pose, Vector};
 use rapier2d_f64::parry::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher,
 };
@@ -12,8 +11,9 @@ use rapier2d_f64::prelude::SharedShape;
 
 use super::hull::HullContact;
 use super::lane::Lane;
-use super::{Contact, Running, without_redundant};
-use crate::robot::{Part, Shape};
+use super::{Contact, without_redundant};
+use crate::geometry::{Pose, Vector};
+use crate::robot::{Part, Running, Shape};
 use crate::terrain::Profile;
 
 /// Shapes of one robot and one ground.

@@ -4,15 +4,13 @@
 //! can be balanced on its way through the next millimetres. On that way it is settled on the ground
 //! as far as its weight lets it down, surfaces slide as they did, and motors push as they did.
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
-
 use super::forces::Push;
 use super::linear_program::Rows;
 use super::scene::Scene;
-use super::signals::Stance;
 use super::statics::{Role, Statics, Support};
 use crate::contact::{Contact, ContactFinder};
-use crate::plane::{cross, right_of};
+use crate::geometry::{Pose, Rotation, Vector, cross, right_of};
+use crate::observe::Stance;
 
 /// [m] Where the robot is looked at on its way, beyond where it stands.
 const WAY: [f64; 6] = [2e-4, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3];

@@ -1,10 +1,8 @@
 //! Arms in the statics of a stop: each hangs on its pivot, and its motor has a limit.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::scene::Scene;
 use crate::dynamics::Direction;
-use crate::plane::cross;
+use crate::geometry::{Pose, Vector, cross};
 use crate::robot::Mount;
 
 /// The pivot of the arms at one end.

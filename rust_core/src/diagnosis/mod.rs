@@ -3,6 +3,7 @@
 //! Nothing here knows a track model: contacts, forces, surface speeds, torques and the geometry of
 //! the envelope decide. docs/decisions/0005 says how, docs/conventions.md what the words mean.
 
+mod counterfactual;
 mod escape;
 mod forces;
 mod hinges;
@@ -10,25 +11,24 @@ mod linear_program;
 mod mechanism;
 mod pinch;
 mod scene;
-mod signals;
 mod statics;
 mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::Vector;
-
-pub use mechanism::Mechanism;
-pub(crate) use signals::{Signals, Stance};
-pub use statics::Condition;
+use statics::Statics;
 
 use crate::contact::Intrusion;
-use crate::outcome::Outcome;
+use crate::geometry::Vector;
+use crate::observe::{Outcome, Stance};
 use crate::robot::BodyKind;
-use crate::simulation::Counterfactual;
 use crate::terrain::Side;
+
+pub use counterfactual::Counterfactual;
+pub use mechanism::Mechanism;
+pub use statics::Condition;
+
 pub(crate) use scene::Scene;
-use statics::Statics;
 
 /// Why a robot that was commanded to move did not.
 #[derive(Clone, Debug, PartialEq)]

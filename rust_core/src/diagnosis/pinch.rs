@@ -2,7 +2,7 @@
 
 use super::StopContact;
 use super::scene::Scene;
-use super::signals::Stance;
+use crate::observe::Stance;
 
 /// [rad] Two shoes on a straight run are less bent.
 const BENT: f64 = 0.05;

@@ -1,15 +1,13 @@
 //! A stop in its surroundings: which ground is inside the track, what bears, what could hold it.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::mechanism::Facts;
-use super::signals::{Bearing, DriveMean, Stance};
 use super::statics::{Condition, Role, Statics, Support};
 use super::{LoadedIntrusion, StopContact};
-use crate::contact::{Contact, Intrusion, Running, TrackEnvelope};
+use crate::contact::{Contact, Intrusion, TrackEnvelope};
 use crate::dynamics::{Carrier, Direction, Levers};
-use crate::plane::{left_of, right_of};
-use crate::robot::{BodyKind, Model, Part};
+use crate::geometry::{Pose, Vector, left_of, right_of};
+use crate::observe::{Bearing, DriveMean, Stance};
+use crate::robot::{BodyKind, Model, Part, Running};
 use crate::scenario::{ContactMethod, SeizureCriteria};
 use crate::terrain::Profile;
 

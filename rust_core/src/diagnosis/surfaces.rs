@@ -3,10 +3,8 @@
 //! Belts with grousers and chains go on while a robot stands: what bore at a place may be elsewhere when the
 //! stop is looked at. What is there then tells the motion.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::scene::Scene;
-use crate::outline::Motion;
+use crate::geometry::{Motion, Pose, Vector};
 use crate::robot::{Mount, Shape};
 
 impl Scene<'_> {
@@ -80,10 +78,8 @@ fn between(from: Pose, to: Pose, run: f64) -> Motion {
 
 #[cfg(test)]
 mod tests {
-    use rapier2d_f64::math::Rotation;
-
     use super::*;
-    use crate::plane::left_of;
+    use crate::geometry::{Rotation, left_of};
 
     #[test]
     fn between_two_places_on_a_circle_it_turns_about_its_middle() {

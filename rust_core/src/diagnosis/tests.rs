@@ -1,10 +1,10 @@
 //! Judgements on synthetic stops of a belt.
 #![allow(clippy::float_cmp)] // lengths here are exact in binary
 
-use super::signals::{Bearing, DriveMean};
 use super::*;
-use crate::contact::{Contact, Running, TrackEnvelope};
-use crate::robot::{Model, Mount};
+use crate::contact::{Contact, TrackEnvelope};
+use crate::observe::{Bearing, DriveMean};
+use crate::robot::{Model, Mount, Running};
 use crate::scenario::{Scenario, Terrain};
 use crate::terrain::Ground;
 

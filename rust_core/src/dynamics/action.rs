@@ -1,8 +1,7 @@
 //! A direction in which a constraint acts, and how velocities count along it.
 
-use rapier2d_f64::math::Vector;
-
 use super::levers::Direction;
+use crate::geometry::Vector;
 
 /// A direction in which a constraint acts, with the motors as they are in this solve.
 #[derive(Clone, Copy, Debug, Default)]

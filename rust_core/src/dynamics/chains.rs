@@ -6,7 +6,7 @@ use super::flippers::Arm;
 use super::row::{Link, Row};
 use super::solve::Phase;
 use super::state::{State, Twist};
-use rapier2d_f64::math::Vector;
+use crate::geometry::Vector;
 
 /// [m] A shoe this close to the guide may come to rest on it within a step.
 const NEAR_GUIDE: f64 = 2e-3;

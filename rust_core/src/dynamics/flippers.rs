@@ -8,8 +8,6 @@
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::Vector;
-
 use super::Dynamics;
 use super::action::Action;
 use super::damper::Damper;
@@ -17,8 +15,8 @@ use super::motors::{AT_LIMIT, Motor, PAST};
 use super::solve::Phase;
 use super::state::{State, Twist};
 use super::system::Acts;
-use crate::flipper::Flipper;
-use crate::plane::left_of;
+use crate::geometry::{Vector, left_of};
+use crate::robot::Flipper;
 use crate::scenario::End;
 
 /// The arms at one end in the equations of motion.

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
+use super::LoadedContact;
 use super::chain::{Chain, ChainImpulses};
 use super::motors::Motor;
-use crate::bounds::plausible;
-use crate::contact::LoadedContact;
+use crate::geometry::plausible;
 use crate::terrain::Profile;
 
 /// Of one robot; a snapshot holds them.

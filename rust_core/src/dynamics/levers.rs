@@ -1,11 +1,8 @@
 //! Where a contact lies on the robot, and how the velocities of body, flipper and drive add up along it.
 
-use rapier2d_f64::math::{Rotation, Vector};
-
 use super::state::Carrier;
 use crate::contact::Contact;
-use crate::outline::Motion;
-use crate::plane::{cross, left_of, right_of};
+use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
 
 /// A direction at a contact, and how the velocities of body and drive add up along it.

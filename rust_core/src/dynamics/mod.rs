@@ -17,6 +17,7 @@ mod flippers;
 mod grip;
 mod impulses;
 mod levers;
+mod loaded;
 mod motors;
 mod newton;
 mod row;
@@ -26,26 +27,28 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::Vector;
+use chain::Chain;
+use flippers::Arm;
+use motors::Motor;
+use row::Row;
+use solve::{Phase, Push, Softness};
+use system::System;
 
-use crate::contact::{Contact, LoadedContact};
+use crate::contact::Contact;
 use crate::error::SimulationError;
+use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
-use chain::Chain;
+
 pub use chains::ChainReading;
-use flippers::Arm;
 pub(crate) use grip::Grip;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
-use motors::Motor;
+pub(crate) use loaded::LoadedContact;
 pub(crate) use motors::push_axis;
-use row::Row;
-use solve::{Phase, Push, Softness};
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
-use system::System;
 
 /// [s] Contacts that stick can pull against each other without end, which no body that gives way at
 /// all would keep up. The friction that balance does not ask for fades with this time.

@@ -4,14 +4,13 @@
 //! wherever its wheel is, and nothing to solve for. Only drives at their limit, or without a motor, have
 //! a spin of their own.
 
-use rapier2d_f64::math::{Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
 use super::levers::Direction;
 use super::solve::Phase;
 use super::state::State;
-use crate::plane::cross;
+use crate::geometry::{Rotation, Vector, cross};
 use crate::robot::Model;
 
 /// What a motor does in a solve.

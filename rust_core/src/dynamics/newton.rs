@@ -164,9 +164,9 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use rapier2d_f64::math::Vector;
 
     use super::*;
+    use crate::geometry::Vector;
     use crate::robot::Model;
     use crate::scenario::Scenario;
 

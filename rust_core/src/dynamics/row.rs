@@ -1,7 +1,6 @@
 //! One contact as the solver sees it: levers on the body and its drive, gap, impulses.
 
-use rapier2d_f64::math::{Rotation, Vector};
-
+use super::LoadedContact;
 use super::action::Action;
 use super::damper::Damper;
 use super::grip::Grip;
@@ -9,7 +8,8 @@ use super::levers::{Carried, Direction, Levers};
 use super::newton::Way;
 use super::solve::{Admittance, Softness};
 use super::state::{Carrier, State, Twist};
-use crate::contact::{Contact, LoadedContact};
+use crate::contact::Contact;
+use crate::geometry::{Rotation, Vector};
 use crate::robot::{Model, Mount};
 
 /// Compliance of the contacts of shoes in units of what goes with the contact frequency: shoes are light, but

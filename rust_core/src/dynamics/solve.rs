@@ -1,13 +1,12 @@
 //! The velocities at which all constraints agree: which contacts bear, grip and slide, and which motors hold.
 
-use rapier2d_f64::math::Vector;
-
 use super::Dynamics;
 use super::action::Action;
 use super::chain::Chain;
 use super::motors::{Motor, push_axis};
 use super::row::{Link, Row};
 use super::state::State;
+use crate::geometry::Vector;
 use crate::robot::Model;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms

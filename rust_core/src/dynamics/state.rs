@@ -1,13 +1,9 @@
 //! What moves: the body and its drives.
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
-use crate::chain::ChainOfShoes;
-use crate::contact::Running;
-use crate::flipper::Flipper;
-use crate::plane::{direction, left_of};
-use crate::robot::{Model, Mount};
+use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
+use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
 
 /// The moving state.
 #[derive(Clone, Debug, Serialize, Deserialize)]

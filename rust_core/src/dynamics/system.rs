@@ -1,9 +1,8 @@
 //! The linear system of a solve: chassis, flippers that turn by themselves, drives with a spin of their own.
 
-use rapier2d_f64::math::Vector;
-
 use super::action::Action;
 use super::damper::Damper;
+use crate::geometry::Vector;
 
 /// Flippers at most: one at either end.
 const FLIPPERS: usize = 2;

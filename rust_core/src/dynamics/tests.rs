@@ -1,11 +1,10 @@
 //! Motion without ground, and on contacts that no terrain could make.
 
 use approx::assert_relative_eq;
-use rapier2d_f64::math::Vector;
 
 use super::*;
 use crate::draw::Draw;
-use crate::plane::direction;
+use crate::geometry::{Vector, direction};
 use crate::scenario::{Scenario, Track};
 
 fn engineer() -> Scenario {

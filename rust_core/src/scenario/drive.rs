@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
 use super::flippers::ANGLE;
 use super::robot::Drivetrain;
-use crate::error::ScenarioError;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
 /// Entries of a schedule at most.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::error::ScenarioError;
+use super::ScenarioError;
 
 /// An interval that a number must lie in, with its unit for the message.
 #[derive(Clone, Copy, Debug)]

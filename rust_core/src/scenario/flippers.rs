@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range};
 use super::robot::{LENGTH, MASS, Robot, TrackOutline};
 use super::track::Track;
-use crate::error::ScenarioError;
 
 /// [rad] Of an arm over the chassis: a turn either way.
 pub(super) const ANGLE: Range = Range::between(-6.3, 6.3, "rad");

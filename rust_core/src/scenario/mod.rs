@@ -2,6 +2,7 @@
 
 mod doubts;
 mod drive;
+mod error;
 mod fields;
 mod flippers;
 mod robot;
@@ -11,12 +12,14 @@ mod text;
 mod track;
 mod wheel;
 
+use fields::{Fields, Range};
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
+pub use error::ScenarioError;
 pub use flippers::{End, Ends, Flippers};
 pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
@@ -29,9 +32,6 @@ pub use track::{
 pub(crate) use track::{MAX_SHOES, MAX_WHEELS};
 pub(crate) use wheel::MAX_GROUSERS;
 pub use wheel::{GearWheel, Wheel};
-
-use crate::error::ScenarioError;
-use fields::{Fields, Range};
 
 /// The only version of the format so far.
 pub const SCHEMA: u32 = 1;

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range};
 use super::flippers::Flippers;
 use super::track::Track;
-use crate::error::ScenarioError;
 
 /// [m] Sizes a crawler can have; a micrometre or a kilometre is a unit mistake.
 pub(super) const LENGTH: Range = Range::between(1e-3, 100.0, "m");

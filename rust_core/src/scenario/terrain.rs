@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
-use crate::error::ScenarioError;
 
 /// Largest number of points of one profile; 100,000 build in well under a second.
 pub const MAX_POINTS: usize = 200_000;

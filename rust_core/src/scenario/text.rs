@@ -5,8 +5,8 @@ use serde::de::{MapAccess, Visitor};
 use serde_json::value::RawValue;
 use serde_json::{Error, Map, Value, from_str};
 
+use super::ScenarioError;
 use super::fields::joined;
-use crate::error::ScenarioError;
 
 /// Objects and lists within each other at most; a scenario has six. Each level is read once more.
 const DEEPEST: usize = 12;

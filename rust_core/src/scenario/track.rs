@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
 use super::robot::{Robot, TorqueSharing};
 use super::wheel::{MAX_GROUSERS, Wheel};
-use crate::error::ScenarioError;
 
 /// Most wheels of one side.
 pub(crate) const MAX_WHEELS: u32 = 200;

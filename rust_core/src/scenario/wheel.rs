@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
-use crate::error::ScenarioError;
 
 /// Most grousers of one wheel.
 pub(crate) const MAX_GROUSERS: u32 = 200;

@@ -6,12 +6,12 @@ mod profile;
 mod skyline;
 mod upper;
 
-use crate::error::ScenarioError;
-use crate::scenario::{Scenario, Terrain};
 use obstacle::RUN_OUT;
 use profile::COLLINEAR;
-pub use profile::{Edge, Profile, Side};
 use skyline::Skyline;
+
+use crate::scenario::{Scenario, ScenarioError, Terrain};
+pub use profile::{Edge, Profile, Side};
 
 /// The ground of a scenario.
 #[derive(Clone, Debug)]

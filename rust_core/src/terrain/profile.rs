@@ -1,10 +1,9 @@
 //! One lane of the ground as a polyline with edges.
 
-use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::error::ScenarioError;
-use crate::plane::left_of;
+use crate::geometry::{Vector, left_of};
+use crate::scenario::ScenarioError;
 
 /// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
 const FACET_TURN: f64 = 0.0175;

@@ -1,9 +1,8 @@
 //! The higher of two lanes, which the belly between them meets.
 
-use rapier2d_f64::math::Vector;
-
 use super::profile::Profile;
-use crate::error::ScenarioError;
+use crate::geometry::Vector;
+use crate::scenario::ScenarioError;
 
 /// The upper envelope of two profiles where both are. Its arcs are polylines, as fine as theirs; friction is
 /// the larger of both.

@@ -7,15 +7,13 @@
 mod near;
 mod sector;
 
-use rapier2d_f64::math::{Pose, Vector};
+use sector::Sector;
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
 use super::overlap::{self, Tip};
-use crate::outline::{Disc, Envelope};
-use crate::plane::direction;
+use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
 use crate::robot::{Part, Shape};
-use sector::Sector;
 
 /// [m] Ground that is deeper inside did not get there by sinking in.
 pub(super) const SHALLOW: f64 = 1e-3;

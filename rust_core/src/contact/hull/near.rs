@@ -1,9 +1,8 @@
 //! Which stretches of finely cut ground may come near a hull.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::super::lane::Stretch;
 use super::{Arc, HullContact};
+use crate::geometry::{Pose, Vector};
 
 impl HullContact {
     /// [m] From where to where the run behind an arc reaches along x.

@@ -2,9 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rapier2d_f64::math::Vector;
-
-use crate::plane::{cross, direction};
+use crate::geometry::{Vector, cross, direction};
 
 /// A range of directions.
 pub(super) struct Sector {

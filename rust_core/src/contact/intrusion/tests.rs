@@ -9,16 +9,16 @@
 
 mod judge;
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
+use judge::{Judge, Range, SLICES, ranges};
 
 use super::*;
 use crate::draw::Draw;
+use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Mount};
 use crate::scenario::{
     CircumferentialWheels, GearWheel, HybridWheels, LineOfWheels, Scenario, Terrain, Track, Wheel,
 };
 use crate::terrain::Ground;
-use judge::{Judge, Range, SLICES, ranges};
 
 const POSES: usize = 10_000;
 

@@ -1,9 +1,7 @@
 //! Where two faces of the ground meet: an arc, of radius 0 where the corner is sharp.
 
-use rapier2d_f64::math::Vector;
-
 use super::{On, ROUNDING, Touch};
-use crate::plane::{cross, left_of};
+use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::Profile;
 
 /// [m] A point this close to an arc is on it.

@@ -7,11 +7,9 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use rapier2d_f64::math::Vector;
-
 use super::roof::{Roof, roof};
 use super::{Corner, Face, ROUNDING};
-use crate::plane::cross;
+use crate::geometry::{Vector, cross};
 use crate::terrain::Profile;
 
 /// Pieces of a stretch of the lowest level.

@@ -9,16 +9,16 @@ mod roof;
 #[cfg(test)]
 mod tests;
 
-use rapier2d_f64::math::Vector;
-
-use super::Contact;
-use crate::plane::{cross, left_of};
-use crate::terrain::Profile;
-pub(super) use corner::Corner;
 use corner::corners_of;
 use index::Index;
-pub(super) use index::{Region, Stretch};
 use roof::Chord;
+
+use super::Contact;
+use crate::geometry::{Vector, cross, left_of};
+use crate::terrain::Profile;
+
+pub(super) use corner::Corner;
+pub(super) use index::{Region, Stretch};
 
 /// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
 pub(super) const ROUNDING: f64 = 1e-9;

@@ -1,10 +1,8 @@
 //! Lines above finely cut ground. What lies between two corners that bear on one straight run of a part,
 //! and no higher than the line through both, does not bear.
 
-use rapier2d_f64::math::Vector;
-
 use super::{Corner, Touch};
-use crate::plane::left_of;
+use crate::geometry::{Vector, left_of};
 
 /// [m] Ground that rises above a chord by less bears no more than the chord's ends: a thousandth of the
 /// deepest overlap there should ever be.

@@ -1,7 +1,5 @@
-use rapier2d_f64::math::Vector;
-
 use super::*;
-use crate::plane::right_of;
+use crate::geometry::{Vector, right_of};
 
 /// A support of a block whose normal passes through the centre of mass `arm` behind it, or does
 /// not: `lever` is that of the normal.

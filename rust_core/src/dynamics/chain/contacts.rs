@@ -1,15 +1,14 @@
 //! Contacts of shoes as the solver sees them: with the ground, and with what they run on.
 
-use rapier2d_f64::math::Vector;
-
 use super::RestMemory;
 use super::rests::{Bearing, Rest};
-use crate::contact::{Contact, LoadedContact};
+use crate::contact::Contact;
+use crate::dynamics::LoadedContact;
 use crate::dynamics::grip::Grip;
 use crate::dynamics::levers::Direction;
 use crate::dynamics::row::{Link, Row};
 use crate::dynamics::state::State;
-use crate::plane::{cross, right_of};
+use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
 
 impl Direction {

@@ -7,20 +7,20 @@ mod rests;
 mod system;
 mod wheels;
 
-use rapier2d_f64::math::{Pose, Vector};
+use pin::Pin;
+use pull::{Grasp, Pull, PullImpulses};
+use rests::Rest;
 use serde::{Deserialize, Serialize};
+use system::{Beside, ChainSystem};
 
 use super::damper::Damper;
 use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
-use crate::bounds::plausible;
-use crate::chain::{ChainOfShoes, Tensioner};
-use pin::Pin;
-use pull::{Grasp, Pull, PullImpulses};
-use rests::Rest;
+use crate::geometry::{Pose, Vector, plausible};
+use crate::robot::{ChainOfShoes, Tensioner};
+
 pub(super) use rests::Stand;
-use system::{Beside, ChainSystem};
 
 /// Stiffness of the stop of an idler in units of its tensioner's: harder ones hold, but a chain that an obstacle
 /// tightens meets them with blows of kilonewtons.

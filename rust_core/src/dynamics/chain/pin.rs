@@ -1,12 +1,10 @@
 //! A pin between two shoes: two directions in which neither moves over the other.
 
 use nalgebra::Matrix2x3;
-use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::bounds::{plausible, plausible_vectors};
 use crate::dynamics::state::Twist;
-use crate::plane::left_of;
+use crate::geometry::{Vector, left_of, plausible, plausible_vectors};
 
 /// Compliance of a pin's damper, in units of its admittance: pins are two bodies' only, and nothing else
 /// takes their load.

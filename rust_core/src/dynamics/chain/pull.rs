@@ -5,14 +5,12 @@
 //! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
 //! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
 
-use rapier2d_f64::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::bounds::plausible;
-use crate::chain::ChainOfShoes;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::{Shoe, State, Twist};
-use crate::plane::{cross, direction, left_of};
+use crate::geometry::{Vector, cross, direction, left_of, plausible};
+use crate::robot::ChainOfShoes;
 
 /// Compliance of its damper, in units of its admittance.
 const DAMPING: f64 = 1e-8;
@@ -142,8 +140,8 @@ impl Pull {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chain::Tensioner;
-    use crate::outline::{Disc, Envelope, ShoeLoop};
+    use crate::geometry::{Disc, Envelope, ShoeLoop};
+    use crate::robot::Tensioner;
 
     #[test]
     fn a_drive_without_a_shoe_behind_it_finds_no_hold() {

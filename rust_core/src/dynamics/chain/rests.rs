@@ -1,10 +1,8 @@
 //! Where the shoes of a chain bear on what they run on: the guide, or wheels and teeth.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::Chain;
-use crate::chain::ChainOfShoes;
-use crate::outline::Disc;
+use crate::geometry::{Disc, Pose, Vector};
+use crate::robot::ChainOfShoes;
 
 /// Pitches by which a chain that has jumped off its guide hangs off it at least.
 const FAR_OFF: f64 = 2.0;

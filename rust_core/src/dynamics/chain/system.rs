@@ -5,11 +5,11 @@
 //! along as a border.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
-use rapier2d_f64::math::Vector;
 
 use super::pin::Pin;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
+use crate::geometry::Vector;
 
 /// Rows and columns of the border: three of the closing shoe, three of the chassis, ...
 const CLOSING: usize = 0;

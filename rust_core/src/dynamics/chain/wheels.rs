@@ -1,10 +1,8 @@
 //! Where a chain bears on wheels: the drum of the sprocket, its teeth, idler, road wheels, rollers.
 
-use rapier2d_f64::math::{Rotation, Vector};
-
 use super::Chain;
 use super::rests::{Bearing, Rest, Stand};
-use crate::outline::Disc;
+use crate::geometry::{Disc, Rotation, Vector};
 
 impl Chain {
     /// Rests of plates and pins on wheels, and of pins on the teeth.

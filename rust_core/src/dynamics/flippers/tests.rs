@@ -48,7 +48,7 @@ fn sums(dynamics: &mut Dynamics, state: &State) -> (Vector, f64, f64) {
         .sum();
     let mut sums = (
         state.velocity * m.mass,
-        crate::plane::cross(state.center, state.velocity) * m.mass
+        crate::geometry::cross(state.center, state.velocity) * m.mass
             + m.moment_of_inertia * state.angular_velocity
             + of_drives,
         0.5 * m.mass * state.velocity.length_squared()
@@ -59,7 +59,7 @@ fn sums(dynamics: &mut Dynamics, state: &State) -> (Vector, f64, f64) {
         let center = state.center + arm.pivot + arm.center;
         let inertia = arm.rule.moment_of_inertia;
         sums.0 += velocity * mass;
-        sums.1 += crate::plane::cross(center, velocity) * mass + inertia * turn.rate;
+        sums.1 += crate::geometry::cross(center, velocity) * mass + inertia * turn.rate;
         sums.2 += 0.5 * mass * velocity.length_squared() + 0.5 * inertia * turn.rate * turn.rate;
     }
     sums

@@ -1,8 +1,6 @@
 //! The judge: support functions, tangents and vertical slices.
 
-use rapier2d_f64::math::{Rotation, Vector};
-
-use crate::outline::Disc;
+use crate::geometry::{Disc, Rotation, Vector};
 use crate::terrain::Profile;
 
 /// Slices of a pose: pieces and gaps narrower than a few of them are not judged.

@@ -2,9 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rapier2d_f64::math::Vector;
-
-use crate::plane::{cross, left_of};
+use crate::geometry::{Vector, cross, left_of};
 
 /// A feature of an outline or of the ground.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,8 @@
 //! Random ground: as the profile that the contacts get, and as lines and arcs of the test's own.
 
-use rapier2d_f64::math::Vector;
-
 use super::curve::{Curve, Extent};
 use crate::draw::Draw;
-use crate::plane::{cross, left_of};
+use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::Profile;
 
 /// [m] Level ground on both sides of what is of interest.

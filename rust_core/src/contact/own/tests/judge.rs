@@ -1,9 +1,8 @@
 //! The judge: every feature of a part against every one of the ground.
 
-use rapier2d_f64::math::Vector;
-
 use super::curve::{Curve, Extent};
 use super::grounds::Ground;
+use crate::geometry::Vector;
 
 /// A part in a pose over the ground.
 pub(super) struct Judge<'a> {

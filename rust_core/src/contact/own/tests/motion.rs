@@ -1,9 +1,8 @@
 //! Parts that move by small steps.
 
-use rapier2d_f64::math::Vector;
-
 use super::scene::{Scene, cases};
 use crate::draw::Draw;
+use crate::geometry::Vector;
 
 /// [m] Deeper overlaps may be left by another way from step to step.
 const SHALLOW: f64 = 5e-5;

@@ -2,11 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use rapier2d_f64::math::{Pose, Rotation, Vector};
-
 use super::curve::Curve;
 use crate::draw::Draw;
-use crate::outline::{Disc, Gear};
+use crate::geometry::{Disc, Gear, Pose, Rotation, Vector};
 use crate::robot::{BodyKind, Mount, Part, Shape};
 
 pub(super) struct Outline {

@@ -1,16 +1,14 @@
 //! Parts that have sunk into the ground.
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::super::OwnContact;
 use super::curve::Curve;
 use super::grounds::Ground;
 use super::judge::Judge;
 use super::scene::{Scene, cases};
-use crate::contact::{Contact, Running};
+use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::plane::{cross, left_of};
-use crate::robot::{BodyKind, Mount, Part, Shape};
+use crate::geometry::{Pose, Vector, cross, left_of};
+use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 
 /// [m] What both may differ by.
 const SAME: f64 = 1e-9;

@@ -1,17 +1,16 @@
 //! A random part over random ground.
 
-use std::slice::from_ref;
-
 use std::f64::consts::TAU;
-
-use rapier2d_f64::math::{Pose, Rotation, Vector};
+use std::slice::from_ref;
 
 use super::super::OwnContact;
 use super::grounds::{self, Ground};
 use super::judge::{Approach, Judge};
 use super::outlines::{self, Outline};
-use crate::contact::{Contact, Running};
+use crate::contact::Contact;
 use crate::draw::Draw;
+use crate::geometry::{Pose, Rotation, Vector};
+use crate::robot::Running;
 
 /// More cases where time allows.
 pub(super) fn cases(few: usize, many: usize) -> usize {

@@ -2,15 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use rapier2d_f64::math::{Pose, Vector};
-
 use super::super::OwnContact;
 use super::judge::Approach;
 use super::scene::{Scene, cases};
-use crate::contact::{Contact, Running};
+use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::plane::left_of;
-use crate::robot::{BodyKind, Mount, Part, Shape};
+use crate::geometry::{Pose, Vector, left_of};
+use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
 /// [m] What both may differ by.

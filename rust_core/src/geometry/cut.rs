@@ -1,0 +1,154 @@
+//! What a solid below a polyline leaves inside an envelope: connected pieces, their area and depth.
+
+use super::Envelope;
+use super::search::maximise;
+use super::{Vector, cross};
+
+/// [m] Shorter chords only touch the envelope.
+const TOUCHES: f64 = 1e-9;
+
+/// A stretch of the polyline inside the envelope, from left to right: the solid lies on its right.
+pub(crate) struct Chord {
+    /// [m] Its corners; the first and the last lie on the envelope or end the polyline.
+    pub points: Vec<Vector>,
+    /// Indices of the polyline's points strictly inside.
+    pub vertices: std::ops::Range<usize>,
+    /// Where it begins and ends on the polyline: index of the segment plus share of it.
+    pub span: (f64, f64),
+    /// [m] Ways along the envelope at which it comes in and leaves.
+    enters: f64,
+    leaves: f64,
+}
+
+/// A connected piece: the chords that bound it, in the order in which the envelope joins them.
+pub(crate) struct Piece<'a>(Vec<&'a Chord>);
+
+/// The stretches of a polyline inside the envelope; `first` is the index of its first point.
+pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<Chord> {
+    let mut chords: Vec<Chord> = Vec::new();
+    // The last chord goes on: it reached the end of the segment before this one.
+    let mut open = false;
+    for (i, ends) in (first..).zip(polyline.windows(2)) {
+        let Some((from, to)) = belt.clip(ends[0], ends[1]) else {
+            open = false;
+            continue;
+        };
+        let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
+        let (begin, end) = (at(from), at(to));
+        match chords.last_mut() {
+            Some(chord) if open && from <= 0.0 => {
+                chord.vertices.end = i + 1;
+                chord.points.push(end);
+                chord.span.1 = i as f64 + to;
+                chord.leaves = belt.way_of(end);
+            }
+            _ => chords.push(Chord {
+                points: vec![begin, end],
+                vertices: i + 1..i + 1,
+                span: (i as f64 + from, i as f64 + to),
+                enters: belt.way_of(begin),
+                leaves: belt.way_of(end),
+            }),
+        }
+        open = to >= 1.0;
+    }
+    chords.retain(|c| {
+        let length: f64 = c.points.windows(2).map(|p| (p[1] - p[0]).length()).sum();
+        length > TOUCHES
+    });
+    chords
+}
+
+/// Joins the chords that bound the same piece.
+pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>> {
+    // Where a chord leaves, the solid's rim follows the envelope, clockwise, to the next that enters.
+    let next = |chord: &Chord| {
+        let way = |other: &Chord| way_between(belt, chord.leaves, other.enters);
+        let order = |i: &usize, j: &usize| way(&chords[*i]).total_cmp(&way(&chords[*j]));
+        (0..chords.len()).min_by(order).unwrap_or_default()
+    };
+    let mut taken = vec![false; chords.len()];
+    let mut pieces = Vec::new();
+    for start in 0..chords.len() {
+        let (mut i, mut bounds) = (start, Vec::new());
+        while !taken[i] {
+            taken[i] = true;
+            bounds.push(&chords[i]);
+            i = next(&chords[i]);
+        }
+        if !bounds.is_empty() {
+            pieces.push(Piece(bounds));
+        }
+    }
+    pieces
+}
+
+/// [m] The way along the envelope from one place to another.
+fn way_between(belt: &Envelope, from: f64, to: f64) -> f64 {
+    let way = (to - from).rem_euclid(belt.length());
+    // Places that rounding has swapped are one.
+    if way > belt.length() - TOUCHES {
+        0.0
+    } else {
+        way
+    }
+}
+
+impl Piece<'_> {
+    /// The chords that bound it.
+    pub(crate) fn chords(&self) -> impl Iterator<Item = &Chord> {
+        self.0.iter().copied()
+    }
+
+    /// Stretches of the envelope that bound it, as pairs of ways [m].
+    pub(crate) fn rim(&self) -> impl Iterator<Item = (f64, f64)> {
+        let following = self.0.iter().cycle().skip(1);
+        self.0
+            .iter()
+            .zip(following)
+            .map(|(c, d)| (c.leaves, d.enters))
+    }
+
+    /// Whether the rim passes the point of the envelope at `way`.
+    pub(crate) fn reaches(&self, belt: &Envelope, way: f64) -> bool {
+        let passes = |(from, to)| way_between(belt, from, way) <= way_between(belt, from, to);
+        self.rim().any(passes)
+    }
+
+    /// [m^2] Its area.
+    pub(crate) fn area(&self, belt: &Envelope) -> f64 {
+        let along_chords: f64 = self
+            .chords()
+            .flat_map(|c| c.points.windows(2))
+            .map(|p| cross(p[0], p[1]))
+            .sum();
+        let along_rim: f64 = self
+            .rim()
+            .map(|(from, to)| belt.swept(from, from + way_between(belt, from, to)))
+            .sum();
+        -0.5 * (along_chords + along_rim)
+    }
+
+    /// The point of its chords that lies deepest below an envelope.
+    pub(crate) fn deepest_on_chords(&self, belt: &Envelope) -> Vector {
+        let points = self.chords().flat_map(|c| &c.points);
+        let of_points = points.map(|p| (belt.depth(*p), *p));
+        let mut deepest = of_points.fold((f64::NEG_INFINITY, Vector::ZERO), deeper);
+        for ends in self.chords().flat_map(|c| c.points.windows(2)) {
+            let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
+            // The depth changes by no more than the way: most segments cannot hold the deepest point.
+            let length = (ends[1] - ends[0]).length();
+            if 0.5 * (belt.depth(ends[0]) + belt.depth(ends[1]) + length) > deepest.0 {
+                // The depth below a convex rim is concave along a line.
+                let point = at(maximise(0.0, 1.0, |t| belt.depth(at(t))));
+                deepest = deeper(deepest, (belt.depth(point), point));
+            }
+        }
+        deepest.1
+    }
+}
+
+/// The deeper one of two; the first of equals.
+fn deeper(a: (f64, Vector), b: (f64, Vector)) -> (f64, Vector) {
+    if b.0 > a.0 { b } else { a }
+}

@@ -1,0 +1,81 @@
+//! Discs, the ends of an outline, and the tangents between them.
+
+use super::Vector;
+use crate::scenario::TrackOutline;
+
+/// A disc in the chassis frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// [m] Centre.
+    pub center: Vector,
+    /// [m] Radius.
+    pub radius: f64,
+}
+
+impl Disc {
+    /// A disc of no size.
+    pub(crate) fn point(center: Vector) -> Self {
+        Self {
+            center,
+            radius: 0.0,
+        }
+    }
+}
+
+/// The end discs of an outline, rear first.
+pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
+    let half = 0.5 * outline.axle_distance;
+    [
+        Disc {
+            center: Vector::new(-half, 0.0),
+            radius: outline.rear_radius,
+        },
+        Disc {
+            center: Vector::new(half, 0.0),
+            radius: outline.front_radius,
+        },
+    ]
+}
+
+/// The lower outer tangent of two discs as a segment from the left disc to the right one.
+pub(crate) fn lower_tangent(left: Disc, right: Disc) -> [Vector; 2] {
+    let along = right.center - left.center;
+    let distance = along.length();
+    let u = along / distance;
+    // The tangent's outward normal makes the same angle with the line of centres at both discs.
+    let sine = (left.radius - right.radius) / distance;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let down = Vector::new(u.y, -u.x);
+    let normal = u * sine + down * cosine;
+    [
+        left.center + normal * left.radius,
+        right.center + normal * right.radius,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(x: f64, radius: f64) -> Disc {
+        Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        }
+    }
+
+    #[test]
+    fn tangent_touches_both_discs_and_cuts_neither() {
+        for (r1, r2) in [(0.1, 0.1), (0.1, 0.05), (0.03, 0.08)] {
+            let (left, right) = (disc(-0.2, r1), disc(0.3, r2));
+            let [a, b] = lower_tangent(left, right);
+            let d = (b - a).normalize();
+            for (point, circle) in [(a, left), (b, right)] {
+                let spoke = point - circle.center;
+                assert!((spoke.length() - circle.radius).abs() < 1e-15);
+                assert!(spoke.dot(d).abs() < 1e-15);
+                assert!(spoke.y < 0.0);
+            }
+        }
+    }
+}

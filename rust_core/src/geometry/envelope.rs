@@ -1,0 +1,371 @@
+//! The taut belt round a set of discs: their convex hull, walked along belt travel.
+//!
+//! Driving forwards, a belt runs rearwards on the ground, up round the rear, forwards on top and down
+//! round the front: clockwise. The walk starts where the lower run ends at the rear.
+
+use std::f64::consts::TAU;
+
+use super::Disc;
+use super::hull::{Arc, SAME_TURN, arcs_round};
+use super::search::maximise;
+use super::stretch::{Form, Stretch};
+use super::{Vector, direction};
+
+/// [m] Stretches whose distances differ by less are as near, whatever rounding says.
+const AS_NEAR: f64 = 1e-8;
+
+/// The convex hull of discs, as arcs and straight runs.
+#[derive(Clone, Debug)]
+pub(crate) struct Envelope {
+    pub(super) stretches: Vec<Stretch>,
+}
+
+/// Where the hull lies nearest to a point inside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    /// [m] Depth of the point inside the hull.
+    pub depth: f64,
+    stretch: usize,
+}
+
+impl Envelope {
+    /// Wraps the discs; there must be at least one.
+    pub(crate) fn new(discs: &[Disc]) -> Self {
+        let mut arcs = arcs_round(discs);
+        // A run follows each arc; the lowest is the lower run, and the walk starts at its end.
+        let drop = |arc: &Arc| -libm::sin(arc.from - arc.sweep);
+        let lower = (0..arcs.len()).max_by(|i, j| drop(&arcs[*i]).total_cmp(&drop(&arcs[*j])));
+        let count = arcs.len();
+        arcs.rotate_left(lower.map_or(0, |lower| (lower + 1) % count));
+        let mut envelope = Self {
+            stretches: Vec::new(),
+        };
+        for (i, arc) in arcs.iter().enumerate() {
+            envelope.push_arc(discs, arc);
+            if count > 1 {
+                let next = &arcs[(i + 1) % count];
+                envelope.push_run(&discs[arc.disc], &discs[next.disc], arc.from - arc.sweep);
+            }
+        }
+        envelope
+    }
+
+    fn push_arc(&mut self, discs: &[Disc], arc: &Arc) {
+        let Disc { center, radius } = discs[arc.disc];
+        let shape = Form::Arc {
+            disc: arc.disc,
+            center,
+            radius,
+            from: arc.from,
+            sweep: arc.sweep,
+            ends: [direction(arc.from), direction(arc.from - arc.sweep)],
+        };
+        self.push(radius * arc.sweep, shape);
+    }
+
+    fn push_run(&mut self, from: &Disc, to: &Disc, outward: f64) {
+        let outward = direction(outward);
+        let begin = from.center + outward * from.radius;
+        let way = to.center + outward * to.radius - begin;
+        let length = way.length();
+        let shape = Form::Run {
+            begin,
+            along: way / length,
+            outward,
+        };
+        self.push(length, shape);
+    }
+
+    fn push(&mut self, length: f64, shape: Form) {
+        self.stretches.push(Stretch {
+            start: self.length(),
+            length,
+            shape,
+        });
+    }
+
+    /// [m] Length of the hull.
+    pub(crate) fn length(&self) -> f64 {
+        self.stretches.last().map_or(0.0, |p| p.start + p.length)
+    }
+
+    /// The point a way [m] along the hull; the way may go round more than once.
+    pub(crate) fn point_at(&self, way: f64) -> Vector {
+        let way = way.rem_euclid(self.length());
+        let stretch = self.stretch_at(way);
+        stretch.point_at(way - stretch.start)
+    }
+
+    /// The stretch that a way [m] from 0 to the whole length leads to.
+    pub(super) fn stretch_at(&self, way: f64) -> &Stretch {
+        let next = self.stretches.partition_point(|p| p.start <= way);
+        &self.stretches[next.saturating_sub(1)]
+    }
+
+    /// [m] The way to the next point, along belt travel, at a straight distance from the one at
+    /// `way`; a whole round further if there is none.
+    pub(crate) fn way_to_distance(&self, way: f64, distance: f64) -> f64 {
+        let length = self.length();
+        let (from, rounds) = (self.point_at(way), (way / length).floor() * length);
+        let first = self
+            .stretches
+            .partition_point(|p| p.start <= way - rounds)
+            .saturating_sub(1);
+        for k in first..first + self.stretches.len() {
+            let stretch = &self.stretches[k % self.stretches.len()];
+            let behind = rounds
+                + if k < self.stretches.len() {
+                    0.0
+                } else {
+                    length
+                };
+            if (stretch.point_at(stretch.length) - from).length() >= distance {
+                let inner = stretch.at_distance(from, distance);
+                return behind + stretch.start + inner.clamp(0.0, stretch.length);
+            }
+        }
+        way + length
+    }
+
+    /// [m] Depth of a point inside the hull; outside it is negative.
+    pub(crate) fn depth(&self, point: Vector) -> f64 {
+        let depths = self.stretches.iter().filter_map(|s| s.depth(point));
+        depths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The nearest stretch of the hull; of some that are as near the first.
+    pub(crate) fn nearest(&self, point: Vector) -> Nearest {
+        let depths = || self.stretches.iter().map(|s| s.depth(point));
+        let depth = depths().flatten().fold(f64::INFINITY, f64::min);
+        let is_nearest = |d: Option<f64>| d.is_some_and(|d| d - depth < AS_NEAR);
+        Nearest {
+            depth,
+            stretch: depths().position(is_nearest).unwrap_or_default(),
+        }
+    }
+
+    /// The arcs of the hull: disc, outward direction [rad] where it begins, how far it turns clockwise.
+    pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
+        let arc = |stretch: &Stretch| match stretch.shape {
+            Form::Arc {
+                center,
+                radius,
+                from,
+                sweep,
+                ..
+            } => Some((Disc { center, radius }, from, sweep)),
+            Form::Run { .. } => None,
+        };
+        self.stretches.iter().filter_map(arc).collect()
+    }
+
+    /// Points along the hull, an arc cut every `turn` [rad]; the last is not the first again.
+    pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
+        let cut = |stretch: &Stretch| {
+            let cuts = match stretch.shape {
+                Form::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0),
+                Form::Run { .. } => 1.0,
+            };
+            let (stretch, cuts) = (*stretch, cuts as usize);
+            (0..cuts).map(move |i| stretch.point_at(stretch.length * i as f64 / cuts as f64))
+        };
+        self.stretches.iter().flat_map(cut).collect()
+    }
+
+    /// The outward normal of the hull where it lies nearest to a point.
+    pub(crate) fn outward_at(&self, point: Vector) -> Vector {
+        match self.stretches[self.nearest(point).stretch].shape {
+            Form::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
+            Form::Run { outward, .. } => outward,
+        }
+    }
+
+    /// The discs on either side of a point, first the one that the belt passes before it.
+    ///
+    /// They are the nearest along the belt that reach as far out as the point lies deep.
+    pub(crate) fn neighbours(&self, point: Vector, nearest: Nearest, discs: &[Disc]) -> [usize; 2] {
+        match self.stretches[nearest.stretch].shape {
+            Form::Arc { disc, .. } => [disc, disc],
+            Form::Run {
+                begin,
+                along,
+                outward,
+            } => {
+                let here = (point - begin).dot(along);
+                let reaches_out = |d: &Disc| {
+                    let gap = (begin - d.center).dot(outward) - d.radius;
+                    gap <= nearest.depth + SAME_TURN
+                };
+                let place = |i: usize| (discs[i].center - begin).dot(along);
+                let candidates = (0..discs.len()).filter(|i| reaches_out(&discs[*i]));
+                let before = candidates
+                    .clone()
+                    .filter(|i| place(*i) <= here)
+                    .max_by(|i, j| place(*i).total_cmp(&place(*j)));
+                let after = candidates
+                    .filter(|i| place(*i) > here)
+                    .min_by(|i, j| place(*i).total_cmp(&place(*j)));
+                // Both ends of a run reach out to it; only rounding at an end leaves one side empty.
+                let either = before.or(after).unwrap_or_default();
+                [before.unwrap_or(either), after.unwrap_or(either)]
+            }
+        }
+    }
+
+    /// The part of a segment that lies inside, as shares of its length.
+    pub(crate) fn clip(&self, a: Vector, b: Vector) -> Option<(f64, f64)> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut cut = |t: f64| {
+            low = low.min(t);
+            high = high.max(t);
+        };
+        for stretch in &self.stretches {
+            stretch.crossings(a, b, &mut cut);
+        }
+        // An end inside has no crossing before it.
+        if self.depth(a) > 0.0 {
+            cut(0.0);
+        }
+        if self.depth(b) > 0.0 {
+            cut(1.0);
+        }
+        (low < high).then_some((low, high))
+    }
+
+    /// [m] The way along the hull to the point of it nearest to `point`.
+    pub(crate) fn way_of(&self, point: Vector) -> f64 {
+        let stretch = &self.stretches[self.nearest(point).stretch];
+        let inner = match stretch.shape {
+            Form::Arc {
+                center,
+                radius,
+                from,
+                sweep,
+                ..
+            } => {
+                let spoke = point - center;
+                let turn = (from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
+                // Just before the start of the arc is its start, not a whole turn further.
+                let turn = if turn > 0.5 * (sweep + TAU) {
+                    0.0
+                } else {
+                    turn
+                };
+                turn.min(sweep) * radius
+            }
+            Form::Run { begin, along, .. } => (point - begin).dot(along).clamp(0.0, stretch.length),
+        };
+        stretch.start + inner
+    }
+
+    /// [m^2] Twice the signed area swept from the origin along the hull from one way to another.
+    pub(crate) fn swept(&self, from: f64, to: f64) -> f64 {
+        let length = self.length();
+        let to = if to < from { to + length } else { to };
+        let mut sum = 0.0;
+        for round in [0.0, length] {
+            for stretch in &self.stretches {
+                let begin = (from - round - stretch.start).clamp(0.0, stretch.length);
+                let end = (to - round - stretch.start).clamp(0.0, stretch.length);
+                if begin < end {
+                    sum += stretch.swept(begin, end);
+                }
+            }
+        }
+        sum
+    }
+
+    /// The deepest point inside.
+    pub(crate) fn deepest(&self) -> Vector {
+        // No point of a hull is farther from another than half its length.
+        let (middle, reach) = (self.point_at(0.0), 0.5 * self.length());
+        let along_x = |y: f64| {
+            let depth = |x: f64| self.depth(Vector::new(x, y));
+            Vector::new(maximise(middle.x - reach, middle.x + reach, depth), y)
+        };
+        let height = |y: f64| self.depth(along_x(y));
+        along_x(maximise(middle.y - reach, middle.y + reach, height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(x: f64, y: f64, radius: f64) -> Disc {
+        Disc {
+            center: Vector::new(x, y),
+            radius,
+        }
+    }
+
+    fn stadium() -> Envelope {
+        Envelope::new(&[
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.0, 0.1),
+            disc(0.3, 0.0, 0.1),
+        ])
+    }
+
+    #[test]
+    fn length_and_area_are_those_of_a_stadium() {
+        let belt = stadium();
+        assert!((belt.length() - (1.0 + TAU * 0.1)).abs() < 1e-12);
+        let area = -0.5 * belt.swept(0.0, belt.length());
+        assert!((area - (0.1 + 0.5 * TAU * 0.01)).abs() < 1e-12, "{area}");
+    }
+
+    #[test]
+    fn walk_starts_at_the_rear_of_the_lower_run_and_follows_the_belt() {
+        let belt = stadium();
+        let arc = 0.05 * TAU;
+        for (way, x, y) in [
+            (0.0, -0.2, -0.1),
+            (0.5 * arc, -0.3, 0.0),
+            (arc, -0.2, 0.1),
+            (arc + 0.5, 0.3, 0.1),
+            (1.5 * arc + 0.5, 0.4, 0.0),
+            (2.0 * arc + 0.6, 0.2, -0.1),
+        ] {
+            let point = belt.point_at(way);
+            assert!(
+                (point - Vector::new(x, y)).length() < 1e-12,
+                "{way}: {point}"
+            );
+            assert!((belt.way_of(point) - way).abs() < 1e-9, "{way}");
+        }
+    }
+
+    #[test]
+    fn one_disc_is_its_own_envelope() {
+        let belt = Envelope::new(&[disc(1.0, 2.0, 0.5)]);
+        assert!((belt.length() - 0.5 * TAU).abs() < 1e-12);
+        assert!((belt.depth(Vector::new(1.0, 2.2)) - 0.3).abs() < 1e-12);
+        assert!((-0.5 * belt.swept(0.0, belt.length()) - 0.125 * TAU).abs() < 1e-12);
+    }
+
+    #[test]
+    fn discs_inside_the_hull_leave_no_trace() {
+        let belt = Envelope::new(&[
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.02, 0.05),
+            disc(0.3, 0.0, 0.1),
+        ]);
+        assert!((belt.length() - stadium().length()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn distances_along_the_belt_come_back_as_distances() {
+        let belt = Envelope::new(&[disc(-0.2, 0.0, 0.1), disc(0.3, 0.05, 0.04)]);
+        for i in 0..100 {
+            let way = 0.017 * f64::from(i);
+            for distance in [0.01, 0.05, 0.07] {
+                let next = belt.way_to_distance(way, distance);
+                let apart = (belt.point_at(next) - belt.point_at(way)).length();
+                assert!((apart - distance).abs() < 1e-9, "{way} {distance} {apart}");
+                // No arc within a half circle is longer than pi / 2 of its chord.
+                assert!(next > way && next - way < 0.26 * TAU * distance);
+            }
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! A closed chain of shoes round the ends of a track: the path of its pins.
+//!
+//! A taut chain lies on the straight runs with its pins, and round the ends with the middle of each shoe,
+//! so the pins go farther out there: along the circle on which chords of a pitch touch the end. It meets
+//! the run half a pitch before the run is over.
+
+use std::f64::consts::{PI, TAU};
+
+use super::search::zero;
+use super::stretch::Form;
+use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
+use super::{Pose, Rotation, Vector, direction, right_of};
+
+/// Places of the chain along its path over which its length is averaged.
+const PHASES: u32 = 16;
+/// A polygon of shoes round the discs is longer than the belt by at most this.
+const LENGTHENED: f64 = 1.1;
+/// Share of what the pins on a sprocket go out and in by which that is lifted off the lower run: shoes that it
+/// turns down would else lift the robot.
+const LIFT: f64 = 0.5;
+
+/// The closed path of a chain, and the chain on it.
+#[derive(Clone, Debug)]
+pub struct ShoeLoop {
+    /// Discs whose hull the pin lines are tangent to, rear first.
+    discs: [Disc; 2],
+    /// Number of shoes.
+    pub count: usize,
+    /// [m] Distance of the pins of a shoe.
+    pub pitch: f64,
+    /// Teeth of the sprocket that the rear end is, if it is one.
+    teeth: Option<usize>,
+}
+
+impl ShoeLoop {
+    /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
+    /// a shoe would be longer than half the distance of the discs, than the smaller one is thick, or than a
+    /// run, for it would not go round.
+    pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
+        let least = Envelope::new(&discs).length() / count as f64;
+        let most = LENGTHENED * least;
+        let [rear, front] = discs;
+        let half_way = 0.5 * (front.center - rear.center).length();
+        if most > half_way.min(2.0 * rear.radius.min(front.radius)) {
+            return None;
+        }
+        let chain = Self {
+            discs,
+            count,
+            pitch: 0.0,
+            teeth: None,
+        };
+        chain.taut_between(least, most)
+    }
+
+    /// The same chain round a sprocket in place of the rear end: as many teeth as come nearest to it; none if
+    /// that leaves no run as long as a shoe.
+    pub(crate) fn on_sprocket(self) -> Option<Self> {
+        let half = 0.5 * self.pitch;
+        let teeth = PI / libm::atan(half / self.discs[0].radius);
+        let (least, most) = (0.8 * self.pitch, 1.2 * self.pitch);
+        let teeth = Some(teeth.round().max(3.0) as usize);
+        Self { teeth, ..self }.taut_between(least, most)
+    }
+
+    /// With the pitch between these at which it is taut in the mean; none if its runs are too short for it.
+    fn taut_between(self, least: f64, most: f64) -> Option<Self> {
+        if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
+            return None;
+        }
+        let taut = |phase: u32| {
+            let share = f64::from(phase) / f64::from(PHASES);
+            zero(least, most, |p: f64| self.excess(p, share * p, 0.0))
+        };
+        let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
+        Some(Self { pitch, ..self })
+    }
+
+    /// Whether a shoe of a pitch [m] fits on the runs, even with the front end as far in as `travel` looks.
+    fn has_runs(&self, pitch: f64) -> bool {
+        let [rear, mut front] = self.ends(pitch);
+        front.center.x -= 0.5 * pitch;
+        let (apart, step) = (front.center - rear.center, front.radius - rear.radius);
+        apart.length_squared() - step * step >= pitch * pitch
+    }
+
+    /// The teeth of its sprocket, if it has one, which reach no farther out than `most` [m] where they can.
+    pub(crate) fn teeth(&self, most: f64) -> Option<Teeth> {
+        self.teeth.map(|count| Teeth::new(count, self.pitch, most))
+    }
+
+    /// [rad] Angle over the chassis of a seat of the sprocket when the chain has not run.
+    pub(crate) fn first_seat(&self) -> f64 {
+        match self.path(self.pitch, 0.0).stretches[0].shape {
+            Form::Arc { from, .. } => from,
+            Form::Run { .. } => 0.0,
+        }
+    }
+
+    /// Discs whose hull the pin lines are tangent to with shoes of a pitch [m].
+    ///
+    /// A sprocket is as large as its teeth need, and its axle where the lower run is as without it, but for what
+    /// its polygon needs.
+    pub(crate) fn ends(&self, pitch: f64) -> [Disc; 2] {
+        let [rear, front] = self.discs;
+        let Some(teeth) = self.teeth else {
+            return self.discs;
+        };
+        let radius = 0.5 * pitch / libm::tan(PI / teeth as f64);
+        let [from, to] = lower_tangent(rear, front);
+        let down = right_of((to - from).normalize());
+        let rise = radius / libm::cos(PI / teeth as f64) - radius;
+        let center = rear.center + down * (rear.radius - radius - LIFT * rise);
+        [Disc { center, radius }, front]
+    }
+
+    /// [m] How far the front end must be out to keep the chain taut when it has run so far [m].
+    pub(crate) fn travel(&self, run: f64) -> f64 {
+        let phase = run.rem_euclid(self.pitch);
+        let reach = 0.5 * self.pitch;
+        zero(-reach, reach, |out| -self.excess(self.pitch, phase, out))
+    }
+
+    /// Frames of the shoes in that of the chassis when the chain has run so far [m] and is taut: x along its
+    /// travel, y outwards, the origin halfway between the pins.
+    pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
+        let phase = run.rem_euclid(self.pitch);
+        let path = self.path(self.pitch, self.travel(run));
+        let ways = self.walk(&path, self.pitch, self.first_way(phase));
+        let mut pins: Vec<Vector> = ways.map(|way| path.point_at(way)).collect();
+        pins.pop();
+        // Each shoe keeps its number as the chain runs.
+        let passed = (run.div_euclid(self.pitch) as i64).rem_euclid(self.count as i64);
+        pins.rotate_left(passed as usize);
+        (0..self.count)
+            .map(|i| {
+                let (rear, front) = (pins[i], pins[(i + 1) % self.count]);
+                let along = (front - rear).normalize();
+                let rotation = Rotation::from_cos_sin_unchecked(along.x, along.y);
+                Pose::from_parts(0.5 * (rear + front), rotation)
+            })
+            .collect()
+    }
+
+    /// How the chain moves a shoe whose origin is there, for each metre that it runs: the mean while the shoe
+    /// passes by.
+    pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
+        let path = Envelope::new(&self.ends(self.pitch));
+        path.motion_at(path.way_of(origin), 0.5 * self.pitch)
+    }
+
+    /// [m] By how much a chain of a pitch is too long with the front end so far out, and a pin that has run so
+    /// far from the beginning of the path.
+    fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
+        let path = self.path(pitch, out);
+        let first = self.first_way(phase);
+        let last = self.walk(&path, pitch, first).last().unwrap_or(first);
+        last - first - path.length()
+    }
+
+    /// [m] Way along the path of a pin that has run so far from its beginning: a sprocket turns its pins evenly.
+    fn first_way(&self, phase: f64) -> f64 {
+        match self.teeth {
+            Some(teeth) => {
+                let step = TAU / teeth as f64;
+                phase * 0.5 * step / libm::sin(0.5 * step)
+            }
+            None => phase,
+        }
+    }
+
+    /// [m] Ways to the pins of a chain, and to the one after the last.
+    fn walk<'a>(
+        &self,
+        path: &'a Envelope,
+        pitch: f64,
+        phase: f64,
+    ) -> impl Iterator<Item = f64> + use<'a> {
+        let next = move |way: &f64| Some(path.way_to_distance(*way, pitch));
+        std::iter::successors(Some(phase), next).take(self.count + 1)
+    }
+
+    /// The path of the pins with the front end so far out [m].
+    fn path(&self, pitch: f64, out: f64) -> Envelope {
+        let mut discs = self.ends(pitch);
+        discs[1].center.x += out;
+        let half = 0.5 * pitch;
+        let mut path = Envelope::new(&discs);
+        let mut start = 0.0;
+        for stretch in &mut path.stretches {
+            stretch.start = start;
+            match &mut stretch.shape {
+                Form::Arc {
+                    radius,
+                    from,
+                    sweep,
+                    ends,
+                    ..
+                } => {
+                    let beyond = libm::atan(half / *radius);
+                    *radius = (*radius * *radius + half * half).sqrt();
+                    *from += beyond;
+                    *sweep += 2.0 * beyond;
+                    *ends = [direction(*from), direction(*from - *sweep)];
+                    stretch.length = *radius * *sweep;
+                }
+                Form::Run { begin, along, .. } => {
+                    *begin += *along * half;
+                    stretch.length -= pitch;
+                }
+            }
+            start += stretch.length;
+        }
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ends(rear: f64, front: f64) -> [Disc; 2] {
+        let disc = |x, radius| Disc {
+            center: Vector::new(x, 0.0),
+            radius,
+        };
+        [disc(-0.1825, rear), disc(0.1825, front)]
+    }
+
+    #[test]
+    fn chain_closes_wherever_it_has_run_to() {
+        for (rear, front, count) in [(0.0505, 0.0505, 22), (0.0505, 0.0505, 44), (0.06, 0.04, 23)] {
+            let chain = ShoeLoop::new(ends(rear, front), count).unwrap();
+            for k in 0..100 {
+                let run = 0.0123 * f64::from(k);
+                let places = chain.places(run);
+                let pin = |place: &Pose, side: f64| {
+                    place.transform_point(Vector::new(0.5 * side * chain.pitch, 0.0))
+                };
+                for (i, place) in places.iter().enumerate() {
+                    let gap = pin(place, 1.0) - pin(&places[(i + 1) % count], -1.0);
+                    assert!(gap.length() < 1e-9, "{count} shoes at {run}: {gap}");
+                    let [rear_end, mut front_end] = ends(rear, front);
+                    front_end.center.x += chain.travel(run);
+                    for disc in [rear_end, front_end] {
+                        let local = place.inverse_transform_point(disc.center);
+                        if local.x.abs() < 0.5 * chain.pitch {
+                            assert!(-local.y > disc.radius - 1e-9, "shoe {i} cuts an end");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ends_so_unequal_that_no_shoe_fits_between_them_take_no_chain() {
+        for (rear, front) in [(0.05, 0.39), (0.39, 0.05)] {
+            for count in 3..400 {
+                if let Some(chain) = ShoeLoop::new(ends(rear, front), count) {
+                    assert!(chain.pitch < 0.14);
+                    chain.places(0.1);
+                    chain.on_sprocket().map(|chain| chain.places(0.1));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shoes_keep_their_numbers() {
+        let chain = ShoeLoop::new(ends(0.0505, 0.0505), 22).unwrap();
+        for k in 0..200 {
+            let (now, next) = (0.01 * f64::from(k), 0.01 * f64::from(k + 1));
+            let moved = chain.places(now).into_iter().zip(chain.places(next));
+            for (a, b) in moved {
+                assert!((b.translation - a.translation).length() < 0.012);
+            }
+        }
+    }
+
+    #[test]
+    fn many_short_shoes_are_as_long_as_the_outline() {
+        let discs = ends(0.06, 0.04);
+        let length = Envelope::new(&discs).length();
+        for (count, longer) in [(23, 0.03), (46, 0.01), (368, 2e-4)] {
+            let chain = ShoeLoop::new(discs, count).unwrap();
+            let excess = chain.pitch * count as f64 / length - 1.0;
+            assert!(0.0 < excess && excess < longer, "{count} shoes: {excess}");
+        }
+    }
+}

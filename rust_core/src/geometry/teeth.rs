@@ -1,0 +1,237 @@
+//! Teeth of a sprocket as the pins of a chain meet them.
+//!
+//! Grown by the pins, which so become points, a tooth is what lies within a pitch of both its neighbours'
+//! seats and within its tip circle: a pin whose neighbour is seated swings just past its flank. A flank
+//! thus pushes a pin along the shoe behind it and nowhere else, so that no pull lifts the chain off. Below
+//! the circle of the pins flanks are radial: no pin is wedged there, and the drum bears the shoes.
+
+use std::f64::consts::TAU;
+
+use super::{Rotation, Vector, direction, left_of, right_of};
+
+/// [pitches] By which a seat is wider than a pin: less lets the polygon of the shoes wedge, ...
+const PLAY: f64 = 0.04;
+/// ... and how far teeth reach beyond the circle of the pins, at least and at most: over low ones a chain
+/// jumps.
+const HEIGHTS: [f64; 2] = [0.15, 0.25];
+
+/// The teeth of a sprocket; the middle of a seat lies on its x axis, and chains run clockwise.
+#[derive(Clone, Debug)]
+pub struct Teeth {
+    /// Number of teeth.
+    pub count: usize,
+    /// [m] Distance of neighbouring seats.
+    pub pitch: f64,
+    /// [m] Radius of the circle of the seated pins.
+    pub radius: f64,
+    /// [m] Radius of the circle of the tips.
+    pub(crate) tip_radius: f64,
+    /// Round the seat on the x axis: where the pin behind it sits when it is driven, the one ahead when it is
+    /// braked, and its own pin, braked and driven.
+    seats: [Vector; 4],
+}
+
+/// The side of a tooth that is nearest to a pin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flank {
+    /// [m]
+    pub gap: f64,
+    /// From the tooth to the pin.
+    pub normal: Vector,
+}
+
+impl Teeth {
+    /// Teeth that reach out to `most` [m], as far as that is sensible.
+    pub(crate) fn new(count: usize, pitch: f64, most: f64) -> Self {
+        let step = TAU / count as f64;
+        let radius = 0.5 * pitch / libm::sin(0.5 * step);
+        let play = 0.5 * PLAY * pitch / radius;
+        let seat = |angle: f64| direction(angle) * radius;
+        let [low, high] = HEIGHTS.map(|height| height * pitch);
+        Self {
+            tip_radius: radius + (most - radius).clamp(low, high),
+            count,
+            pitch,
+            radius,
+            seats: [step + play, -step - play, -play, play].map(seat),
+        }
+    }
+
+    /// [m] Radius at which a turn moves the chain by as many pitches as there are teeth.
+    pub fn drive_radius(&self) -> f64 {
+        self.count as f64 * self.pitch / TAU
+    }
+
+    /// The tooth behind a pin and the one ahead of it; none if it lies beyond `reach` [m] of the tips.
+    pub(crate) fn flanks(&self, pin: Vector, reach: f64) -> Option<[Flank; 2]> {
+        let out = pin.length();
+        let over = out - self.tip_radius;
+        if over > reach || out == 0.0 {
+            return None;
+        }
+        let step = TAU / self.count as f64;
+        let seat = libm::round(libm::atan2(pin.y, pin.x) / step) * step;
+        let turn = Rotation::new(seat);
+        let here = turn.inverse() * pin;
+        let [behind, ahead, braked, driven] = self.seats;
+        let tip = Flank {
+            gap: over,
+            normal: here / out,
+        };
+        let flank = |seat: Vector| {
+            let way = here - seat;
+            let length = way.length();
+            Flank {
+                gap: length - self.pitch,
+                normal: way / length,
+            }
+        };
+        let radial = |seat: Vector, sideways: Vector| {
+            let normal = sideways / self.radius;
+            Flank {
+                gap: (here - seat).dot(normal),
+                normal,
+            }
+        };
+        let farthest = |sides: [Flank; 3]| {
+            let farther = |most: Flank, side: Flank| {
+                if side.gap > most.gap { side } else { most }
+            };
+            let nearest = sides.into_iter().fold(tip, farther);
+            Flank {
+                normal: turn * nearest.normal,
+                ..nearest
+            }
+        };
+        Some([
+            farthest([
+                flank(behind),
+                flank(braked),
+                radial(driven, right_of(driven)),
+            ]),
+            farthest([flank(ahead), flank(driven), radial(braked, left_of(braked))]),
+        ])
+    }
+
+    /// Corners of the whole wheel in its own frame, counter-clockwise, for pictures; pins of a radius [m] fit
+    /// between the teeth.
+    pub fn outline(&self, pin_radius: f64) -> Vec<Vector> {
+        /// Points of one flank.
+        const POINTS: usize = 5;
+        let step = TAU / self.count as f64;
+        let play = 0.5 * PLAY * self.pitch / self.radius;
+        let reach = self.pitch + pin_radius;
+        let tip = self.tip_radius - pin_radius;
+        // On the drum, below the inner faces of the plates.
+        let root = self.radius * libm::cos(0.5 * step) - pin_radius;
+        // A point at a distance from the axle and the pitch, less the pin, from the neighbouring seat.
+        let angle_at = |out: f64| {
+            let r = self.radius;
+            if out < r {
+                return play + libm::asin((pin_radius / out).min(1.0));
+            }
+            let inner = reach - 2.0 * pin_radius;
+            let cosine = (out * out + r * r - inner * inner) / (2.0 * out * r);
+            step + play - libm::acos(cosine.clamp(-1.0, 1.0))
+        };
+        let outs =
+            (0..POINTS).map(|i| self.radius + (tip - self.radius) * i as f64 / (POINTS - 1) as f64);
+        let flank: Vec<(f64, f64)> = std::iter::once(root)
+            .chain(outs)
+            .map(|out| (out, angle_at(out).min(0.5 * step)))
+            .collect();
+        let point = |(out, angle): (f64, f64)| direction(angle) * out;
+        (0..self.count)
+            .flat_map(|tooth| {
+                let seat = tooth as f64 * step;
+                let up = flank.iter().map(move |(out, angle)| (*out, seat + angle));
+                let next = seat + step;
+                let down = flank
+                    .iter()
+                    .rev()
+                    .map(move |(out, angle)| (*out, next - angle));
+                up.chain(down)
+            })
+            .map(point)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seated(teeth: &Teeth, angle: f64) -> Vector {
+        direction(angle) * teeth.radius
+    }
+
+    #[test]
+    fn a_pin_in_its_seat_touches_the_flank_that_drives_it() {
+        for count in [7, 11, 14] {
+            let teeth = Teeth::new(count, 0.04, 0.0);
+            let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
+            let step = TAU / count as f64;
+            for seat in 0..count {
+                let middle = seat as f64 * step;
+                let [behind, ahead] = teeth.flanks(seated(&teeth, middle + play), 0.0).unwrap();
+                assert!(behind.gap.abs() < 1e-12 && ahead.gap > 0.5 * PLAY * teeth.pitch);
+                let [behind, ahead] = teeth.flanks(seated(&teeth, middle - play), 0.0).unwrap();
+                assert!(ahead.gap.abs() < 1e-12 && behind.gap > 0.5 * PLAY * teeth.pitch);
+            }
+        }
+    }
+
+    /// The load of a driven pin is along the shoe behind it, that of a braked one along the shoe ahead.
+    #[test]
+    fn a_flank_pushes_along_the_shoe() {
+        let teeth = Teeth::new(7, 0.0486, 0.064);
+        let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
+        let step = TAU / 7.0;
+        let last = seated(&teeth, play + step);
+        // Just above its seat: in it, the radial flank below touches as well.
+        let shoe = Rotation::new(0.01) * (seated(&teeth, play) - last);
+        let [flank, _] = teeth.flanks(last + shoe, 0.0).unwrap();
+        assert!(flank.normal.dot(shoe.normalize()) > 1.0 - 1e-12);
+    }
+
+    #[test]
+    fn a_pin_swings_past_its_tooth_about_the_neighbour() {
+        let teeth = Teeth::new(7, 0.0486, 0.064);
+        let play = 0.5 * PLAY * teeth.pitch / teeth.radius;
+        let step = TAU / 7.0;
+        let last = seated(&teeth, play + step);
+        for swing in 0..60 {
+            let shoe = seated(&teeth, play) - last;
+            let pin = last + Rotation::new(0.01 * f64::from(swing)) * shoe;
+            let Some([behind, ahead]) = teeth.flanks(pin, 0.0) else {
+                assert!(swing > 10);
+                break;
+            };
+            assert!(behind.gap > -1e-12 && ahead.gap > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_pin_below_its_seat_is_free_to_go_deeper() {
+        let teeth = Teeth::new(7, 0.0486, 0.064);
+        for out in [0.9, 0.95, 0.99] {
+            let [behind, ahead] = teeth.flanks(Vector::X * teeth.radius * out, 0.0).unwrap();
+            assert!(behind.gap > 0.0 && ahead.gap > 0.0);
+            assert!(behind.normal.x.abs() < 0.02 && ahead.normal.x.abs() < 0.02);
+        }
+    }
+
+    #[test]
+    fn a_pin_on_a_tip_is_pushed_out() {
+        let teeth = Teeth::new(11, 0.03, 1.0);
+        let pin = direction(0.5 * TAU / 11.0) * (teeth.tip_radius - 1e-4);
+        let [behind, ahead] = teeth.flanks(pin, 0.0).unwrap();
+        let top = if behind.gap < ahead.gap {
+            behind
+        } else {
+            ahead
+        };
+        assert!((top.gap + 1e-4).abs() < 1e-12);
+        assert!(top.normal.dot(pin.normalize()) > 1.0 - 1e-12);
+    }
+}

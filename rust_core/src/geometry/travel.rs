@@ -1,0 +1,97 @@
+//! What a belt along an envelope carries: where it is, and how it moves.
+
+use super::envelope::Envelope;
+use super::stretch::{Form, Stretch};
+use super::{Pose, Vector, right_of};
+
+/// How a belt along the hull moves what it carries, for each metre that it runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Motion {
+    /// [m] Point that it turns it about, clockwise.
+    pub center: Vector,
+    /// [1/m] Turn.
+    pub turn: f64,
+    /// Motion along a line, besides.
+    pub along: Vector,
+}
+
+impl Motion {
+    /// The same in a frame in which its own is `pose`.
+    pub(crate) fn seen_from(self, pose: Pose) -> Self {
+        Self {
+            center: pose.transform_point(self.center),
+            turn: self.turn,
+            along: pose.rotation * self.along,
+        }
+    }
+
+    /// What it moves a point by, for each metre.
+    pub(crate) fn at(&self, point: Vector) -> Vector {
+        right_of(point - self.center) * self.turn + self.along
+    }
+
+    /// A share of another motion in this one; one of them turns at most.
+    fn mixed(self, other: Self, share: f64) -> Self {
+        Self {
+            center: if self.turn == 0.0 {
+                other.center
+            } else {
+                self.center
+            },
+            turn: self.turn * (1.0 - share) + other.turn * share,
+            along: self.along * (1.0 - share) + other.along * share,
+        }
+    }
+}
+
+impl Stretch {
+    /// How a belt moves what it carries here.
+    fn motion(&self) -> Motion {
+        match self.shape {
+            Form::Arc { center, radius, .. } => Motion {
+                center,
+                turn: 1.0 / radius,
+                along: Vector::ZERO,
+            },
+            Form::Run { along, .. } => Motion {
+                along,
+                ..Motion::default()
+            },
+        }
+    }
+}
+
+impl Envelope {
+    /// The point a way [m] along the hull, and the outward normal there.
+    pub(crate) fn place_at(&self, way: f64) -> (Vector, Vector) {
+        let way = way.rem_euclid(self.length());
+        let stretch = self.stretch_at(way);
+        let point = stretch.point_at(way - stretch.start);
+        let outward = match stretch.shape {
+            Form::Arc { center, radius, .. } => (point - center) / radius,
+            Form::Run { outward, .. } => outward,
+        };
+        (point, outward)
+    }
+
+    /// The mean motion of what a belt carries within `reach` [m] of a way along the hull: where an arc
+    /// joins a run, that of a tip would jump.
+    pub(crate) fn motion_at(&self, way: f64, reach: f64) -> Motion {
+        let way = way.rem_euclid(self.length());
+        let here = self.stretch_at(way);
+        // The nearer of its joints, and how much of the span lies beyond it.
+        let (behind, ahead) = (way - here.start, here.start + here.length - way);
+        let (gap, beyond) = if behind < ahead {
+            (behind, here.start - behind)
+        } else {
+            (ahead, way + 2.0 * ahead)
+        };
+        let mut motion = here.motion();
+        if gap < reach && self.stretches.len() > 1 {
+            let share = 0.5 * (1.0 - gap / reach);
+            let beyond = beyond.rem_euclid(self.length());
+            motion = motion.mixed(self.stretch_at(beyond).motion(), share);
+        }
+        motion
+    }
+}

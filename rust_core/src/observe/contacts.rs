@@ -1,0 +1,87 @@
+//! Contact forces averaged over a sample interval.
+
+use crate::contact::Contact;
+use crate::dynamics::LoadedContact;
+
+/// Contacts seen since the last sample, each with its summed forces.
+#[derive(Default)]
+pub(crate) struct Readings {
+    steps: u32,
+    seen: Vec<Reading>,
+}
+
+/// One contact over the interval, identified by part and place.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading {
+    /// As it was last seen.
+    pub contact: Contact,
+    /// [N] Mean over the interval.
+    pub normal_force: f64,
+    /// [N] Mean over the interval.
+    pub friction_force: f64,
+    /// [m/s] When last seen.
+    pub surface_speed: f64,
+    /// Step of the interval in which it was last seen: two contacts of one step are two.
+    step: u32,
+}
+
+impl Readings {
+    /// Adds one step.
+    pub(crate) fn add(&mut self, loaded: &[LoadedContact]) {
+        self.steps += 1;
+        for l in loaded.iter().filter(|l| l.normal_force > 0.0) {
+            let place = |c: &Contact| {
+                (
+                    c.part,
+                    if c.edge >= 0 {
+                        (c.edge, 0)
+                    } else {
+                        (-1, c.facet)
+                    },
+                )
+            };
+            let step = self.steps;
+            let mut same = self
+                .seen
+                .iter_mut()
+                .filter(|r| r.step != step && place(&r.contact) == place(&l.contact));
+            // A face can bear on a facet at both its ends: those are two contacts.
+            let known = same.find(|r| (r.contact.point - l.contact.point).length() < SAME_PLACE);
+            match known {
+                Some(reading) => {
+                    reading.contact = l.contact;
+                    reading.normal_force += l.normal_force;
+                    reading.friction_force += l.friction_force;
+                    reading.surface_speed = l.surface_speed;
+                    reading.step = step;
+                }
+                None => self.seen.push(Reading {
+                    contact: l.contact,
+                    normal_force: l.normal_force,
+                    friction_force: l.friction_force,
+                    surface_speed: l.surface_speed,
+                    step,
+                }),
+            }
+        }
+    }
+
+    /// Contacts seen since the last sample.
+    pub(crate) fn count(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// The means, in the order of first sight; the next interval starts empty.
+    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Reading> + '_ {
+        let share = 1.0 / f64::from(self.steps.max(1));
+        self.steps = 0;
+        self.seen.drain(..).map(move |r| Reading {
+            normal_force: r.normal_force * share,
+            friction_force: r.friction_force * share,
+            ..r
+        })
+    }
+}
+
+/// [m] A contact moves less than this from step to step.
+const SAME_PLACE: f64 = 5e-3;

@@ -1,0 +1,20 @@
+//! What is seen of a run: it only reads.
+
+mod bearing;
+mod contacts;
+mod events;
+mod monitor;
+mod outcome;
+mod progress;
+mod reading;
+mod shaking;
+mod signals;
+
+pub(crate) use contacts::Readings;
+pub(crate) use events::IntrusionWatch;
+pub use events::{Event, EventKind};
+pub(crate) use monitor::{Monitor, Seen};
+pub use outcome::Outcome;
+pub use reading::Reading;
+pub(crate) use shaking::Shaking;
+pub(crate) use signals::{Bearing, DriveMean, Signals, Stance};

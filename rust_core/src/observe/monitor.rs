@@ -1,0 +1,379 @@
+//! Watches a run: goal, tip-over, stops. It only reads, and ends a run when its outcome is certain.
+
+#[cfg(test)]
+mod tests;
+
+use serde::{Deserialize, Serialize};
+
+use super::progress::Progress;
+use super::{Event, IntrusionWatch, Outcome, Reading, Shaking, Signals, Stance, bearing};
+use crate::contact::TrackEnvelope;
+use crate::dynamics::{ChainReading, DriveState, LoadedContact};
+use crate::geometry::Pose;
+use crate::robot::{Model, Part, Running};
+use crate::scenario::{Scenario, SeizureCriteria};
+use crate::terrain::{Ground, Profile};
+
+/// [s] Time between two looks at the progress; far below any stop window.
+const LOOK: f64 = 0.01;
+
+/// Watches one run.
+pub(crate) struct Monitor {
+    criteria: SeizureCriteria,
+    ground: Ground,
+    goal: f64,
+    /// [m] A metre below the whole ground.
+    floor: f64,
+    half_length: f64,
+    rear_radius: f64,
+    grouser_pitch: f64,
+    /// What the robot is made of.
+    parts: Vec<Part>,
+    /// Of each track, with its lane.
+    envelopes: Vec<TrackEnvelope>,
+    /// A driver may do something later that changes everything.
+    may_change: bool,
+    /// A turning grouser changes what is there although the pose does not.
+    has_grousers: bool,
+    /// What it has seen.
+    pub seen: Seen,
+}
+
+/// What a monitor remembers of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    looks: u64,
+    last_time: f64,
+    progress: Progress,
+    signals: Signals,
+    intrusions: IntrusionWatch,
+    anchor: Option<Anchor>,
+    goal_since: Option<f64>,
+    ended: Option<Outcome>,
+    stays: bool,
+    /// [s] When the goal was first held, if it was.
+    pub time_to_clear: f64,
+    /// [m] Deepest penetration so far.
+    pub max_penetration: f64,
+    /// [rad] Largest chassis angle so far.
+    pub max_angle: f64,
+    /// [rad] Smallest chassis angle so far.
+    pub min_angle: f64,
+    /// [J] Work of the motors so far.
+    pub drive_work: f64,
+    /// [m] How far the chassis frame has moved along its own axis so far.
+    pub path_length: f64,
+    /// How much the chassis shook so far.
+    pub shaking: Shaking,
+    /// [N] Largest force in a pin of a chain so far.
+    pub max_track_tension: f64,
+    /// [m] Largest gap of a pin so far.
+    pub max_pin_gap: f64,
+    /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe so far.
+    pub max_guide_penetration: f64,
+    /// [m] Farthest that a chain and its sprocket have run apart so far.
+    pub max_sprocket_slip: f64,
+}
+
+impl Seen {
+    /// Nothing yet, at a time [s].
+    pub(crate) fn from(time: f64) -> Self {
+        Self {
+            looks: (time / LOOK).ceil() as u64,
+            last_time: time,
+            progress: Progress::default(),
+            signals: Signals::default(),
+            intrusions: IntrusionWatch::default(),
+            anchor: None,
+            goal_since: None,
+            ended: None,
+            stays: false,
+            time_to_clear: f64::INFINITY,
+            max_penetration: 0.0,
+            max_angle: f64::NEG_INFINITY,
+            min_angle: f64::INFINITY,
+            drive_work: 0.0,
+            path_length: 0.0,
+            shaking: Shaking::default(),
+            max_track_tension: 0.0,
+            max_pin_gap: 0.0,
+            max_guide_penetration: 0.0,
+            max_sprocket_slip: 0.0,
+        }
+    }
+}
+
+impl Seen {
+    /// Whether a robot on lanes can have been seen so until a time [s].
+    pub(crate) fn fits(&self, time: f64, model: &Model, lanes: &[Profile]) -> bool {
+        let parts = model.parts.len();
+        // Looks are counted: ahead of time there would be none.
+        let next_look = self.looks as f64 * LOOK;
+        let numbers = [
+            self.time_to_clear,
+            self.max_penetration,
+            self.max_angle,
+            self.min_angle,
+            self.drive_work,
+            self.path_length,
+            self.max_track_tension,
+            self.max_pin_gap,
+            self.max_guide_penetration,
+            self.max_sprocket_slip,
+        ];
+        next_look <= time + 2.0 * LOOK
+            && (self.last_time - time).abs() <= 2.0 * LOOK
+            && numbers.iter().all(|number| !number.is_nan())
+            && self.goal_since.is_none_or(f64::is_finite)
+            && self.progress.fits(parts, lanes)
+            && self.intrusions.fits(parts, lanes)
+            && self.signals.fits(model, lanes)
+    }
+}
+
+/// A pose that the robot has not left since.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Anchor {
+    since: f64,
+    x: f64,
+    y: f64,
+    angle: f64,
+    /// Of what bears there.
+    bearing: u64,
+}
+
+impl Monitor {
+    pub(crate) fn new(scenario: &Scenario, ground: &Ground, model: &Model) -> Self {
+        let outline = &scenario.robot.outline;
+        Self {
+            criteria: scenario.criteria.clone(),
+            ground: ground.clone(),
+            goal: ground.goal_of(scenario),
+            floor: ground.lowest() - 1.0,
+            half_length: 0.5 * outline.axle_distance,
+            rear_radius: outline.rear_radius,
+            grouser_pitch: outline.grouser_pitch,
+            envelopes: (0..ground.tracks)
+                .flat_map(|lane| model.mounts_of_tracks().map(move |mount| (lane, mount)))
+                .map(|track| {
+                    TrackEnvelope::new(&model.parts, track, scenario.criteria.intrusion_depth)
+                })
+                .collect(),
+            may_change: scenario.drive.schedule.is_some()
+                || (scenario.drive.gait.is_some() && !model.flippers.is_empty()),
+            parts: model.parts.clone(),
+            has_grousers: model.parts.iter().any(Part::is_carried),
+            seen: Seen::from(0.0),
+        }
+    }
+
+    /// Takes in one step: what the robot did, the contacts' forces, the drives with their speeds, and where
+    /// the flippers are.
+    pub(crate) fn observe(
+        &mut self,
+        now: &Reading,
+        command: f64,
+        loaded: &[LoadedContact],
+        drives: impl Iterator<Item = (DriveState, f64)> + Clone,
+        running: &Running,
+    ) {
+        let seen = &mut self.seen;
+        let dt = now.time - seen.last_time;
+        seen.last_time = now.time;
+        let work_rate: f64 = drives
+            .clone()
+            .map(|(drive, speed)| drive.force * speed)
+            .sum();
+        seen.drive_work += work_rate * dt;
+        seen.path_length += now.forward_speed() * dt;
+        seen.max_angle = seen.max_angle.max(now.chassis_angle);
+        seen.min_angle = seen.min_angle.min(now.chassis_angle);
+        for l in loaded {
+            seen.max_penetration = seen.max_penetration.max(-l.contact.distance);
+        }
+        let length = 2.0 * self.half_length;
+        seen.progress.advance(now, command, length, dt);
+        let window = self.window(command);
+        if self.seen.progress.falters() {
+            self.seen.signals.add(now, loaded, drives, window);
+        }
+        if self.seen.ended.is_none() {
+            self.seen.ended = self.ended(now);
+        }
+        if now.time >= self.seen.looks as f64 * LOOK {
+            self.seen.looks += 1;
+            self.seen.shaking.look(now);
+            self.look_inside(now, loaded, running);
+            self.look(now, command, window);
+            if !self.has_grousers && !self.may_change {
+                self.watch_stationary(now, window, loaded);
+            }
+        }
+    }
+
+    /// Takes in what the chains did in the same step.
+    pub(crate) fn observe_chains(&mut self, chains: ChainReading) {
+        let seen = &mut self.seen;
+        seen.max_track_tension = seen.max_track_tension.max(chains.tension);
+        seen.max_pin_gap = seen.max_pin_gap.max(chains.pin_gap);
+        seen.max_guide_penetration = seen.max_guide_penetration.max(chains.guide_penetration);
+        seen.max_sprocket_slip = seen.max_sprocket_slip.max(chains.sprocket_slip);
+        if chains.is_off {
+            seen.ended.get_or_insert(Outcome::Detracked);
+        }
+    }
+
+    /// Ends that need no window.
+    fn ended(&mut self, now: &Reading) -> Option<Outcome> {
+        if now.chassis_angle.abs() > self.criteria.tip_over_angle {
+            return Some(Outcome::TippedOver);
+        }
+        let (sine, cosine) = libm::sincos(now.chassis_angle);
+        let rear = now.position.x - cosine * self.half_length;
+        let front = now.position.x + cosine * self.half_length;
+        let lower_axle = now.position.y - (sine * self.half_length).abs();
+        let (low, high) = self.ground.extent();
+        if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
+            return Some(Outcome::LeftTerrain);
+        }
+        let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
+            < self.criteria.clear_angle;
+        if rear > self.goal + self.rear_radius && level {
+            let since = *self.seen.goal_since.get_or_insert(now.time);
+            if now.time - since >= self.criteria.clear_time {
+                self.seen.time_to_clear = since;
+                return Some(Outcome::Cleared);
+            }
+        } else {
+            self.seen.goal_since = None;
+        }
+        None
+    }
+
+    /// Follows what is inside the track.
+    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact], running: &Running) {
+        let pose = Pose::new(now.position, now.chassis_angle);
+        let lanes = &self.ground.lanes;
+        let inside = self.envelopes.iter().flat_map(|envelope| {
+            let (profile, pose) = (&lanes[envelope.lane], running.mounted(envelope.mount, pose));
+            if envelope.holds_edge(profile, pose) {
+                envelope.intrusions(profile, pose)
+            } else {
+                Vec::new()
+            }
+        });
+        let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
+            let bears = |l: &&LoadedContact| i.bears(lanes, &self.parts, &l.contact);
+            let force = loaded.iter().filter(bears).map(|l| l.normal_force).sum();
+            (i, force)
+        });
+        self.seen.intrusions.look(now.time, with_force);
+    }
+
+    /// Compares the progress with that of one window ago.
+    fn look(&mut self, now: &Reading, command: f64, window: f64) {
+        let least = self.criteria.stop_progress;
+        let seen = &mut self.seen;
+        let freed = seen
+            .progress
+            .look(now.time, command != 0.0, (window, LOOK), least);
+        if let Some(start) = freed {
+            let inside = seen.intrusions.most_loaded();
+            let stop = Event::stop(start, now.time, inside);
+            seen.progress.stops.push(stop);
+        }
+        if !seen.progress.falters() {
+            seen.signals = Signals::default();
+        }
+    }
+
+    /// [s] Time without progress that is a stop.
+    fn window(&self, command: f64) -> f64 {
+        let pitches = self.criteria.stop_pitches * self.grouser_pitch / command.abs();
+        if pitches.is_finite() {
+            self.criteria.stop_window.max(pitches)
+        } else {
+            self.criteria.stop_window
+        }
+    }
+
+    /// A state that does not change at all will not change later: the run may end.
+    fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[LoadedContact]) {
+        let here = Anchor {
+            since: now.time,
+            x: now.position.x,
+            y: now.position.y,
+            angle: now.chassis_angle,
+            bearing: bearing::signature(loaded),
+        };
+        let tolerance = self.criteria.stationary_distance;
+        let seen = &mut self.seen;
+        let anchor = *seen.anchor.get_or_insert(here);
+        let moved = (here.x - anchor.x).abs().max((here.y - anchor.y).abs());
+        let turned = (here.angle - anchor.angle).abs() * self.half_length;
+        if moved > tolerance || turned > tolerance || here.bearing != anchor.bearing {
+            seen.anchor = Some(here);
+            return;
+        }
+        let still = now.time - anchor.since;
+        let enough = f64::from(self.criteria.stationary_windows) * window;
+        seen.stays |= seen.progress.stop_since.is_some() && still >= enough;
+    }
+
+    /// Nothing that still happens could change the outcome.
+    pub(crate) fn is_over(&self) -> bool {
+        self.seen.ended.is_some() || self.seen.stays
+    }
+
+    /// The outcome of a run that ended otherwise than by a stop or its time.
+    pub(crate) fn ended_as(&self) -> Option<Outcome> {
+        self.seen.ended
+    }
+
+    /// [s] Since when the robot has stopped, if it has.
+    pub(crate) fn stop_since(&self) -> Option<f64> {
+        self.seen.progress.stop_since
+    }
+
+    /// Share of the commanded distance made in the last stop window; 1 before the first is over.
+    pub(crate) fn progress(&self) -> f64 {
+        self.seen.progress.share
+    }
+
+    /// What was seen of a stop: means of the last one to two stop windows.
+    pub(crate) fn stance(&self) -> Stance {
+        self.seen.signals.stance()
+    }
+
+    /// Stops and intrusions so far, in order of their beginning; those that last end at `now`.
+    pub(crate) fn events(&self, now: f64) -> Vec<Event> {
+        let Seen {
+            progress,
+            intrusions,
+            ..
+        } = &self.seen;
+        let inside = intrusions.most_loaded();
+        let open = progress
+            .stop_since
+            .map(|start| Event::stop(start, now, inside));
+        let stops = progress.stops.iter().cloned().chain(open);
+        let mut events: Vec<Event> = stops.chain(intrusions.events(now)).collect();
+        events.sort_by(|a, b| a.start.total_cmp(&b.start));
+        events
+    }
+
+    /// [s] Longest stop from which the robot freed itself, 0 if there was none.
+    pub(crate) fn time_to_free(&self) -> f64 {
+        let stops = self.seen.progress.stops.iter();
+        stops.fold(0.0, |longest, stop| longest.max(stop.end - stop.start))
+    }
+
+    /// The most loaded of what is inside the track.
+    pub(crate) fn intrusion(&self) -> Option<&Event> {
+        self.seen.intrusions.most_loaded()
+    }
+
+    pub(crate) fn envelopes(&self) -> &[TrackEnvelope] {
+        &self.envelopes
+    }
+}

@@ -1,0 +1,268 @@
+//! What is seen of a stop: the means of contacts, drives and pose over its last windows.
+//!
+//! A state that rattles has no forces of an instant that balance, but its means over a time in
+//! which it gets nowhere do.
+
+use serde::{Deserialize, Serialize};
+
+use super::Reading;
+use crate::contact::Contact;
+use crate::dynamics::{DriveState, LoadedContact};
+use crate::geometry::Vector;
+use crate::robot::Model;
+use crate::terrain::Profile;
+
+/// [m] A contact that moves less than this from step to step is one contact.
+const SAME_PLACE: f64 = 5e-3;
+/// Normals whose cosine is larger are one direction: within 10 degrees.
+const SAME_DIRECTION: f64 = 0.985;
+/// [m] Surfaces closer than this could bear, though they do not.
+const TOUCHES: f64 = 1e-6;
+
+/// Sums over the last window that is complete and the one under way.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Signals {
+    older: Block,
+    newer: Block,
+}
+
+/// Sums over one window.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Block {
+    start: f64,
+    steps: f64,
+    contacts: Vec<Summed>,
+    drives: Vec<DriveMean>,
+    place: [f64; 3],
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// One contact's sums.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Summed {
+    last: Contact,
+    normal_force: f64,
+    friction_force: f64,
+    point: Vector,
+    normal: Vector,
+    slip: f64,
+    weight: f64,
+    loaded: f64,
+}
+
+/// A contact in the mean.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bearing {
+    /// Where and what; point and normal are means.
+    pub contact: Contact,
+    /// [N] Mean normal force.
+    pub normal_force: f64,
+    /// [N] Mean friction on the robot, along the normal turned by -90 degrees.
+    pub friction_force: f64,
+    /// [m/s] Mean velocity of the surface over ground in the same direction.
+    pub slip: f64,
+    /// Share of the time for which it bore.
+    pub duration: f64,
+}
+
+/// A drive in the mean.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct DriveMean {
+    /// [N] Force of its motor at the surface.
+    pub force: f64,
+    /// [m/s] Surface speed.
+    pub speed: f64,
+}
+
+/// A stop in the mean.
+#[derive(Clone, Debug)]
+pub(crate) struct Stance {
+    /// [m] Chassis frame.
+    pub position: Vector,
+    /// [rad] Chassis angle.
+    pub angle: f64,
+    /// How far the chassis frame moved to and fro in x [m] and y [m], and turned [rad].
+    pub range: [f64; 3],
+    /// Contacts that bear or could.
+    pub bearings: Vec<Bearing>,
+    /// One for each drive.
+    pub drives: Vec<DriveMean>,
+}
+
+impl Signals {
+    /// Takes in one step; `window` [s] is that of a stop.
+    pub(crate) fn add(
+        &mut self,
+        now: &Reading,
+        loaded: &[LoadedContact],
+        drives: impl Iterator<Item = (DriveState, f64)>,
+        window: f64,
+    ) {
+        if now.time - self.newer.start >= window {
+            self.older = std::mem::take(&mut self.newer);
+            self.newer.start = now.time;
+        }
+        self.newer.add(now, loaded, drives);
+    }
+
+    /// Whether a robot and its lanes can have given them.
+    pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        [&self.older, &self.newer].into_iter().all(|block| {
+            let numbers = [block.place, block.low, block.high].concat();
+            block.drives.len() <= model.drives
+                && block.start.is_finite()
+                && (0.0..1e15).contains(&block.steps)
+                && numbers.iter().all(|number| number.is_finite())
+                && block.contacts.iter().all(|c| c.fits(model, lanes))
+        })
+    }
+
+    /// The means over both windows.
+    pub(crate) fn stance(&self) -> Stance {
+        let mut sum = self.older.clone();
+        sum.absorb(&self.newer);
+        let share = 1.0 / sum.steps.max(1.0);
+        Stance {
+            position: Vector::new(sum.place[0], sum.place[1]) * share,
+            angle: sum.place[2] * share,
+            range: std::array::from_fn(|i| sum.high[i] - sum.low[i]),
+            bearings: sum.contacts.iter().map(|c| c.mean(share)).collect(),
+            drives: sum
+                .drives
+                .iter()
+                .map(|d| DriveMean {
+                    force: d.force * share,
+                    speed: d.speed * share,
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Block {
+    fn add(
+        &mut self,
+        now: &Reading,
+        loaded: &[LoadedContact],
+        drives: impl Iterator<Item = (DriveState, f64)>,
+    ) {
+        let here = [now.position.x, now.position.y, now.chassis_angle];
+        if self.steps == 0.0 {
+            (self.low, self.high) = (here, here);
+        }
+        self.steps += 1.0;
+        for (i, value) in here.into_iter().enumerate() {
+            self.place[i] += value;
+            self.low[i] = self.low[i].min(value);
+            self.high[i] = self.high[i].max(value);
+        }
+        for (k, (drive, speed)) in drives.enumerate() {
+            if k == self.drives.len() {
+                self.drives.push(DriveMean::default());
+            }
+            self.drives[k].force += drive.force;
+            self.drives[k].speed += speed;
+        }
+        let bears = |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES;
+        for l in loaded.iter().filter(bears) {
+            self.gather(&Summed::new(l));
+        }
+    }
+
+    /// Adds a contact to the one that it goes on from, if it is there.
+    fn gather(&mut self, new: &Summed) {
+        match self.contacts.iter_mut().find(|c| c.is_same(new)) {
+            Some(known) => known.absorb(new),
+            None => self.contacts.push(*new),
+        }
+    }
+
+    fn absorb(&mut self, later: &Self) {
+        if later.steps == 0.0 {
+            return;
+        }
+        if self.steps == 0.0 {
+            *self = later.clone();
+            return;
+        }
+        self.steps += later.steps;
+        for i in 0..3 {
+            self.place[i] += later.place[i];
+            self.low[i] = self.low[i].min(later.low[i]);
+            self.high[i] = self.high[i].max(later.high[i]);
+        }
+        for (sum, more) in self.drives.iter_mut().zip(&later.drives) {
+            sum.force += more.force;
+            sum.speed += more.speed;
+        }
+        for new in &later.contacts {
+            self.gather(new);
+        }
+    }
+}
+
+impl Summed {
+    fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        let sums = [
+            self.normal_force,
+            self.friction_force,
+            self.slip,
+            self.loaded,
+        ];
+        self.last.fits(model, lanes)
+            && self.weight > 0.0
+            && self.point.is_finite()
+            && self.normal.is_finite()
+            && sums.iter().all(|sum| sum.is_finite())
+    }
+
+    fn new(l: &LoadedContact) -> Self {
+        // A contact without a force has a place all the same.
+        let weight = l.normal_force.max(1e-9);
+        Self {
+            last: l.contact,
+            normal_force: l.normal_force,
+            friction_force: l.friction_force,
+            point: l.contact.point * weight,
+            normal: l.contact.normal * weight,
+            slip: l.surface_speed * weight,
+            weight,
+            loaded: f64::from(u8::from(l.normal_force > 0.0)),
+        }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        let (a, b) = (&self.last, &other.last);
+        a.part == b.part
+            && a.edge == b.edge
+            && (a.edge >= 0 || a.facet == b.facet)
+            && (a.point - b.point).length() < SAME_PLACE
+            && a.normal.dot(b.normal) > SAME_DIRECTION
+    }
+
+    fn absorb(&mut self, later: &Self) {
+        self.last = later.last;
+        self.normal_force += later.normal_force;
+        self.friction_force += later.friction_force;
+        self.point += later.point;
+        self.normal += later.normal;
+        self.slip += later.slip;
+        self.weight += later.weight;
+        self.loaded += later.loaded;
+    }
+
+    fn mean(&self, share: f64) -> Bearing {
+        Bearing {
+            contact: Contact {
+                point: self.point / self.weight,
+                normal: self.normal.normalize(),
+                ..self.last
+            },
+            normal_force: self.normal_force * share,
+            friction_force: self.friction_force * share,
+            slip: self.slip / self.weight,
+            duration: self.loaded * share,
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Chains of shoes of a robot, and what they leave of it to the chassis.
+
+use std::ops::Range;
+
+use crate::geometry::{Disc, Envelope, ShoeLoop, Teeth};
+
+/// A closed chain of shoes round a guide, or round sprocket and idler.
+#[derive(Clone, Debug)]
+pub struct ChainOfShoes {
+    /// Its own number.
+    pub number: usize,
+    /// Numbers of its shoes.
+    pub shoes: Range<usize>,
+    /// Its path along the pins, and how far these are from each other.
+    pub path: ShoeLoop,
+    /// The ends of the guide that the plates slide on, or the drum of the sprocket and the idler: rear first.
+    pub ends: [Disc; 2],
+    /// Road wheels and return rollers between them.
+    pub wheels: Vec<Disc>,
+    /// What drives it; none pulls on the shoes at the rear end of a guide.
+    pub sprocket: Option<Sprocket>,
+    /// [m] Thickness of the plates; the pins lie in their middle.
+    pub plate_thickness: f64,
+    /// [kg] Mass of a shoe.
+    pub shoe_mass: f64,
+    /// [kg m^2] Its moment of inertia about the middle of its pins.
+    pub shoe_inertia: f64,
+    /// What holds the front end out.
+    pub tensioner: Tensioner,
+    /// The hull of its ends.
+    pub(crate) hull: Envelope,
+}
+
+/// The wheel that drives a chain with its teeth.
+#[derive(Clone, Debug)]
+pub struct Sprocket {
+    /// Its teeth; they turn about the centre of the rear end.
+    pub teeth: Teeth,
+    /// [rad] Angle over the chassis of one of its seats when it has not turned.
+    pub first_seat: f64,
+    /// [kg m^2] Moment of inertia about its axle.
+    pub inertia: f64,
+}
+
+impl Sprocket {
+    /// [rad] Angle over the chassis when it has moved the chain so far [m]; it drives forwards clockwise.
+    pub fn angle(&self, run: f64) -> f64 {
+        self.first_seat - run / self.teeth.drive_radius()
+    }
+}
+
+/// A spring and a damper that push the front end of a guide along the chassis; it weighs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Tensioner {
+    /// [N] Force in the middle of its travel.
+    pub pre_tension: f64,
+    /// [N/m] Stiffness.
+    pub stiffness: f64,
+    /// [N s/m] Damping.
+    pub damping: f64,
+    /// [m] How far it can be pressed in before it meets a stop.
+    pub stop: f64,
+}
+
+impl ChainOfShoes {
+    /// [m] Radius at which the drive pulls: a turn moves the chain by as many pitches as it takes shoes to go
+    /// round.
+    pub(crate) fn drive_radius(&self) -> f64 {
+        if let Some(sprocket) = &self.sprocket {
+            return sprocket.teeth.drive_radius();
+        }
+        let half = 0.5 * self.path.pitch;
+        half / libm::atan(half / (self.ends[0].radius + 0.5 * self.plate_thickness))
+    }
+
+    /// [kg m^2] Moment of inertia of its sprocket, if there is one.
+    pub(crate) fn sprocket_inertia(&self) -> f64 {
+        self.sprocket.as_ref().map_or(0.0, |s| s.inertia)
+    }
+}

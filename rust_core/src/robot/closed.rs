@@ -1,0 +1,108 @@
+//! A closed belt in place of a track: what a track without gaps would do in the same pose.
+
+use std::sync::Arc;
+
+use super::{BodyKind, Model, Mount, Part, Shape};
+use crate::geometry::{Disc, Envelope, Grouser};
+use crate::scenario::{ScenarioError, TrackOutline};
+
+impl Model {
+    /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed circles, all
+    /// their motors' force, their mass. With an outline it has the grousers of that where the track has some,
+    /// as high as these, and within the same circles.
+    ///
+    /// # Errors
+    /// Its pitch leaves more of them than a belt may have.
+    pub(crate) fn closed(&self, grousers: Option<&TrackOutline>) -> Result<Self, ScenarioError> {
+        let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
+        let belt = Envelope::new(&round(Mount::Chassis));
+        // A closed belt shields a belly that lies inside of it.
+        let reaches_out = |part: &&Part| match &part.shape {
+            Shape::Polygon { corners } if part.mount == Mount::Chassis => {
+                corners.iter().any(|c| belt.depth(*c) < 0.0)
+            }
+            _ => false,
+        };
+        let belly = self.parts.iter().filter(reaches_out).cloned();
+        let tracks = self.tracks();
+        let mut parts = Vec::new();
+        for lane in 0..tracks {
+            for mount in self.mounts_of_tracks() {
+                let height = grousers.map_or(0.0, |outline| self.grouser_height(mount, outline));
+                let shapes = shapes(round(mount), height, grousers)?;
+                parts.extend(shapes.into_iter().map(|(kind, shape)| Part {
+                    kind,
+                    shape,
+                    drive: Some(lane),
+                    friction_limit: f64::INFINITY,
+                    lane,
+                    mount,
+                }));
+            }
+        }
+        parts.extend(belly);
+        let whole = self.with_circulating_mass();
+        let mass: f64 = whole.drive_masses.iter().sum();
+        let force = self.drive_force * self.motors as f64;
+        Ok(Self {
+            parts,
+            drives: tracks,
+            motors: tracks,
+            drive_masses: vec![mass / tracks as f64; tracks],
+            drive_force: force / tracks as f64,
+            pushes_chassis: false,
+            ..whole
+        })
+    }
+
+    /// Whether any of its tracks has grousers.
+    pub(crate) fn has_grousers(&self, outline: &TrackOutline) -> bool {
+        self.mounts_of_tracks()
+            .any(|mount| self.grouser_height(mount, outline) > 0.0)
+    }
+
+    /// [m] Height of the grousers of the track that a mount carries: gears have their own, chains and belts
+    /// those of the outline.
+    fn grouser_height(&self, mount: Mount, outline: &TrackOutline) -> f64 {
+        let of_part = |part: &Part| match &part.shape {
+            Shape::Gear { gear, .. } => gear.radius - gear.root_radius,
+            Shape::Hull { grouser_height, .. } if *grouser_height > 0.0 => outline.grouser_height,
+            _ => 0.0,
+        };
+        // What travels with a belt is told by the belt.
+        let bears_them = |part: &&Part| {
+            let is_other = matches!(part.kind, BodyKind::Belly | BodyKind::Grouser);
+            part.mount == mount && !is_other
+        };
+        let heights = self.parts.iter().filter(bears_them).map(of_part);
+        // Wheels of several sizes have several heights; the least fits in all of them.
+        heights.reduce(f64::min).unwrap_or(0.0)
+    }
+}
+
+/// The hull of circumscribed circles, and what travels along it.
+fn shapes(
+    tips: Vec<Disc>,
+    height: f64,
+    outline: Option<&TrackOutline>,
+) -> Result<Vec<(BodyKind, Shape)>, ScenarioError> {
+    let discs: Vec<Disc> = tips
+        .into_iter()
+        .map(|tip| Disc {
+            radius: tip.radius - height,
+            ..tip
+        })
+        .collect();
+    let mut shapes = Vec::new();
+    if let Some(outline) = outline.filter(|_| height > 0.0) {
+        let line = Arc::new(Envelope::new(&discs));
+        let grousers = Grouser::along(&line, None, height, outline)?;
+        shapes.extend(grousers.map(|g| (BodyKind::Grouser, Shape::Grouser(g))));
+    }
+    let hull = Shape::Hull {
+        discs,
+        grouser_height: height,
+    };
+    shapes.insert(0, (BodyKind::Belt, hull));
+    Ok(shapes)
+}

@@ -1,0 +1,40 @@
+//! What a part of the robot is.
+
+/// What a part of the robot stands for; the code is the `body_kind` of the contact table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A wheel.
+    Wheel = 0,
+    /// A moving belt.
+    Belt = 1,
+    /// A skid runner.
+    Skid = 2,
+    /// The underside of the chassis.
+    Belly = 3,
+    /// A grouser of a moving belt or of a shoe.
+    Grouser = 4,
+    /// The plate of a shoe.
+    Shoe = 5,
+    /// The guide that a chain slides on.
+    Guide = 6,
+    /// The toothed wheel that drives a chain.
+    Sprocket = 7,
+    /// The wheel at the other end, on the tensioner.
+    Idler = 8,
+    /// A wheel that the lower run of a chain carries.
+    RoadWheel = 9,
+    /// A return roller, which carries the upper run.
+    Roller = 10,
+}
+
+impl BodyKind {
+    /// Whether a chain of shoes runs round it.
+    pub(crate) fn is_in_chain(self) -> bool {
+        match self {
+            Self::Guide | Self::Sprocket | Self::Idler | Self::RoadWheel | Self::Roller => true,
+            Self::Wheel | Self::Belt | Self::Skid | Self::Belly | Self::Grouser | Self::Shoe => {
+                false
+            }
+        }
+    }
+}

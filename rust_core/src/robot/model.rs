@@ -1,0 +1,170 @@
+//! The robot as it is simulated: one body, the parts that meet the ground, the drives.
+
+use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Shape, track};
+use crate::geometry::{Disc, Envelope, Vector};
+use crate::scenario::{Robot, ScenarioError};
+
+/// Everything about a robot that does not change during a run.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// [kg] Total mass.
+    pub mass: f64,
+    /// [m] Centre of mass in the chassis frame.
+    pub center_of_mass: Vector,
+    /// [kg m^2] Moment of inertia without the part that turns with the drives.
+    pub moment_of_inertia: f64,
+    /// What meets the ground; the belly, if any, is the last.
+    pub parts: Vec<Part>,
+    /// Number of drives, the driven ones first.
+    pub drives: usize,
+    /// Number of drives with a motor; the others turn freely.
+    pub motors: usize,
+    /// [kg] Mass that moves at the surface speed of each drive.
+    pub drive_masses: Vec<f64>,
+    /// [m] Radius that joins surface speed and spin of a drive.
+    pub drive_radius: f64,
+    /// [N] Largest traction of each motor.
+    pub drive_force: f64,
+    /// The drive pushes the chassis along its axis, whatever touches the ground.
+    pub pushes_chassis: bool,
+    /// Chains of shoes, each with the drive of its number; then `mass`, `center_of_mass` and
+    /// `moment_of_inertia` are those of the chassis without them.
+    pub chains: Vec<ChainOfShoes>,
+    /// Arms that pivot on it; these, too, are then not in the figures of the chassis.
+    pub flippers: Vec<Flipper>,
+}
+
+impl Model {
+    /// The model of a robot, both tracks lumped: mass, centre of mass and moments of inertia are the
+    /// built robot's, whatever the track model.
+    ///
+    /// # Errors
+    /// Wheels that do not fit the robot; shoes and arms that leave no chassis.
+    pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
+        let track = track::build(robot)?;
+        let mut parts = track.parts;
+        if let Some(belly) = &robot.belly {
+            let corners = belly.iter().map(|p| Vector::new(p[0], p[1])).collect();
+            let shape = Shape::Polygon { corners };
+            parts.push(Part {
+                kind: BodyKind::Belly,
+                shape,
+                drive: None,
+                friction_limit: f64::INFINITY,
+                lane: 0,
+                mount: Mount::Chassis,
+            });
+        }
+        let radius = robot.outline.rear_radius;
+        let flippers = Flipper::of(robot);
+        // A chain is all of the track's mass and has all of its force; beside it, only flippers have drives.
+        let has_chain = !track.chains.is_empty();
+        let (sharers, of_track) = if has_chain {
+            (1, 1)
+        } else {
+            (track.motors, track.drives)
+        };
+        let mut drive_masses = vec![robot.track_mass / of_track as f64; of_track];
+        let beside = flippers.iter().map(Flipper::mass_of_track);
+        drive_masses.extend(beside.take(track.drives - of_track));
+        let circulating = robot.track_mass + drive_masses[of_track..].iter().sum::<f64>();
+        let model = Self {
+            mass: robot.mass,
+            center_of_mass: Vector::from(robot.center_of_mass),
+            moment_of_inertia: robot.moment_of_inertia - circulating * radius * radius,
+            parts,
+            drives: track.drives,
+            motors: track.motors,
+            drive_masses,
+            drive_radius: radius,
+            drive_force: robot.drivetrain.max_force(&robot.outline) / sharers as f64,
+            pushes_chassis: track.pushes_chassis,
+            chains: Vec::new(),
+            flippers: Vec::new(),
+        }
+        .with_flippers(flippers)
+        .with_chains(track.chains);
+        let left = model.moment_of_inertia;
+        if left <= 0.0 {
+            let rule = format!(
+                "must exceed that of all that moves over the chassis, which is left {left} kg m^2"
+            );
+            let path = "robot.moment_of_inertia";
+            return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
+        }
+        Ok(model)
+    }
+
+    /// [kg m^2] Moment of inertia of one drive.
+    pub(crate) fn drive_inertia(&self, drive: usize) -> f64 {
+        self.drive_masses[drive] * self.drive_radius * self.drive_radius
+    }
+
+    /// [kg m^2] Moment of inertia with all drives locked to the chassis.
+    pub(crate) fn locked_inertia(&self) -> f64 {
+        let drives = (0..self.drives).map(|k| self.drive_inertia(k));
+        self.moment_of_inertia + drives.sum::<f64>()
+    }
+
+    /// Number of shoes of all chains.
+    pub(crate) fn shoes(&self) -> usize {
+        self.chains.iter().map(|chain| chain.shoes.len()).sum()
+    }
+
+    /// Number of lanes that tracks meet.
+    pub(crate) fn tracks(&self) -> usize {
+        let of_tracks = self
+            .parts
+            .iter()
+            .filter(|part| part.kind != BodyKind::Belly);
+        of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
+    }
+
+    /// What carries a closed belt: the chassis and the flippers.
+    pub fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + use<> {
+        let flippers = (0..self.flippers.len()).map(Mount::Flipper);
+        std::iter::once(Mount::Chassis).chain(flippers)
+    }
+
+    /// Circumscribed and root circles of the bodies of the track on a lane that this carries.
+    pub(crate) fn discs_of_track(
+        &self,
+        lane: usize,
+        on: Mount,
+    ) -> impl Iterator<Item = (Disc, Disc)> + '_ {
+        let is_of_track = move |part: &&Part| part.lane == lane && part.mount == on;
+        let of_track = self.parts.iter().filter(is_of_track);
+        of_track.flat_map(|part| part.discs().collect::<Vec<_>>())
+    }
+
+    /// The taut belts round the circumscribed and the root circles of the bodies of a track, as points of
+    /// the frame of what carries it, counter-clockwise; an arc is cut every `turn` [rad].
+    pub fn envelopes(&self, on: Mount, turn: f64) -> [Vec<Vector>; 2] {
+        let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0, on).unzip();
+        [tips, roots].map(|discs| {
+            let mut points = Envelope::new(&discs).polyline(turn);
+            points.reverse();
+            points
+        })
+    }
+
+    /// [m] Farthest point of any part from the centre of mass.
+    pub(crate) fn reach(&self) -> f64 {
+        let from_center = |p: &Vector| (*p - self.center_of_mass).length();
+        let of_part = |part: &Part| match &part.shape {
+            // Never beyond the tips of the hull that it travels round but by a corner.
+            _ if part.mount != Mount::Chassis => 0.0,
+            Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
+            // Never beyond the tips of the belt's hull.
+            Shape::Grouser(_) => 0.0,
+            _ => part
+                .discs()
+                .map(|(tip, _)| from_center(&tip.center) + tip.radius)
+                .fold(0.0, f64::max),
+        };
+        let of_flipper = |flipper: &Flipper| from_center(&flipper.pivot) + flipper.reach;
+        let parts = self.parts.iter().map(of_part);
+        let flippers = self.flippers.iter().map(of_flipper);
+        parts.chain(flippers).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,157 @@
+//! A part of the robot: its shape, what carries it, where it is, how its drive moves it.
+
+use super::{BodyKind, Running};
+use crate::geometry::{Disc, Gear, Grouser, Motion, Pose, Rotation, Vector};
+
+/// A shape on a body of the robot that meets the ground.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What it stands for.
+    pub kind: BodyKind,
+    /// Its form in the frame of its mount.
+    pub shape: Shape,
+    /// The drive that moves its surface.
+    pub drive: Option<usize>,
+    /// Friction of its own; the smaller of this and the ground's counts.
+    pub friction_limit: f64,
+    /// Index of the lane of the ground that it meets.
+    pub lane: usize,
+    /// The body that it is fixed to.
+    pub mount: Mount,
+}
+
+/// A body of the robot that carries parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The chassis.
+    Chassis,
+    /// The shoe of that number.
+    Shoe(usize),
+    /// The arms at one end, of that number.
+    Flipper(usize),
+}
+
+impl Mount {
+    /// The number of its shoe.
+    pub fn shoe(self) -> Option<usize> {
+        match self {
+            Self::Shoe(shoe) => Some(shoe),
+            Self::Chassis | Self::Flipper(_) => None,
+        }
+    }
+}
+
+/// Forms in the chassis frame.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A disc.
+    Disc {
+        /// [m] Centre.
+        center: Vector,
+        /// [m] Radius.
+        radius: f64,
+    },
+    /// The convex hull of discs.
+    Hull {
+        /// The discs.
+        discs: Vec<Disc>,
+        /// [m] Height of the grousers that travel along it.
+        grouser_height: f64,
+    },
+    /// A grouser that a belt carries along.
+    Grouser(Grouser),
+    /// A wheel with grousers that turns with its drive.
+    Gear {
+        /// [m] Centre.
+        center: Vector,
+        /// Its outline.
+        gear: Gear,
+    },
+    /// A convex polygon, counter-clockwise.
+    Polygon {
+        /// [m] Corners.
+        corners: Vec<Vector>,
+    },
+}
+
+impl Part {
+    /// Discs whose hull it fills: circumscribed and root circle of each; none for a polygon.
+    pub(crate) fn discs(&self) -> impl Iterator<Item = (Disc, Disc)> {
+        let round = |center, radius| {
+            let disc = Disc { center, radius };
+            (disc, disc)
+        };
+        let discs = match &self.shape {
+            Shape::Disc { center, radius } => vec![round(*center, *radius)],
+            Shape::Hull {
+                discs,
+                grouser_height,
+            } => {
+                let tip = |d: &Disc| Disc {
+                    radius: d.radius + grouser_height,
+                    ..*d
+                };
+                discs.iter().map(|d| (tip(d), *d)).collect()
+            }
+            Shape::Gear { center, gear } => {
+                let (tip, _) = round(*center, gear.radius);
+                let (root, _) = round(*center, gear.root_radius);
+                vec![(tip, root)]
+            }
+            Shape::Polygon { .. } | Shape::Grouser(_) => Vec::new(),
+        };
+        discs.into_iter()
+    }
+
+    /// A disc round it in its own frame: centre and radius [m].
+    pub(crate) fn bound(&self) -> (Vector, f64) {
+        let corners: Vec<Disc> = match &self.shape {
+            Shape::Disc { radius, .. } => return (Vector::ZERO, *radius),
+            Shape::Gear { gear, .. } => return (Vector::ZERO, gear.radius),
+            Shape::Polygon { corners } => corners.iter().map(|c| Disc::point(*c)).collect(),
+            Shape::Grouser(grouser) => grouser.corners().map(Disc::point).to_vec(),
+            Shape::Hull { .. } => self.discs().map(|(tip, _)| tip).collect(),
+        };
+        let sum: Vector = corners.iter().map(|d| d.center).sum();
+        let middle = sum / corners.len() as f64;
+        let reach = |d: &Disc| (d.center - middle).length() + d.radius;
+        (middle, corners.iter().map(reach).fold(0.0, f64::max))
+    }
+
+    /// [m] How far its surface has run over its mount.
+    pub(crate) fn run(&self, running: &Running) -> f64 {
+        self.drive.map_or(0.0, |k| running.run(self.mount, k))
+    }
+
+    /// Its own frame in that of its mount.
+    pub(crate) fn place(&self, running: &Running) -> Pose {
+        let run = self.run(running);
+        match &self.shape {
+            Shape::Disc { center, .. } => Pose::from_translation(*center),
+            Shape::Gear { center, gear } => {
+                Pose::from_parts(*center, Rotation::new(-run / gear.radius))
+            }
+            Shape::Grouser(grouser) => grouser.place(run),
+            Shape::Hull { .. } | Shape::Polygon { .. } => Pose::IDENTITY,
+        }
+    }
+
+    /// How its drive moves its shape over the chassis when the surface has run so far [m], the mean over as
+    /// much as `reach` [m] before and behind. A surface that only runs along itself moves no shape.
+    pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
+        match &self.shape {
+            Shape::Gear { center, gear } if self.drive.is_some() => Motion {
+                center: *center,
+                turn: 1.0 / gear.radius,
+                along: Vector::ZERO,
+            },
+            Shape::Grouser(grouser) => grouser.motion(run, reach),
+            _ => Motion::default(),
+        }
+    }
+
+    /// Whether its shape moves over the chassis at all.
+    pub(crate) fn is_carried(&self) -> bool {
+        matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.mount.shoe().is_some()
+    }
+}

@@ -1,0 +1,137 @@
+//! Where a robot stands at time 0.
+
+use super::{Model, Running, Shape};
+use crate::geometry::{Disc, Pose, Vector, end_discs, lower_tangent};
+use crate::scenario::{Scenario, ScenarioError};
+use crate::terrain::{Ground, Profile};
+
+/// Position of the chassis frame at time 0: on the ground, `start.approach` before the first edge.
+pub(crate) fn start_position(
+    scenario: &Scenario,
+    model: &Model,
+    ground: &Ground,
+) -> Result<Vector, ScenarioError> {
+    let (sine, cosine) = libm::sincos(scenario.start.angle);
+    let turned = |p: Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+    let turned_disc = |d: Disc| Disc {
+        center: turned(d.center),
+        ..d
+    };
+    let running = Running::at_start(model, scenario.start.track_phase);
+    // What touches each lane: discs, and segments between points.
+    let mut touching = vec![Touching::default(); ground.lanes.len()];
+    for part in &model.parts {
+        let Touching { discs, segments } = &mut touching[part.lane];
+        if part.kind.is_in_chain() {
+            continue;
+        }
+        let (mount, run) = (
+            running.mounted(part.mount, Pose::IDENTITY),
+            part.run(&running),
+        );
+        let placed = |p: Vector| turned(mount.transform_point(p));
+        discs.extend(part.discs().map(|(_, root)| Disc {
+            center: placed(root.center),
+            ..root
+        }));
+        match &part.shape {
+            Shape::Disc { .. } => {}
+            Shape::Hull { discs: round, .. } => {
+                let placed = &discs[discs.len() - round.len()..];
+                segments.extend(
+                    placed
+                        .windows(2)
+                        .map(|pair| lower_tangent(pair[0], pair[1])),
+                );
+            }
+            Shape::Gear { center, gear } => {
+                let start = -run / gear.radius;
+                for direction in gear.directions() {
+                    let corners = gear.corners(direction + start);
+                    segments.extend(closed(&corners.map(|c| placed(*center + c))));
+                }
+            }
+            Shape::Grouser(grouser) => {
+                let place = grouser.place(run);
+                let corners = grouser.corners().map(|c| placed(place.transform_point(c)));
+                segments.extend(closed(&corners));
+            }
+            Shape::Polygon { corners } => {
+                let corners: Vec<Vector> = corners.iter().map(|c| placed(*c)).collect();
+                segments.extend(closed(&corners));
+            }
+        }
+    }
+    // The built outline sets where the robot begins, too, although it need not touch the ground.
+    let outline = end_discs(&scenario.robot.outline).into_iter();
+    let tips = model.parts.iter().flat_map(|part| {
+        let mount = running.mounted(part.mount, Pose::IDENTITY);
+        part.discs().map(move |(tip, _)| Disc {
+            center: mount.transform_point(tip.center),
+            ..tip
+        })
+    });
+    let of_discs = outline
+        .chain(tips)
+        .map(turned_disc)
+        .map(|d| (d.center.x - d.radius, d.center.x + d.radius));
+    let of_segments = touching
+        .iter()
+        .flat_map(|lane| lane.segments.iter().flatten())
+        .map(|p| (p.x, p.x));
+    let (rear, front) = of_discs
+        .chain(of_segments)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
+            (low.min(a), high.max(b))
+        });
+    let x = ground.first_edge - scenario.start.approach - front;
+    let (low, high) = ground.extent();
+    if x + rear < low || x + front > high {
+        let rule = format!(
+            "must reach under the whole robot at its start, from x = {:.4} to {:.4} m",
+            x + rear,
+            x + front
+        );
+        return Err(ScenarioError::new(
+            "terrain",
+            format!("x from {low} to {high} m"),
+            rule,
+        ));
+    }
+    let heights = touching
+        .iter()
+        .zip(&ground.lanes)
+        .map(|(touching, profile)| touching.lowest_height(profile, x));
+    Ok(Vector::new(x, heights.fold(f64::NEG_INFINITY, f64::max)))
+}
+
+/// What of a robot touches one lane, in the chassis frame turned by its angle.
+#[derive(Clone, Default)]
+struct Touching {
+    discs: Vec<Disc>,
+    segments: Vec<[Vector; 2]>,
+}
+
+impl Touching {
+    /// [m] Height of the chassis frame, placed at `x`, at which it only touches the ground.
+    fn lowest_height(&self, profile: &Profile, x: f64) -> f64 {
+        let shift = Vector::new(x, 0.0);
+        let of_discs = self
+            .discs
+            .iter()
+            .map(|d| profile.height_under_disc(x + d.center.x, d.radius) - d.center.y);
+        let of_segments = self.segments.iter().map(|[a, b]| {
+            let (a, b) = if a.x <= b.x { (*a, *b) } else { (*b, *a) };
+            profile.rise_over_segment(a + shift, b + shift)
+        });
+        of_discs
+            .chain(of_segments)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// The sides of a polygon.
+fn closed(corners: &[Vector]) -> impl Iterator<Item = [Vector; 2]> {
+    let n = corners.len();
+    (0..n).map(move |i| [corners[i], corners[(i + 1) % n]])
+}

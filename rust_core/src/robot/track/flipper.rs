@@ -1,0 +1,69 @@
+//! Tracks of the flippers: any model that suits a tapering outline, on an arm that pivots.
+
+use super::{TrackModel, build};
+use crate::robot::{Mount, Part};
+use crate::scenario::{End, Flippers, MAX_WHEELS, Robot, ScenarioError, TorqueSharing, Track};
+
+/// Adds the tracks of the arms to the track of a robot, whose motors drive them.
+pub(super) fn add(
+    robot: &Robot,
+    flippers: &Flippers,
+    track: &mut TrackModel,
+) -> Result<(), ScenarioError> {
+    for (number, end) in flippers.ends().enumerate() {
+        let own = of_arm(robot, flippers, end).map_err(|error| ScenarioError {
+            path: error
+                .path
+                .replacen("robot.track", "robot.flippers.track", 1),
+            ..error
+        })?;
+        let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
+        // One motor a track drives its flippers, too; wheels that turn freely do so each by itself. Shoes
+        // cannot share a motor with a belt: theirs has no spin to turn one with.
+        let with_own_motors = with_own_motors || !track.chains.is_empty();
+        let shared = if with_own_motors { 0 } else { own.motors };
+        let first = track.drives;
+        let of_robot = |drive: usize| {
+            if drive < shared {
+                drive
+            } else {
+                first + drive - shared
+            }
+        };
+        track.parts.extend(own.parts.into_iter().map(|part| Part {
+            drive: part.drive.map(of_robot),
+            mount: Mount::Flipper(number),
+            ..part
+        }));
+        track.drives += own.drives - shared;
+        track.motors += own.motors - shared;
+    }
+    Ok(())
+}
+
+/// The track of the arms at an end. Where small wheels all round are the robot's and not given for the arms,
+/// there are as many as these need, at least: they are smaller at a tip.
+fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, ScenarioError> {
+    let mut arm = arm_as_robot(robot, flippers, end);
+    loop {
+        let built = build(&arm);
+        match &mut arm.track {
+            Track::Circumferential(wheels)
+                if flippers.track.is_none() && built.is_err() && wheels.count < MAX_WHEELS =>
+            {
+                wheels.count += 1;
+            }
+            _ => return built,
+        }
+    }
+}
+
+/// An arm as if it were a robot, to build its track.
+fn arm_as_robot(robot: &Robot, flippers: &Flippers, end: End) -> Robot {
+    Robot {
+        outline: flippers.outline(end, &robot.outline),
+        track: flippers.track_model(&robot.track),
+        flippers: None,
+        ..robot.clone()
+    }
+}

@@ -1,0 +1,112 @@
+//! Where the wheels of a model sit on the robot.
+
+use crate::geometry::search::zero;
+use crate::geometry::{Disc, Envelope, Vector, end_discs};
+use crate::scenario::{
+    CircumferentialWheels, ForceSupport, HybridWheels, LineOfWheels, Robot, ScenarioError, Track,
+    TrackOutline,
+};
+
+/// The wheels of one side, in the order of eq. (1); none for a model without wheels.
+///
+/// # Errors
+/// Wheels that do not fit the outline.
+pub(crate) fn wheels(robot: &Robot) -> Result<Vec<Disc>, ScenarioError> {
+    let outline = &robot.outline;
+    match &robot.track {
+        Track::Line(LineOfWheels {
+            count,
+            wheel_radius,
+            ..
+        }) => Ok(line(outline, *count, *wheel_radius)),
+        Track::Circumferential(wheels) => circumferential(outline, wheels),
+        Track::Hybrid(HybridWheels { placements, .. }) => Ok(placements
+            .iter()
+            .map(|[x, y, radius]| Disc {
+                center: Vector::new(*x, *y),
+                radius: *radius,
+            })
+            .collect()),
+        Track::Force(force) if force.support == ForceSupport::Wheels => {
+            Ok(line(outline, force.wheel_count, None))
+        }
+        Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {
+            Ok(Vec::new())
+        }
+    }
+}
+
+/// Rear first, evenly spaced between the end axles; radii linear between unequal ends.
+fn line(outline: &TrackOutline, count: u32, wheel_radius: Option<f64>) -> Vec<Disc> {
+    let [rear, front] = end_discs(outline);
+    let last = f64::from(count - 1);
+    (0..count)
+        .map(|i| {
+            let share = f64::from(i) / last;
+            let radius = rear.radius + share * (front.radius - rear.radius);
+            Disc {
+                center: rear.center + (front.center - rear.center) * share,
+                radius: wheel_radius.unwrap_or(radius),
+            }
+        })
+        .collect()
+}
+
+/// From the rear end of the lower run along belt travel: up round the rear, forwards on top, down
+/// round the front, back along the ground.
+fn circumferential(
+    outline: &TrackOutline,
+    wheels: &CircumferentialWheels,
+) -> Result<Vec<Disc>, ScenarioError> {
+    let smallest = outline.front_radius.min(outline.rear_radius);
+    let (radius, centers) = match wheels.wheel_radius {
+        Some(radius) if radius < smallest => {
+            let path = path_of_centers(outline, radius);
+            let spacing = path.length() / f64::from(wheels.count);
+            let center = |i: u32| path.point_at(f64::from(i) * spacing);
+            (radius, (0..wheels.count).map(center).collect())
+        }
+        Some(radius) => {
+            let rule = format!("must be below the smaller radius of the outline, {smallest} m");
+            return Err(ScenarioError::new("robot.track.wheel_radius", radius, rule));
+        }
+        None => tight(outline, wheels.count)?,
+    };
+    let disc = |center| Disc { center, radius };
+    Ok(centers.into_iter().map(disc).collect())
+}
+
+/// Radius and centres of wheels that touch their neighbours all the way round.
+fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), ScenarioError> {
+    // Larger wheels would meet those on the other side of the track before their neighbours.
+    let largest = 0.5 * outline.front_radius.min(outline.rear_radius);
+    // Larger wheels leave a shorter way for their centres and need more of it.
+    let overlap = |radius: f64| {
+        let path = path_of_centers(outline, radius);
+        let next = |at, _| path.way_to_distance(at, 2.0 * radius);
+        (0..count).fold(0.0, next) - path.length()
+    };
+    if overlap(largest) < 0.0 {
+        let rule = format!(
+            "must be larger: so few wheels would have to exceed {largest} m, half the outline's radius, to touch; give wheel_radius for spaced ones"
+        );
+        return Err(ScenarioError::new("robot.track.count", count, rule));
+    }
+    let radius = zero(0.0, largest, overlap);
+    let path = path_of_centers(outline, radius);
+    let mut at = 0.0;
+    let centers = (0..count).map(|_| {
+        let center = path.point_at(at);
+        at = path.way_to_distance(at, 2.0 * radius);
+        center
+    });
+    Ok((radius, centers.collect()))
+}
+
+/// The way of the centres of wheels that touch the outline from inside.
+fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
+    Envelope::new(&end_discs(outline).map(|end| Disc {
+        radius: end.radius - radius,
+        ..end
+    }))
+}

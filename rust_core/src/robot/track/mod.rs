@@ -1,0 +1,49 @@
+//! Track models: which shapes meet the ground, and which drive turns each of them.
+
+mod belt;
+mod flipper;
+mod force;
+mod grouser_belt;
+mod layout;
+mod running_gear;
+mod segmental;
+mod wheels;
+
+use crate::robot::{ChainOfShoes, Part};
+use crate::scenario::{
+    CircumferentialWheels, HybridWheels, LineOfWheels, Robot, ScenarioError, Track,
+};
+
+/// What a track model adds to the chassis.
+pub(crate) struct TrackModel {
+    /// Shapes that meet the ground.
+    pub parts: Vec<Part>,
+    /// Number of independent drives, the driven ones first; they share the mass evenly, but for chains.
+    pub drives: usize,
+    /// Number of drives with a motor; these share the force evenly, but for chains.
+    pub motors: usize,
+    /// The drive pushes the chassis itself instead of the ground under the parts.
+    pub pushes_chassis: bool,
+    /// Chains of shoes, which are the track's mass.
+    pub chains: Vec<ChainOfShoes>,
+}
+
+/// Builds the model of a robot's track, those of its flippers included.
+///
+/// # Errors
+/// Wheels that do not fit the robot.
+pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
+    let mut track = match &robot.track {
+        Track::Line(LineOfWheels { wheel, .. })
+        | Track::Circumferential(CircumferentialWheels { wheel, .. })
+        | Track::Hybrid(HybridWheels { wheel, .. }) => wheels::driven(robot, wheel),
+        Track::Belt(_) => Ok(belt::build(robot)),
+        Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
+        Track::Segmental(track) => segmental::build(robot, track),
+        Track::Force(force) => force::build(robot, force),
+    }?;
+    if let Some(flippers) = &robot.flippers {
+        flipper::add(robot, flippers, &mut track)?;
+    }
+    Ok(track)
+}

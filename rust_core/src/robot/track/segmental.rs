@@ -1,0 +1,228 @@
+//! A chain of rigid shoes linked by pins (section 2.3 of the paper), on a guide of the chassis or on wheels.
+//!
+//! The outer faces of the plates run along the roots of the outline, the pins in the middle of the plates,
+//! and guide or wheels under their inner faces, so that the robot stands as high as the built one.
+
+use super::TrackModel;
+use super::running_gear::RunningGear;
+use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, end_discs};
+use crate::robot::{BodyKind, ChainOfShoes, Mount, Part, Shape, Tensioner};
+use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
+
+/// [m/s^2] By which the default pre-tension is a share of the weight; that of the scenario may be none.
+const GRAVITY: f64 = 9.81;
+/// Shoes that the rest of the robot weighs at most: docs/decisions/0008 has the gaps of pins beyond.
+const HEAVIEST: f64 = 3000.0;
+/// Pitches by which the tensioner moves from its pre-tension to none.
+const SOFTNESS: f64 = 0.1;
+/// Pitches by which an idler can be pressed in.
+const STOP: f64 = 0.06;
+/// The same with what its stop gives way by.
+const PRESSED_IN: f64 = 0.07;
+
+/// Shoes on a guide or on wheels.
+pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
+    let outline = &robot.outline;
+    let ends = |inside: f64| {
+        end_discs(outline).map(|disc| Disc {
+            radius: disc.radius - inside,
+            ..disc
+        })
+    };
+    let roots = Envelope::new(&ends(outline.grouser_height));
+    let count = match track.shoe_count {
+        Some(count) => count,
+        None => outline.pitches_along(roots.length(), [3, MAX_SHOES])?,
+    };
+    let count = count as usize;
+    let plate = |count: usize| {
+        let default = roots.length() / count as f64 / 16.0;
+        track.plate_thickness.unwrap_or(default)
+    };
+    let plate_thickness = plate(count);
+    let guide = ends(outline.grouser_height + plate_thickness);
+    if let Some(end) = guide.iter().find(|end| end.radius <= 0.0) {
+        let rule = format!(
+            "must leave a guide: its smaller end would have a radius of {} m",
+            end.radius
+        );
+        let value = plate_thickness;
+        return Err(ScenarioError::new(
+            "robot.track.plate_thickness",
+            value,
+            rule,
+        ));
+    }
+    let loop_of = |count: usize| {
+        let pins = ends(outline.grouser_height + 0.5 * plate(count));
+        let on_guide = ShoeLoop::new(pins, count)?;
+        match track.mechanism {
+            ChainMechanism::Guide => Some(on_guide),
+            ChainMechanism::Sprocket => on_guide.on_sprocket(),
+        }
+    };
+    let Some(path) = loop_of(count) else {
+        return Err(too_long(count, |count| loop_of(count).is_some()));
+    };
+    let tensioner = tensioner(robot, track, path.pitch);
+    let shoe_mass = shoe_mass(robot, count)?;
+    let mut parts = Vec::new();
+    for shoe in 0..count {
+        let shapes = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
+        parts.extend(shapes.into_iter().map(|(kind, corners)| Part {
+            kind,
+            shape: Shape::Polygon { corners },
+            drive: Some(0),
+            friction_limit: f64::INFINITY,
+            lane: 0,
+            mount: Mount::Shoe(shoe),
+        }));
+    }
+    let beyond = plate_thickness + outline.grouser_height;
+    let (ends, wheels) = match track.mechanism {
+        ChainMechanism::Guide => {
+            // The ground meets it where it is built, and its front end may be pressed in: it must not be met
+            // under plates that lie where they should.
+            let inside = PRESSED_IN * path.pitch;
+            parts.push(Part {
+                kind: BodyKind::Guide,
+                shape: Shape::Hull {
+                    discs: guide.map(|end| shrunk(end, inside)).to_vec(),
+                    grouser_height: beyond + inside,
+                },
+                drive: None,
+                friction_limit: f64::INFINITY,
+                lane: 0,
+                mount: Mount::Chassis,
+            });
+            (guide, Vec::new())
+        }
+        ChainMechanism::Sprocket => {
+            let gear = RunningGear::new(&path, guide, plate_thickness, track);
+            parts.extend(gear.parts(beyond));
+            (gear.ends, [gear.road_wheels, gear.rollers].concat())
+        }
+    };
+    Ok(TrackModel {
+        parts,
+        drives: 1,
+        motors: 1,
+        pushes_chassis: false,
+        chains: vec![ChainOfShoes {
+            number: 0,
+            shoes: 0..count,
+            tensioner,
+            plate_thickness,
+            shoe_mass,
+            // A thin plate between its pins.
+            shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
+            hull: Envelope::new(&ends),
+            ends,
+            wheels,
+            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius),
+            path,
+        }],
+    })
+}
+
+/// [kg] Mass of a shoe of so many.
+fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
+    let (given, shoes) = (robot.track_mass, count as f64);
+    if (robot.mass - given) * shoes <= HEAVIEST * given {
+        return Ok(given / shoes);
+    }
+    let least = robot.mass * shoes / (HEAVIEST + shoes);
+    let rule = format!(
+        "must be at least {least:.4} kg for {count} shoes: pins of shoes that weigh less than 1/{HEAVIEST} of the rest of the robot open"
+    );
+    Err(ScenarioError::new("robot.track_mass", given, rule))
+}
+
+/// Shoes of a chain of `count` are too long: which counts are not.
+fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
+    let most = MAX_SHOES as usize;
+    let allowed = if goes_round(most) {
+        // The shorter they are the better they fit, and to try one count takes some milliseconds.
+        let (mut too_few, mut least) = (count, most);
+        while least - too_few > 1 {
+            let between = too_few.midpoint(least);
+            if goes_round(between) {
+                least = between;
+            } else {
+                too_few = between;
+            }
+        }
+        format!("must be from {least} to {most} here")
+    } else {
+        format!("must be beyond {most} here, the most there can be")
+    };
+    let rule = format!(
+        "{allowed}: a shoe must be no longer than the smaller end is thick, than half the distance of the axles, nor than a straight run"
+    );
+    ScenarioError::new("robot.track.shoe_count", count, rule)
+}
+
+/// A disc that lies so far [m] inside another, if there is room for it.
+fn shrunk(disc: Disc, inside: f64) -> Disc {
+    Disc {
+        radius: (disc.radius - inside).max(0.5 * disc.radius),
+        ..disc
+    }
+}
+
+/// The tensioners of both tracks together.
+fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
+    let pre_tension = track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
+    let stiffness = track
+        .tensioner_stiffness
+        .unwrap_or(pre_tension / (SOFTNESS * pitch));
+    let damping = track
+        .tensioner_damping
+        .unwrap_or_else(|| (2.0 * stiffness * robot.track_mass).sqrt());
+    Tensioner {
+        pre_tension: 2.0 * pre_tension,
+        stiffness: 2.0 * stiffness,
+        damping: 2.0 * damping,
+        stop: STOP * pitch,
+    }
+}
+
+/// The convex pieces of a shoe in its own frame, counter-clockwise.
+fn shapes(
+    robot: &Robot,
+    shape: ShoeShape,
+    pitch: f64,
+    plate_thickness: f64,
+) -> Vec<(BodyKind, Vec<Vector>)> {
+    let (half, face) = (0.5 * pitch, 0.5 * plate_thickness);
+    let (height, tip) = (
+        robot.outline.grouser_height,
+        0.5 * robot.outline.grouser_thickness.min(pitch),
+    );
+    let corners = |points: &[(f64, f64)]| points.iter().map(|(x, y)| Vector::new(*x, *y)).collect();
+    let plate = corners(&[(-half, -face), (half, -face), (half, face), (-half, face)]);
+    if height == 0.0 {
+        return vec![(BodyKind::Shoe, plate)];
+    }
+    let top = face + height;
+    match shape {
+        ShoeShape::Rectangle => vec![
+            (BodyKind::Shoe, plate),
+            (
+                BodyKind::Grouser,
+                corners(&[(-tip, -face), (tip, -face), (tip, top), (-tip, top)]),
+            ),
+        ],
+        ShoeShape::Trapezoid => vec![(
+            BodyKind::Shoe,
+            corners(&[
+                (-half, -face),
+                (half, -face),
+                (half, face),
+                (tip, top),
+                (-tip, top),
+                (-half, face),
+            ]),
+        )],
+    }
+}

@@ -1,0 +1,156 @@
+//! Many scenarios, one world a thread, results in the order given.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use super::Record;
+use super::needs::{self, STACK};
+use super::simulate::{Run, simulate_within};
+use crate::error::{Error, LimitError};
+use crate::limits::Cancel;
+use crate::limits::memory::Budget;
+use crate::scenario::Scenario;
+
+/// Whether a batch goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Go on.
+    Continue,
+    /// Finish no further run.
+    Stop,
+}
+
+/// What a run came to; `None` if it was not finished.
+type Slot = Option<Result<Run, Error>>;
+
+/// What the threads of a batch share.
+struct Work {
+    scenarios: Arc<[Scenario]>,
+    record: Record,
+    budget: Budget,
+    next: AtomicUsize,
+    done: AtomicUsize,
+    /// Threads that have ended.
+    ended: AtomicUsize,
+    cancel: Cancel,
+    slots: Vec<Mutex<Slot>>,
+}
+
+/// Simulates every scenario on `threads` threads.
+///
+/// While they run, the calling thread asks `watch(done)` about 50 times a second whether to go on. If not, it
+/// returns at once; threads that are within a step, or build something, end soon after. A run that was not
+/// finished is `None`. Whatever one run does, a panic included, the others are not affected. The results do
+/// not depend on the number of threads.
+///
+/// # Errors
+/// The batch needs more memory than it may have; nothing has been run.
+pub fn simulate_many(
+    scenarios: impl Into<Arc<[Scenario]>>,
+    threads: usize,
+    record: Record,
+    mut watch: impl FnMut(usize) -> Progress,
+) -> Result<Vec<Slot>, LimitError> {
+    const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+
+    let scenarios = scenarios.into();
+    let threads = threads.clamp(1, scenarios.len().max(1));
+    let budget = needs::of_batch(&scenarios, record, threads)?;
+    let work = Arc::new(Work {
+        next: AtomicUsize::new(0),
+        done: AtomicUsize::new(0),
+        ended: AtomicUsize::new(0),
+        cancel: Cancel::default(),
+        slots: scenarios.iter().map(|_| Mutex::new(None)).collect(),
+        scenarios,
+        record,
+        budget,
+    });
+    let started = start(&work, threads);
+    if started == 0 {
+        work.run_all();
+    }
+    while work.ended.load(Ordering::Acquire) < started {
+        if watch(work.done.load(Ordering::Acquire)) == Progress::Stop {
+            work.cancel.ask();
+            break;
+        }
+        std::thread::park_timeout(BETWEEN_LOOKS);
+    }
+    watch(work.done.load(Ordering::Acquire));
+    let taken = work.slots.iter().map(|slot| {
+        let slot = slot.lock();
+        slot.map_or(None, |mut slot| slot.take())
+    });
+    Ok(taken.collect())
+}
+
+/// Starts as many threads as the system gives, and says how many; none does no harm, for the calling thread can
+/// work, too.
+fn start(work: &Arc<Work>, threads: usize) -> usize {
+    let caller = std::thread::current();
+    let spawn = |_| {
+        let (work, caller) = (Arc::clone(work), caller.clone());
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        thread
+            .spawn(move || {
+                work.run_all();
+                work.ended.fetch_add(1, Ordering::Release);
+                caller.unpark();
+            })
+            .ok()
+    };
+    (0..threads).map_while(spawn).count()
+}
+
+impl Work {
+    /// Takes one scenario after the other, until none is left.
+    fn run_all(&self) {
+        while !self.cancel.is_asked() {
+            let i = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(scenario) = self.scenarios.get(i) else {
+                break;
+            };
+            let result =
+                caught(|| simulate_within(scenario, self.record, (&self.budget, &self.cancel)));
+            if !matches!(result, Err(Error::Interrupted)) {
+                if let Ok(mut slot) = self.slots[i].lock() {
+                    *slot = Some(result);
+                }
+                self.done.fetch_add(1, Ordering::Release);
+            }
+        }
+    }
+}
+
+/// Turns a panic into an error: it is a fault of the program, and takes no more than its own run.
+///
+/// # Errors
+/// Those of the call, and [`Error::Internal`] with the text of a panic.
+pub fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        let text = text.unwrap_or("unknown panic");
+        Err(Error::Internal(format!(
+            "the core failed: {text}; please report this with the scenario"
+        )))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_with_its_text() {
+        let failed: Result<(), Error> = caught(|| panic!("wheel {} came off", 3));
+        let Err(Error::Internal(message)) = failed else {
+            panic!("{failed:?}")
+        };
+        assert!(message.contains("wheel 3 came off"), "{message}");
+        assert!(caught(|| Ok(1)).is_ok_and(|one| one == 1));
+    }
+}

@@ -1,0 +1,165 @@
+//! One scenario to its end.
+
+use std::time::Instant;
+
+use super::trace::{ContactTable, Record, Recorder, Trace};
+use super::{Metrics, Simulation, needs};
+use crate::diagnosis::{Counterfactual, Diagnosis};
+use crate::error::Error;
+use crate::limits::Cancel;
+use crate::limits::memory::Budget;
+use crate::observe::{Event, Outcome};
+use crate::scenario::Scenario;
+use crate::terrain::Edge;
+
+/// What came out of a run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Why it stopped, if that is how it ended.
+    pub diagnosis: Option<Diagnosis>,
+    /// Figures of the whole run.
+    pub metrics: Metrics,
+    /// History, if recorded.
+    pub trace: Trace,
+    /// Contacts, if recorded.
+    pub contacts: ContactTable,
+    /// Corners of the ground.
+    pub edges: Vec<Edge>,
+    /// Stops and intrusions.
+    pub events: Vec<Event>,
+    /// Number of drives.
+    pub drives: usize,
+    /// Number of shoes of all chains.
+    pub shoes: usize,
+    /// Number of ends with flippers.
+    pub flippers: usize,
+    /// [s] Computing time; kept apart from the metrics, which repeat bit by bit.
+    pub wall_time: f64,
+}
+
+/// Simulates a scenario to its end.
+///
+/// # Errors
+/// [`Error::Scenario`] and [`Error::Limit`] before anything runs, [`Error::Simulation`] if the state became
+/// non-finite, [`Error::Limit`] if more was recorded than memory holds.
+pub fn simulate(scenario: &Scenario, record: Record) -> Result<Run, Error> {
+    let budget = needs::of_batch(std::slice::from_ref(scenario), record, 1)?;
+    simulate_within(scenario, record, (&budget, &Cancel::default()))
+}
+
+/// The same within a budget of memory, ending early with [`Error::Interrupted`] once asked to.
+pub(crate) fn simulate_within(
+    scenario: &Scenario,
+    record: Record,
+    limits: Limits,
+) -> Result<Run, Error> {
+    let begin = Instant::now();
+    let mut simulation = Simulation::new(scenario)?;
+    advance(
+        &mut simulation,
+        scenario.step_count(),
+        record,
+        limits,
+        begin,
+    )
+}
+
+/// Simulates `scenario` up to the time `at` [s], then goes on as `variant`, for its whole duration.
+///
+/// # Errors
+/// As [`simulate`], for both, and [`Error::Interrupted`] once `cancel` is asked.
+pub fn branch(
+    scenario: &Scenario,
+    at: f64,
+    variant: &Scenario,
+    record: Record,
+    cancel: &Cancel,
+) -> Result<Run, Error> {
+    let begin = Instant::now();
+    let budget = needs::of_batch(std::slice::from_ref(variant), record, 1)?;
+    let trunk = replay(scenario, at, cancel)?;
+    let mut simulation = trunk.branch(variant)?;
+    let last = simulation.steps() + variant.step_count();
+    advance(&mut simulation, last, record, (&budget, cancel), begin)
+}
+
+/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
+///
+/// # Errors
+/// As [`simulate`], [`Error::Scenario`] if the track has no grousers and the belt is to have some, and
+/// [`Error::Interrupted`] once `cancel` is asked.
+pub fn counterfactual(
+    scenario: &Scenario,
+    at: f64,
+    grousers: bool,
+    cancel: &Cancel,
+) -> Result<Counterfactual, Error> {
+    let simulation = replay(scenario, at, cancel)?;
+    if grousers {
+        simulation.counterfactual_with_grousers(cancel)
+    } else {
+        simulation.counterfactual(cancel)
+    }
+}
+
+/// The simulation of a scenario at a time [s].
+fn replay(scenario: &Scenario, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
+    let mut simulation = Simulation::new(scenario)?;
+    let steps = (at / simulation.time_step()).round() as u64;
+    while simulation.steps() < steps {
+        simulation.step()?;
+        cancel.check()?;
+    }
+    Ok(simulation)
+}
+
+/// What a run may take: memory, and time until it is asked to end.
+type Limits<'a> = (&'a Budget, &'a Cancel);
+
+/// Simulates on to the step `last` or a certain outcome.
+fn advance(
+    simulation: &mut Simulation,
+    last: u64,
+    record: Record,
+    (budget, cancel): Limits,
+    begin: Instant,
+) -> Result<Run, Error> {
+    let start = simulation.reading();
+    let recorder = record
+        .history
+        .then(|| Recorder::new(simulation, record, budget));
+    let mut recorder = recorder.transpose()?;
+    while simulation.steps() < last && !simulation.is_over() {
+        simulation.step()?;
+        if let Some(recorder) = &mut recorder {
+            recorder.step(simulation)?;
+        }
+        cancel.check()?;
+    }
+    let recorded = recorder.map(|recorder| recorder.finish(simulation));
+    let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
+    let events = simulation.events();
+    let mut diagnosis = simulation.diagnosis();
+    if let Some(diagnosis) = diagnosis.as_mut().filter(|_| record.counterfactual) {
+        diagnosis.counterfactual = Some(simulation.counterfactual(cancel)?);
+    }
+    let outcome = diagnosis
+        .as_ref()
+        .map_or_else(|| simulation.outcome_now(), |d| d.outcome);
+    let metrics = Metrics::of(simulation, &start, &events);
+    Ok(Run {
+        outcome,
+        diagnosis,
+        metrics,
+        trace,
+        contacts,
+        edges: simulation.ground().edges(),
+        events,
+        drives: simulation.drives(),
+        shoes: simulation.shoes().len(),
+        flippers: simulation.flipper_angles().count(),
+        wall_time: begin.elapsed().as_secs_f64(),
+    })
+}

@@ -1,0 +1,127 @@
+//! What is commanded: by the schedule, by a gait, or by hand.
+
+use super::Simulation;
+use super::drive;
+use super::gait::Sight;
+use crate::error::Error;
+use crate::geometry::{Vector, direction};
+use crate::robot::Mount;
+use crate::scenario::{Drive, End, Flippers, ScenarioError};
+
+impl Simulation {
+    pub(super) fn command(&mut self) {
+        let (drive, time) = (&self.scenario.drive, self.step as f64 * self.time_step());
+        if let Some(speed) = self.driver.speed(drive, time) {
+            self.command = speed;
+        }
+        if let Some(flippers) = &self.scenario.robot.flippers {
+            let sight = Sight {
+                time,
+                chassis_angle: self.state.angle,
+                angle_ahead: self.state.moved(self.time_step()).1,
+                touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
+            };
+            let angles = self.driver.angles(drive, flippers.angle, sight);
+            self.dynamics.command_flippers(&self.state, angles);
+        }
+        let limits = &self.scenario.robot.drivetrain;
+        self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
+    }
+
+    /// Whether the flipper at an end bears on something beyond its root.
+    fn flipper_touches(&self, end: End) -> bool {
+        let model = self.dynamics.model();
+        let Some(k) = model.flippers.iter().position(|f| f.end == end) else {
+            return false;
+        };
+        let flipper = &model.flippers[k];
+        let pivot = self.state.pose(model).transform_point(flipper.pivot);
+        let along = end.sign() * direction(self.state.flippers[k].angle);
+        self.loaded().iter().any(|l| {
+            let beyond = (l.contact.point - pivot).dot(along) > flipper.root_radius;
+            let mount = model.parts[l.contact.part].mount;
+            beyond && l.normal_force > 0.0 && mount == Mount::Flipper(k)
+        })
+    }
+
+    /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the speed is beyond the drivetrain's.
+    pub fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
+        let drive = Drive {
+            speed,
+            schedule: None,
+            gait: None,
+        };
+        drive.check(&self.scenario.robot.drivetrain)?;
+        self.command = speed;
+        Ok(())
+    }
+
+    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on; they
+    /// follow within their limits, whatever the gait.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if there are none there, or the angle is not finite or beyond a full turn.
+    pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
+        let path = match end {
+            End::Front => "flipper_angle",
+            End::Rear => "rear_flipper_angle",
+        };
+        let mut ends = self.scenario.robot.flippers.iter().flat_map(Flippers::ends);
+        if !ends.any(|has| has == end) {
+            let rule = "must not be given: the robot has no flippers there";
+            return Err(ScenarioError::new(path, angle, rule).into());
+        }
+        if !(-6.3..=6.3).contains(&angle) {
+            let rule = "must be >= -6.3 rad and <= 6.3 rad";
+            return Err(ScenarioError::new(path, angle, rule).into());
+        }
+        self.driver.hold(usize::from(end == End::Rear), angle);
+        Ok(())
+    }
+
+    /// Gives commands of all kinds at once: all or, if one is refused, none.
+    ///
+    /// # Errors
+    /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
+    pub fn command_all(
+        &mut self,
+        speed: Option<f64>,
+        flipper_angles: [(End, Option<f64>); 2],
+        push: Option<f64>,
+    ) -> Result<(), Error> {
+        let before = (self.command, self.driver, self.dynamics.outer_force);
+        let mut give = || {
+            push.map_or(Ok(()), |push| self.set_push(push))?;
+            for (end, angle) in flipper_angles {
+                angle.map_or(Ok(()), |angle| self.set_flipper_angle(end, angle))?;
+            }
+            speed.map_or(Ok(()), |speed| self.set_speed(speed))
+        };
+        let given = give();
+        if given.is_err() {
+            (self.command, self.driver, self.dynamics.outer_force) = before;
+        }
+        given
+    }
+
+    /// [N] The push at the centre of mass, along x.
+    pub fn push(&self) -> f64 {
+        self.dynamics.outer_force.x
+    }
+
+    /// Pushes at the centre of mass with a force [N] along x, from now on.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the force is not finite or beyond 1e6 N.
+    pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
+        if !(-1e6..=1e6).contains(&force) {
+            let rule = "must be >= -1e6 N and <= 1e6 N";
+            return Err(ScenarioError::new("push", force, rule).into());
+        }
+        self.dynamics.outer_force = Vector::new(force, 0.0);
+        Ok(())
+    }
+}

@@ -1,0 +1,146 @@
+//! A simulation as bytes, and back: built anew from its scenario, then given its state.
+
+#[cfg(test)]
+mod tests;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::Simulation;
+use super::gait::Driver;
+use crate::BUILD_ID;
+use crate::contact::Dents;
+use crate::dynamics::{Impulses, State};
+use crate::error::Error;
+use crate::observe::Seen;
+use crate::scenario::{Scenario, ScenarioError};
+
+/// First bytes of every snapshot; the number is the version of the layout around the state.
+const MAGIC: &[u8] = b"crawler2d snapshot 1\n";
+/// Bytes of the digest at the end.
+const DIGEST: usize = 32;
+
+/// What a snapshot holds.
+#[derive(Serialize, Deserialize)]
+struct Image {
+    /// The layout of the rest is that of this build.
+    build: String,
+    rest: Vec<u8>,
+}
+
+/// All that changes from step to step.
+#[derive(Serialize, Deserialize)]
+struct Moment {
+    scenario: String,
+    step: u64,
+    command: f64,
+    driver: Driver,
+    set_point: f64,
+    push: f64,
+    state: State,
+    impulses: Impulses,
+    dents: Dents,
+    seen: Seen,
+}
+
+impl Simulation {
+    /// Everything that the future depends on, as bytes.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let moment = Moment {
+            scenario: self.scenario.to_json(),
+            step: self.step,
+            command: self.command,
+            driver: self.driver,
+            set_point: self.set_point,
+            push: self.push(),
+            state: self.state.clone(),
+            impulses: self.dynamics.impulses(),
+            dents: self.dents.clone(),
+            seen: self.monitor.seen.clone(),
+        };
+        let image = Image {
+            build: BUILD_ID.to_owned(),
+            rest: bytes(&moment),
+        };
+        let mut snapshot = MAGIC.to_vec();
+        snapshot.extend(bytes(&image));
+        let digest = Sha256::digest(&snapshot);
+        snapshot.extend_from_slice(&digest);
+        snapshot
+    }
+
+    /// The simulation of a snapshot; it goes on with the same bits.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] at `snapshot` if the bytes are no snapshot, damaged, or another build's.
+    pub fn from_snapshot(snapshot: &[u8]) -> Result<Self, Error> {
+        let Some(body) = snapshot.strip_prefix(MAGIC) else {
+            return Err(refused(
+                "bytes without its head",
+                "must be a snapshot of crawler2d",
+            ));
+        };
+        let damaged = || refused("damaged bytes", "must be whole and unchanged");
+        let length = body.len().checked_sub(DIGEST).ok_or_else(damaged)?;
+        let (body, digest) = body.split_at(length);
+        if Sha256::digest(&snapshot[..MAGIC.len() + length])[..] != *digest {
+            return Err(damaged());
+        }
+        let image: Image = postcard::from_bytes(body).map_err(|_| damaged())?;
+        if image.build != BUILD_ID {
+            let rule = format!("must be of this build, {BUILD_ID}: its layout is another");
+            return Err(refused(&format!("one of build {}", image.build), &rule));
+        }
+        let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
+        let scenario = Scenario::from_json(&moment.scenario)?;
+        let mut simulation = Self::new(&scenario)?;
+        if !simulation.fits(&moment) {
+            let rule = "must hold what its own robot and ground can have come to";
+            return Err(refused("contents of another", rule));
+        }
+        simulation.step = moment.step;
+        simulation.command = moment.command;
+        simulation.driver = moment.driver;
+        simulation.set_point = moment.set_point;
+        simulation.set_push(moment.push)?;
+        simulation.state = moment.state;
+        simulation.dynamics.start_from(moment.impulses);
+        simulation.dents = moment.dents;
+        simulation.monitor.seen = moment.seen;
+        Ok(simulation)
+    }
+}
+
+impl Simulation {
+    /// Whether it can have come to a moment: a snapshot may be a stranger's.
+    fn fits(&self, moment: &Moment) -> bool {
+        /// Steps of more than a day.
+        const MOST_STEPS: u64 = 1 << 40;
+        /// [m] Beyond the ground, and above it; what falls may be anywhere below.
+        const FAR: f64 = 1e6;
+
+        let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);
+        let time = moment.step as f64 * self.time_step();
+        let (low, high) = self.ground.extent();
+        let (x, y) = (moment.state.center.x, moment.state.center.y);
+        let fastest = self.scenario.robot.drivetrain.max_speed;
+        moment.step <= MOST_STEPS
+            && (low - FAR..=high + FAR).contains(&x)
+            && y < FAR + self.ground.highest()
+            && moment.command.abs() <= fastest
+            && moment.set_point.abs() <= fastest
+            && moment.driver.fits(&self.scenario.drive)
+            && moment.state.fits(model)
+            && self.dynamics.fits(&moment.impulses, lanes)
+            && moment.dents.fits(model.parts.len())
+            && moment.seen.fits(time, model, lanes)
+    }
+}
+
+fn bytes(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
+}
+
+fn refused(value: &str, rule: &str) -> Error {
+    ScenarioError::new("snapshot", value, rule).into()
+}

@@ -1,0 +1,173 @@
+//! A snapshot forgets nothing, and each thing that it holds decides what comes next.
+
+mod fits;
+
+use super::*;
+use crate::geometry::Vector;
+use crate::scenario::{BeltTrack, End, Ends, Flippers, LineOfWheels, Terrain, Track, Wheel};
+
+/// The Engineer with arms at its front on three wheels before a post, and an instant later.
+fn on_wheels() -> Simulation {
+    let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    scenario.robot.track = Track::Line(LineOfWheels {
+        count: 3,
+        wheel_radius: None,
+        wheel: Wheel::Round,
+    });
+    scenario.robot.flippers = Some(Flippers {
+        length: 0.34,
+        root_radius: 0.064,
+        tip_radius: 0.037,
+        mass: 0.775,
+        ends: Ends::Front,
+        angle: 0.6,
+        rate_limit: 1.0,
+        torque_limit: 30.0,
+        track: None,
+    });
+    scenario.terrain = Terrain::Barrier {
+        height: 0.03,
+        thickness: 0.01,
+        edge_radius: 0.0,
+        friction: 0.9,
+    };
+    let mut simulation = Simulation::new(&scenario).expect("the scenario is valid");
+    // The post is now in the gap between the middle wheel and the front one.
+    let x = simulation.reading().position.x;
+    simulation.state.center.x -= x + 0.085;
+    advance(&mut simulation);
+    simulation
+}
+
+/// Everything that a snapshot holds is other than at the beginning of its scenario.
+fn busy() -> Simulation {
+    let wheels = on_wheels();
+    let mut variant = wheels.scenario().clone();
+    variant.robot.track = Track::Belt(BeltTrack {});
+    let mut belt = wheels.branch(&variant).expect("the variant is valid");
+    // Backwards, so that at once it makes a difference.
+    belt.set_speed(-0.3).expect("within the drivetrain's");
+    belt.set_push(20.0).expect("within the limits");
+    let arms = belt.set_flipper_angle(End::Front, 0.2);
+    arms.expect("it has arms there");
+    advance(&mut belt);
+    belt
+}
+
+fn advance(simulation: &mut Simulation) {
+    for _ in 0..20 {
+        simulation.step().expect("the state stays finite");
+    }
+}
+
+/// The bits of what a user sees of the next steps.
+fn future(mut simulation: Simulation) -> Vec<[u64; 7]> {
+    let mut look = || {
+        simulation.step().expect("the state stays finite");
+        let now = simulation.reading();
+        let seen = &simulation.monitor.seen;
+        let path = seen.path_length;
+        let Vector { x, y } = now.position;
+        let angles: f64 = simulation.flipper_angles().sum();
+        [
+            now.time,
+            x,
+            y,
+            now.chassis_angle,
+            now.track_speed,
+            angles,
+            path,
+        ]
+        .map(f64::to_bits)
+    };
+    (0..20).map(|_| look()).collect()
+}
+
+#[test]
+fn a_simulation_goes_on_from_its_snapshot_with_the_same_bits() {
+    let whole = busy();
+    let snapshot = whole.snapshot();
+    let copy = Simulation::from_snapshot(&snapshot).expect("it was just made");
+    assert!(copy.snapshot() == snapshot);
+    assert_eq!(future(copy), future(whole));
+}
+
+#[test]
+fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
+    type Forget = fn(&mut Simulation, Simulation);
+    let all: [(&str, Forget); 9] = [
+        ("step", |s, fresh| s.step = fresh.step),
+        ("command", |s, fresh| s.command = fresh.command),
+        ("driver", |s, fresh| s.driver = fresh.driver),
+        ("set point", |s, fresh| s.set_point = fresh.set_point),
+        ("push", |s, fresh| {
+            s.dynamics.outer_force = fresh.dynamics.outer_force;
+        }),
+        ("state", |s, fresh| s.state = fresh.state),
+        ("impulses", |s, fresh| {
+            s.dynamics.start_from(fresh.dynamics.impulses());
+        }),
+        ("dents", |s, fresh| s.dents = fresh.dents),
+        ("what was seen", |s, fresh| {
+            s.monitor.seen = fresh.monitor.seen;
+        }),
+    ];
+    let whole = busy();
+    let snapshot = whole.snapshot();
+    let expected = future(whole);
+    for (what, forget) in all {
+        let mut copy = Simulation::from_snapshot(&snapshot).expect("it was just made");
+        let fresh = Simulation::new(copy.scenario()).expect("the scenario is valid");
+        forget(&mut copy, fresh);
+        assert!(copy.snapshot() != snapshot, "no {what} in it");
+        assert!(future(copy) != expected, "without its {what}");
+    }
+}
+
+/// Why bytes are refused.
+fn refusal(bytes: &[u8]) -> String {
+    match Simulation::from_snapshot(bytes) {
+        Err(Error::Scenario(e)) => {
+            assert_eq!(e.path, "snapshot");
+            format!("{} {}", e.value, e.rule)
+        }
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("they were taken"),
+    }
+}
+
+/// A snapshot whose head and digest are right.
+fn sealed(image: &Image) -> Vec<u8> {
+    let mut snapshot = MAGIC.to_vec();
+    snapshot.extend(bytes(image));
+    let digest = Sha256::digest(&snapshot);
+    snapshot.extend_from_slice(&digest);
+    snapshot
+}
+
+#[test]
+fn bytes_that_are_no_whole_snapshot_are_refused() {
+    let snapshot = on_wheels().snapshot();
+    assert!(refusal(b"").contains("must be a snapshot of crawler2d"));
+    assert!(refusal(&snapshot[1..]).contains("must be a snapshot of crawler2d"));
+    for length in [MAGIC.len(), MAGIC.len() + DIGEST, snapshot.len() - 1] {
+        assert!(refusal(&snapshot[..length]).contains("must be whole and unchanged"));
+    }
+    for place in [MAGIC.len(), snapshot.len() / 2, snapshot.len() - 1] {
+        let mut changed = snapshot.clone();
+        changed[place] ^= 1;
+        assert!(refusal(&changed).contains("must be whole and unchanged"));
+    }
+}
+
+#[test]
+fn a_snapshot_of_another_build_is_refused() {
+    let image = Image {
+        build: "another".to_owned(),
+        rest: Vec::new(),
+    };
+    let refusal = refusal(&sealed(&image));
+    assert!(refusal.contains("one of build another"), "{refusal}");
+    assert!(refusal.contains(BUILD_ID), "{refusal}");
+}

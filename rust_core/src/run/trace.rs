@@ -1,0 +1,374 @@
+//! The history of a run as columns.
+
+use std::collections::TryReserveError;
+
+use super::Simulation;
+use crate::error::LimitError;
+use crate::limits::memory::{Budget, Rows, reserve};
+use crate::observe::Readings;
+use crate::robot::Model;
+use crate::scenario::Scenario;
+
+/// What to keep of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// [s] Time between two samples, rounded to whole steps.
+    pub sample_interval: f64,
+    /// Keep the trace and the contact table; without it only outcome, metrics and events.
+    pub history: bool,
+    /// Try a closed belt at the stop that a run ends in.
+    pub counterfactual: bool,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            sample_interval: 0.01,
+            history: true,
+            counterfactual: false,
+        }
+    }
+}
+
+impl Record {
+    /// Only outcome, metrics and events.
+    pub fn summary() -> Self {
+        Self {
+            history: false,
+            ..Self::default()
+        }
+    }
+
+    /// Steps of the time step `dt` [s] between two samples.
+    fn steps_a_sample(&self, dt: f64) -> u64 {
+        (self.sample_interval / dt).round().max(1.0) as u64
+    }
+
+    /// Samples of a run that lasts as long as it may.
+    pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
+        scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
+    }
+}
+
+/// What a robot has that is recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    pub parts: usize,
+    drives: usize,
+    shoes: usize,
+    flippers: usize,
+}
+
+impl Columns {
+    /// Bytes of a row of the contact table.
+    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
+
+    pub(crate) fn of(model: &Model) -> Self {
+        Self {
+            parts: model.parts.len(),
+            drives: model.drives,
+            shoes: model.shoes(),
+            flippers: model.flippers.len(),
+        }
+    }
+
+    /// Bytes of a sample without its contacts.
+    pub(crate) fn bytes(self) -> u64 {
+        let entries: usize = Trace::default()
+            .columns(self)
+            .iter()
+            .map(|(_, entries)| entries)
+            .sum();
+        8 * entries as u64
+    }
+}
+
+/// Samples of the state; every column has one entry a sample (two a sample for x, y pairs).
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// [s] End of the step.
+    pub time: Vec<f64>,
+    /// [m] Origin of the chassis frame, x and y.
+    pub position: Vec<f64>,
+    /// [m/s] Velocity of that point, x and y.
+    pub velocity: Vec<f64>,
+    /// [rad] Nose up > 0.
+    pub chassis_angle: Vec<f64>,
+    /// [rad/s] Its rate.
+    pub angular_velocity: Vec<f64>,
+    /// [m/s] Set-point of the drivetrain.
+    pub commanded_speed: Vec<f64>,
+    /// [m/s] Surface speed, the mean of the drives.
+    pub track_speed: Vec<f64>,
+    /// [m] How far the surface has run, the mean of the drives.
+    pub track_position: Vec<f64>,
+    /// 1 - v / track speed; 0 where the track stands.
+    pub slip_ratio: Vec<f64>,
+    /// [N] Force of the ground on the robot along its driven surfaces, mean over the interval.
+    pub tractive_effort: Vec<f64>,
+    /// [N] Force of all motors at the surface, mean over the interval.
+    pub drive_force: Vec<f64>,
+    /// [m/s] Surface speed of each drive.
+    pub drive_speeds: Vec<f64>,
+    /// [m] How far the surface of each drive has run.
+    pub drive_positions: Vec<f64>,
+    /// [N] Force of each motor, mean over the interval.
+    pub drive_forces: Vec<f64>,
+    /// [N] Largest force in a pin of a chain; 0 without chains.
+    pub track_tension: Vec<f64>,
+    /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
+    pub shoe_poses: Vec<f64>,
+    /// [rad] Angle of the flippers at each end over the chassis, upwards > 0.
+    pub flipper_angles: Vec<f64>,
+    /// [N m] Torque of their motors, mean over the last step.
+    pub flipper_torques: Vec<f64>,
+}
+
+impl Trace {
+    /// Every column, with its entries a sample.
+    fn columns(&mut self, robot: Columns) -> [(&mut Vec<f64>, usize); 18] {
+        let Columns {
+            drives,
+            shoes,
+            flippers,
+            ..
+        } = robot;
+        [
+            (&mut self.time, 1),
+            (&mut self.position, 2),
+            (&mut self.velocity, 2),
+            (&mut self.chassis_angle, 1),
+            (&mut self.angular_velocity, 1),
+            (&mut self.commanded_speed, 1),
+            (&mut self.track_speed, 1),
+            (&mut self.track_position, 1),
+            (&mut self.slip_ratio, 1),
+            (&mut self.tractive_effort, 1),
+            (&mut self.drive_force, 1),
+            (&mut self.drive_speeds, drives),
+            (&mut self.drive_positions, drives),
+            (&mut self.drive_forces, drives),
+            (&mut self.track_tension, 1),
+            (&mut self.shoe_poses, 3 * shoes),
+            (&mut self.flipper_angles, flippers),
+            (&mut self.flipper_torques, flippers),
+        ]
+    }
+}
+
+/// Contacts of all samples.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)] // the columns are described in docs/conventions.md
+pub struct ContactTable {
+    pub time: Vec<f64>,
+    pub lane: Vec<i64>,
+    pub body: Vec<i64>,
+    pub body_kind: Vec<i64>,
+    pub segment: Vec<i64>,
+    pub edge: Vec<i64>,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub normal_x: Vec<f64>,
+    pub normal_y: Vec<f64>,
+    pub normal_force: Vec<f64>,
+    pub friction_force: Vec<f64>,
+    pub surface_speed: Vec<f64>,
+    pub penetration: Vec<f64>,
+}
+
+impl Simulation {
+    /// Contacts of the last step.
+    pub fn contact_table(&self) -> ContactTable {
+        let mut readings = Readings::default();
+        readings.add(self.loaded());
+        let mut table = ContactTable::default();
+        table.append(self, &mut readings);
+        table
+    }
+}
+
+impl ContactTable {
+    /// Every column.
+    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 5]) {
+        let numbers = [
+            &mut self.time,
+            &mut self.x,
+            &mut self.y,
+            &mut self.normal_x,
+            &mut self.normal_y,
+            &mut self.normal_force,
+            &mut self.friction_force,
+            &mut self.surface_speed,
+            &mut self.penetration,
+        ];
+        let codes = [
+            &mut self.lane,
+            &mut self.body,
+            &mut self.body_kind,
+            &mut self.segment,
+            &mut self.edge,
+        ];
+        (numbers, codes)
+    }
+
+    /// Room in every column for so many rows in all.
+    fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
+        codes.into_iter().try_for_each(|c| reserve(c, rows))
+    }
+
+    /// Gives back the room that no row takes.
+    fn shrink(&mut self) {
+        let (numbers, codes) = self.columns();
+        numbers.into_iter().for_each(Vec::shrink_to_fit);
+        codes.into_iter().for_each(Vec::shrink_to_fit);
+    }
+
+    /// Writes the readings of an interval that ends now.
+    pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
+        for r in readings.drain() {
+            self.time.push(simulation.time());
+            self.lane.push(simulation.side(r.contact.part) as i64);
+            self.body.push(r.contact.part as i64);
+            self.body_kind
+                .push(simulation.part_kind(r.contact.part) as i64);
+            self.segment.push(r.contact.facet as i64);
+            self.edge.push(i64::from(r.contact.edge));
+            self.x.push(r.contact.point.x);
+            self.y.push(r.contact.point.y);
+            self.normal_x.push(r.contact.normal.x);
+            self.normal_y.push(r.contact.normal.y);
+            self.normal_force.push(r.normal_force);
+            self.friction_force.push(r.friction_force);
+            self.surface_speed.push(r.surface_speed);
+            self.penetration.push((-r.contact.distance).max(0.0));
+        }
+    }
+}
+
+/// Collects samples while a run goes on.
+pub(crate) struct Recorder<'a> {
+    every: u64,
+    steps: u64,
+    readings: Readings,
+    forces: Vec<f64>,
+    traction: f64,
+    columns: Columns,
+    trace: Trace,
+    samples: Rows<'a>,
+    contacts: ContactTable,
+    contact_rows: Rows<'a>,
+}
+
+/// [m/s] Below this the track stands and has no slip.
+const STANDS: f64 = 1e-3;
+
+impl<'a> Recorder<'a> {
+    pub(crate) fn new(
+        simulation: &Simulation,
+        record: Record,
+        budget: &'a Budget,
+    ) -> Result<Self, LimitError> {
+        let columns = simulation.columns();
+        let mut recorder = Self {
+            every: record.steps_a_sample(simulation.time_step()),
+            steps: 0,
+            readings: Readings::default(),
+            forces: vec![0.0; simulation.drives()],
+            traction: 0.0,
+            columns,
+            trace: Trace::default(),
+            samples: Rows::new(budget, columns.bytes()),
+            contacts: ContactTable::default(),
+            contact_rows: Rows::new(budget, Columns::BYTES_A_CONTACT),
+        };
+        recorder.sample(simulation)?;
+        Ok(recorder)
+    }
+
+    /// Takes in one step and writes a sample at the end of each interval.
+    pub(crate) fn step(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
+        self.steps += 1;
+        self.readings.add(simulation.loaded());
+        for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
+            *sum += drive.force;
+            self.traction += drive.traction;
+        }
+        if self.steps.is_multiple_of(self.every) {
+            self.sample(simulation)?;
+        }
+        Ok(())
+    }
+
+    /// What was recorded, with what is left of an interval that the run cut short.
+    pub(crate) fn finish(
+        mut self,
+        simulation: &Simulation,
+    ) -> Result<(Trace, ContactTable), LimitError> {
+        if !self.steps.is_multiple_of(self.every) {
+            self.sample(simulation)?;
+        }
+        for (column, _) in self.trace.columns(self.columns) {
+            column.shrink_to_fit();
+        }
+        self.samples.shrink(self.trace.time.len());
+        self.contacts.shrink();
+        self.contact_rows.shrink(self.contacts.time.len());
+        Ok((self.trace, self.contacts))
+    }
+
+    fn make_room(&mut self) -> Result<(), LimitError> {
+        let (trace, contacts, columns) = (&mut self.trace, &mut self.contacts, self.columns);
+        self.samples.make(trace.time.len() + 1, |room| {
+            let mut all = trace.columns(columns).into_iter();
+            all.try_for_each(|(column, entries)| reserve(column, entries * room))
+        })?;
+        let rows = contacts.time.len() + self.readings.count();
+        self.contact_rows.make(rows, |room| contacts.reserve(room))
+    }
+
+    fn sample(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
+        self.make_room()?;
+        let reading = simulation.reading();
+        let steps = match self.steps % self.every {
+            0 => self.every,
+            cut_short => cut_short,
+        } as f64;
+        let t = &mut self.trace;
+        t.time.push(reading.time);
+        t.position.extend([reading.position.x, reading.position.y]);
+        t.velocity.extend([reading.velocity.x, reading.velocity.y]);
+        t.chassis_angle.push(reading.chassis_angle);
+        t.angular_velocity.push(reading.angular_velocity);
+        t.commanded_speed.push(reading.commanded_speed);
+        t.track_speed.push(reading.track_speed);
+        t.track_position.push(reading.track_position);
+        let forward = reading.forward_speed();
+        let slip = if reading.track_speed.abs() < STANDS {
+            0.0
+        } else {
+            1.0 - forward / reading.track_speed
+        };
+        t.slip_ratio.push(slip);
+        t.tractive_effort.push(self.traction / steps);
+        t.drive_force.push(self.forces.iter().sum::<f64>() / steps);
+        for (k, force) in self.forces.iter_mut().enumerate() {
+            t.drive_speeds.push(simulation.drive_speed(k));
+            t.drive_positions
+                .push(simulation.drive_states()[k].position);
+            t.drive_forces.push(*force / steps);
+            *force = 0.0;
+        }
+        t.track_tension.push(simulation.chain().tension);
+        for shoe in simulation.shoes() {
+            t.shoe_poses
+                .extend([shoe.center.x, shoe.center.y, shoe.angle]);
+        }
+        t.flipper_angles.extend(simulation.flipper_angles());
+        t.flipper_torques.extend(simulation.flipper_torques());
+        self.traction = 0.0;
+        self.contacts.append(simulation, &mut self.readings);
+        Ok(())
+    }
+}
