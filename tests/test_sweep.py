@@ -14,6 +14,7 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
+from crawler2d import batch
 from crawler2d._units import METRICS
 from crawler2d.draws import scaled, uniform, uniform_int
 from crawler2d.scenario import Scenario
@@ -352,14 +353,14 @@ def test_a_sweep_of_refused_cells_alone_has_no_metrics() -> None:
 def diverging(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
     """Let one run of every batch diverge."""
 
-    def simulate_many(scenarios: Any, **options: Any) -> list[c2d.Run]:
-        runs = c2d.simulate_many(scenarios, **options)
+    def simulate_passed(*given: Any, **options: Any) -> list[c2d.Run]:
+        runs = batch.simulate_passed(*given, **options)
         error = c2d.SimulationDiverged("chassis is not finite", step=7, body="chassis")
         runs[index] = c2d.Run(runs[index].scenario, {}, error)
         return runs
 
     # By the table of modules: the package may have a function of that name.
-    monkeypatch.setattr(sys.modules["crawler2d.sweep"], "simulate_many", simulate_many)
+    monkeypatch.setattr(sys.modules["crawler2d.sweep"], "simulate_passed", simulate_passed)
 
 
 def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) -> None:

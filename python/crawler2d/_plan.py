@@ -26,7 +26,17 @@ class Plan:
     scenario: Scenario
     drawn: Mapping[str, float]
     """By path."""
-    refused: ScenarioError | None
+    checked: _core.Passed | ScenarioError
+
+    @property
+    def refused(self) -> ScenarioError | None:
+        """Why it does not run."""
+        return self.checked if isinstance(self.checked, ScenarioError) else None
+
+    @property
+    def identity(self) -> str:
+        """That of its scenario; none if it is refused."""
+        return "" if isinstance(self.checked, ScenarioError) else self.checked.identity
 
 
 def plan_runs(
@@ -40,36 +50,40 @@ def plan_runs(
         If a cell lacks a path; a scenario that breaks a rule is planned as refused.
     """
     streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
-    plans = []
+    plans: list[Plan] = []
+    last: _core.Passed | None = None
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
         cell_place = f"cell[{', '.join(names)}]"
         with _named(cell_place):
             cell = base.replace({path: v for _, values in points for path, v in values.items()})
-        refused = _refusal(cell, cell_place)
+        whole = _checked(cell, cell_place, last)
         for repeat in range(repeats):
             place = f"cell[{', '.join([*names, f'repeat={repeat}'])}]"
-            if refused is not None:
-                plans.append(Plan(place, cell, {}, refused))
+            if isinstance(whole, ScenarioError):
+                plans.append(Plan(place, cell, {}, whole))
                 continue
+            last = whole
             with _named(place):
                 numbers = {path: float(stream[repeat]) for path, stream in streams.items()}
                 drawn = variation.draw(cell, numbers)
                 variant = cell.replace(drawn)
-            broken = _refusal(variant, place)
-            if broken is not None and variation.is_default:
-                drawn, broken = _legal(cell, drawn), None
+            checked = _checked(variant, place, whole)
+            if isinstance(checked, ScenarioError) and variation.is_default:
+                drawn = _legal(cell, drawn, whole)
                 variant = cell.replace(drawn)
-            plans.append(Plan(place, variant, drawn, broken))
+                checked = _checked(variant, place, whole)
+            plans.append(Plan(place, variant, drawn, checked))
     return plans
 
 
-def _legal(cell: Scenario, drawn: Mapping[str, float]) -> dict[str, float]:
+def _legal(cell: Scenario, drawn: Mapping[str, float], whole: _core.Passed) -> dict[str, float]:
     """Leave what breaks a rule at the cell's own value, which breaks none."""
     kept: dict[str, float] = {}
     for path, value in drawn.items():
-        is_legal = _refusal(cell.replace({**kept, path: value}), path) is None
-        kept[path] = value if is_legal else read_path(cell, path)
+        checked = _checked(cell.replace({**kept, path: value}), path, whole)
+        is_broken = isinstance(checked, ScenarioError)
+        kept[path] = read_path(cell, path) if is_broken else value
     return kept
 
 
@@ -82,10 +96,12 @@ def _named(place: str) -> Iterator[None]:
         raise ScenarioError(f"{place}.{error.path}", error.value, error.rule) from None
 
 
-def _refusal(scenario: Scenario, place: str) -> ScenarioError | None:
+def _checked(
+    scenario: Scenario, place: str, like: _core.Passed | None
+) -> _core.Passed | ScenarioError:
+    """Open the door, or say why not; doubts are told once, by what runs the batch."""
     try:
         with _named(place):
-            _core.canonical(scenario.to_json())  # doubts are told once, by what runs the batch
+            return _core.Passed(scenario.to_json(), like)
     except ScenarioError as error:
         return error
-    return None

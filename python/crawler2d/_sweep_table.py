@@ -74,9 +74,9 @@ def to_table(
     # Python's texts: in an array of texts each would take the room of the longest.
     errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
     variables["error"] = by_run([str(error) for error in errors], object)
-    valid = [None if plan.refused else plan.scenario for plan in plans]
-    variables["identity"] = by_run([s.identity if s else "" for s in valid], object)
-    variables["scenario"] = by_run([s.to_json() if s else "" for s in valid], object)
+    texts = ["" if plan.refused else plan.scenario.to_json() for plan in plans]
+    variables["identity"] = by_run([plan.identity for plan in plans], object)
+    variables["scenario"] = by_run(texts, object)
     dataset: xarray.Dataset = xr.Dataset(
         variables, coords={**coordinates(axes), "repeat": np.arange(repeats)}
     )

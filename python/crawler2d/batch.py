@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from crawler2d import _core
@@ -21,7 +21,7 @@ from crawler2d.run import Run
 from crawler2d.scenario import Scenario
 from crawler2d.terrain import Terrain
 
-__all__ = ["simulate", "simulate_many"]
+__all__ = ["simulate", "simulate_many", "simulate_passed"]
 
 
 def simulate(
@@ -141,21 +141,34 @@ def simulate_many(
     recorded = (*recording(sample_interval, record), asked)
     count = thread_count(threads)
     batch = list(scenarios)
-    checked = [_checked(scenario, index) for index, scenario in enumerate(batch)]
+    checked = _checked(batch)
     if on_error == "raise":
         _raise_first(checked)
-    texts = [text for text in checked if isinstance(text, str)]
-    with reporter(progress, len(texts)) as callback:
-        results, interrupted = _core.simulate_many(texts, count, *recorded, callback)
+    runs = simulate_passed(batch, checked, recorded, threads=count, progress=progress)
+    if on_error == "raise":
+        _raise_first([run.error for run in runs])
+    return runs
+
+
+def simulate_passed(
+    scenarios: Sequence[Scenario],
+    checked: Sequence[_core.Passed | ScenarioError],
+    recorded: tuple[float, str, bool],
+    *,
+    threads: int,
+    progress: bool | Progress | None,
+) -> list[Run]:
+    """Run what has passed the door; what was refused is a run with its error."""
+    passed = [scenario for scenario in checked if isinstance(scenario, _core.Passed)]
+    with reporter(progress, len(passed)) as callback:
+        results, interrupted = _core.simulate_many(passed, threads, *recorded, callback)
     rest = iter(results)
     runs = [
-        _run(scenario, next(rest) if isinstance(text, str) else text)
-        for scenario, text in zip(batch, checked, strict=True)
+        _run(scenario, next(rest) if isinstance(outcome, _core.Passed) else outcome)
+        for scenario, outcome in zip(scenarios, checked, strict=True)
     ]
     if interrupted:
         raise BatchInterrupted(runs)
-    if on_error == "raise":
-        _raise_first([run.error for run in runs])
     return runs
 
 
@@ -169,15 +182,20 @@ def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
     return Scenario(scenario, terrain)
 
 
-def _checked(scenario: Scenario, index: int) -> str | ScenarioError:
-    """Return the JSON of a valid scenario, or why it is not valid."""
-    place = f"scenarios[{index}]"
-    if not isinstance(scenario, Scenario):
-        raise ScenarioError(place, scenario, "must be a Scenario")  # nothing a Run could hold
-    try:
-        return _core.canonical(scenario.to_json())
-    except ScenarioError as error:
-        return ScenarioError(f"{place}.{error.path}", error.value, error.rule)
+def _checked(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
+    """Open the door to each scenario; of those that are refused, say why."""
+    results: list[_core.Passed | ScenarioError] = []
+    last = None
+    for index, scenario in enumerate(batch):
+        place = f"scenarios[{index}]"
+        if not isinstance(scenario, Scenario):
+            raise ScenarioError(place, scenario, "must be a Scenario")  # nothing a Run could hold
+        try:
+            last = _core.Passed(scenario.to_json(), last)
+            results.append(last)
+        except ScenarioError as error:
+            results.append(ScenarioError(f"{place}.{error.path}", error.value, error.rule))
+    return results
 
 
 def _raise_first(results: Iterable[object]) -> None:

@@ -11,9 +11,10 @@ from crawler2d._core import build_info, canonical
 from crawler2d._extras import extra
 from crawler2d._plan import plan_runs
 from crawler2d._progress import Progress
-from crawler2d._recording import yes_or_no
+from crawler2d._recording import recording, yes_or_no
 from crawler2d._sweep_table import to_table
-from crawler2d.batch import simulate_many
+from crawler2d._threads import thread_count
+from crawler2d.batch import simulate_passed
 from crawler2d.draws import Distribution, Variation
 from crawler2d.errors import Crawler2dError, ScenarioError
 from crawler2d.scenario import Scenario
@@ -193,6 +194,8 @@ def tabulate(
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
     with_times = yes_or_no(wall_time, "wall_time")
+    recorded = (*recording(0.01, "summary"), yes_or_no(counterfactual, "counterfactual"))
+    count = thread_count(threads)
     repeats = _whole(repeats, "repeats", 1, 10**6)
     seed = _whole(seed, "seed", 0, 2**64 - 1)
     canonical(scenario.to_json())
@@ -200,16 +203,15 @@ def tabulate(
     plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed)
     if on_error == "raise":
         _raise_first(plan.refused for plan in plans)
-    runs = simulate_many(
+    runs = simulate_passed(
         [plan.scenario for plan in plans],
-        threads=threads,
-        record="summary",
-        counterfactual=counterfactual,
+        [plan.checked for plan in plans],
+        recorded,
+        threads=count,
         progress=progress,
-        on_error="record",
     )
     for plan, run in zip(plans, runs, strict=True):
-        if run.error is not None:
+        if run.error is not None and plan.refused is None:
             run.error.add_note(f"in {plan.place}")
     if on_error == "raise":
         _raise_first(run.error for run in runs)

@@ -1,6 +1,6 @@
 //! What pictures need of ground and robot, as arrays.
 
-use crawler2d_core::{ChainOfShoes, Ground, Model, Mount, Part, Scenario, Shape, Vector};
+use crawler2d_core::{ChainOfShoes, Checked, Model, Mount, Part, Shape, Vector};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -8,12 +8,8 @@ use pyo3::types::{PyDict, PyList};
 use crate::convert::{edges, rows};
 
 /// Everything a picture needs; of two tracks the right one, which is in front in a side view.
-pub(crate) fn of<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    model: &Model,
-    ground: &Ground,
-) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+    let (model, ground) = (checked.model(), checked.ground());
     let near = ground.tracks - 1;
     let result = track(py, model, (Mount::Chassis, near))?;
     let (shoes, belly) = (PyList::empty(py), PyList::empty(py));
@@ -48,7 +44,7 @@ pub(crate) fn of<'py>(
     result.set_item("belly", belly.get_item(0).unwrap_or_else(|_| none()))?;
     result.set_item("flippers", flippers)?;
     result.set_item("drive_radius", model.drive_radius)?;
-    result.set_item("goal", ground.goal_of(scenario))?;
+    result.set_item("goal", ground.goal_of(checked.scenario()))?;
     Ok(result)
 }
 

@@ -4,10 +4,10 @@
 //! over and at what cost. A [`Scenario`] goes in, a [`Run`] comes out:
 //!
 //! ```no_run
-//! use crawler2d_core::{Record, Scenario, simulate};
+//! use crawler2d_core::{Checked, Record, simulate};
 //!
 //! let text = std::fs::read_to_string("scenario.json").unwrap();
-//! let scenario = Scenario::from_json(&text).unwrap();
+//! let scenario = Checked::from_json(&text).unwrap();
 //! let run = simulate(&scenario, Record::default()).unwrap();
 //! println!("{} after {} s", run.outcome, run.metrics.time);
 //! ```
@@ -33,7 +33,7 @@ pub use diagnosis::{
     Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
 };
 pub use dynamics::ChainReading;
-pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError};
+pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
@@ -42,7 +42,7 @@ pub use robot::{
     WheelBody,
 };
 pub use run::{
-    ContactTable, Metrics, Progress, Record, Run, Simulation, Trace, branch, caught, check_text,
+    Checked, ContactTable, Metrics, Progress, Record, Run, Simulation, Trace, branch,
     counterfactual, simulate, simulate_many,
 };
 pub use scenario::{

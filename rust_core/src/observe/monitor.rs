@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
@@ -20,7 +22,7 @@ const LOOK: f64 = 0.01;
 /// Watches one run.
 pub(crate) struct Monitor {
     criteria: SeizureCriteria,
-    ground: Ground,
+    ground: Arc<Ground>,
     goal: f64,
     /// [m] A metre below the whole ground.
     floor: f64,
@@ -143,11 +145,11 @@ struct Anchor {
 }
 
 impl Monitor {
-    pub(crate) fn new(scenario: &Scenario, ground: &Ground, model: &Model) -> Self {
+    pub(crate) fn new(scenario: &Scenario, ground: &Arc<Ground>, model: &Model) -> Self {
         let outline = &scenario.robot.outline;
         Self {
             criteria: scenario.criteria.clone(),
-            ground: ground.clone(),
+            ground: Arc::clone(ground),
             goal: ground.goal_of(scenario),
             floor: ground.lowest() - 1.0,
             half_length: 0.5 * outline.axle_distance,
