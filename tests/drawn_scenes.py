@@ -7,6 +7,7 @@ from typing import Any
 import crawler2d as c2d
 from crawler2d.scenario import Scenario
 from crawler2d.terrain import Lane, Points, RandomStepfield, Terrain
+from crawler2d.track import Track
 from drawn_robots import TINY, Draw, drawn_robot, smallest_end
 
 STEPS = 600
@@ -157,13 +158,14 @@ def drawn_criteria(draw: Draw, duration: float) -> c2d.SeizureCriteria:
     )
 
 
-def drawn_solver(draw: Draw, longest: float) -> c2d.Solver:
-    """With time steps up to the longest [s]."""
+def drawn_solver(draw: Draw, longest: float, track: Track) -> c2d.Solver:
+    """For a robot on a track, with time steps up to the longest [s]."""
+    is_chain = isinstance(track, c2d.SegmentalTrack)
     return c2d.Solver(
         contact="reference" if draw.random() < 0.25 else "own",
         time_step=draw.size(1e-5, max(1e-5, min(1.0 / 30.0, longest)), (2e-4, 4e-3)),
         substeps=draw.whole(1, 64, (1, 4)),
-        iterations=draw.whole(1, 1000, (5, 60)),
+        iterations=None if is_chain else draw.whole(1, 1000, (5, 60)),
         contact_frequency=draw.size(1.0, 1e5, (300.0, 3000.0)),
         contact_damping_ratio=draw.size(TINY, 100.0, (1.0, 10.0)),
         max_push_speed=draw.size(TINY, 100.0, (0.1, 1.0)),
@@ -179,7 +181,7 @@ def drawn_scenario(draw: Draw) -> Scenario:
     fastest = robot.drivetrain.max_speed / smallest_end(robot.outline)
     if robot.flippers is not None:
         fastest = max(fastest, robot.flippers.rate_limit)
-    solver = drawn_solver(draw, 0.3 / fastest)
+    solver = drawn_solver(draw, 0.3 / fastest, robot.track)
     duration = solver.time_step * min(STEPS, draw.whole(1, STEPS, (30, STEPS)))
     duration = min(duration, solver.time_step * max(1, SUBSTEPS // solver.substeps))
     approach = draw.size_or_zero(1e-12, 1e4, (1e-3 * size, 0.5 * size))

@@ -33,7 +33,7 @@ def scenario(
     profile : ndarray, shape (n, 2)
         [m] The ground from left to right; the robot stands before its second point.
     setting : Setting
-        Time step, substeps and iterations.
+        Time step and substeps.
     duration, shift : float
         [s], [m]
     """
@@ -49,9 +49,7 @@ def scenario(
             approach=float(profile[1, 0]) - robot.axle_distance / 2.0 - robot.radius + shift
         ),
         duration=duration,
-        solver=Solver(
-            time_step=setting.time_step, substeps=setting.substeps, iterations=setting.iterations
-        ),
+        solver=Solver(time_step=setting.time_step, substeps=setting.substeps),
         criteria=SeizureCriteria(stop_window=_NEVER),
     )
 

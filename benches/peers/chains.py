@@ -38,7 +38,7 @@ TERRAINS = ("flat", "step", "field")
 SETTINGS = {
     "pymunk, defaults": Setting(1e-3, iterations=10, tuned=False),
     "pymunk, tuned": Setting(1e-3, iterations=10),
-    "crawler2d": Setting(Solver().time_step, Solver().substeps, Solver().iterations),
+    "crawler2d": Setting(Solver().time_step, Solver().substeps),
 }
 """What stands side by side; all at steps of 1 ms."""
 GRID = [

@@ -31,7 +31,7 @@ class Crawler2D:
 
     name = "crawler2d"
     version = c2d.__version__
-    defaults = Setting(Solver().time_step, Solver().substeps, Solver().iterations, tuned=False)
+    defaults = Setting(Solver().time_step, Solver().substeps, tuned=False)
     grid: Sequence[Setting] = [
         Setting(dt * 1e-3, substeps=substeps, iterations=iterations)
         for dt in (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
@@ -77,7 +77,9 @@ def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:
     base = as_it_is(scene.name)
     draw = scene.draw
     solver = Solver(
-        time_step=setting.time_step, substeps=setting.substeps, iterations=setting.iterations
+        time_step=setting.time_step,
+        substeps=setting.substeps,
+        iterations=setting.iterations or None,
     )
     return base.replace(
         {

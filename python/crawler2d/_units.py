@@ -79,5 +79,9 @@ METRICS = {
     "max_pin_gap": "m",
     "max_guide_penetration": "m",
     "max_sprocket_slip": "m",
+    "solves": "1",
+    "solve_rounds": "1",
+    "descents": "1",
+    "unresolved_solves": "1",
 }
 """Unit of every metric of a run."""

@@ -89,6 +89,14 @@ class Run:
     `max_guide_penetration`  m      deepest overlap of a shoe with guide, wheels or teeth
     `max_sprocket_slip`      m      farthest that a chain ran ahead of its sprocket or behind; some
                                     hundredths of a pitch are the play of the teeth
+    `solves`                 -      searches for the forces that all contacts, motors and pins agree
+                                    on
+    `solve_rounds`           -      linear systems solved in them: one a solve where the first guess
+                                    of what sticks and what slides fits
+    `descents`               -      solves in which guesses could not be mended and a descent took
+                                    over
+    `unresolved_solves`      -      solves that ended without agreement: their friction was cut
+                                    until it added no energy
     =======================  =====  ===============================================================
 
     On level ground the track distance exceeds the path length by the slip; on gear wheels also

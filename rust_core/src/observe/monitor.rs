@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::progress::Progress;
 use super::{Event, IntrusionWatch, Outcome, Reading, Shaking, Signals, Stance, bearing};
 use crate::contact::TrackEnvelope;
-use crate::dynamics::{ChainReading, DriveState, LoadedContact};
+use crate::dynamics::{ChainReading, DriveState, Effort, LoadedContact};
 use crate::geometry::Pose;
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
@@ -75,6 +75,8 @@ pub(crate) struct Seen {
     pub max_guide_penetration: f64,
     /// [m] Farthest that a chain and its sprocket have run apart so far.
     pub max_sprocket_slip: f64,
+    /// What the solves took so far.
+    pub effort: Effort,
 }
 
 impl Seen {
@@ -101,6 +103,7 @@ impl Seen {
             max_pin_gap: 0.0,
             max_guide_penetration: 0.0,
             max_sprocket_slip: 0.0,
+            effort: Effort::default(),
         }
     }
 }
@@ -211,6 +214,11 @@ impl Monitor {
                 self.watch_stationary(now, window, loaded);
             }
         }
+    }
+
+    /// Takes in what the solves of the same step took.
+    pub(crate) fn observe_effort(&mut self, effort: Effort) {
+        self.seen.effort = self.seen.effort.plus(effort);
     }
 
     /// Takes in what the chains did in the same step.

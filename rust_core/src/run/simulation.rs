@@ -165,6 +165,7 @@ impl Simulation {
         if !model.chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
+        self.monitor.observe_effort(self.dynamics.effort());
         let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
         let drives = self.state.drives.iter().copied().zip(speeds);
         self.monitor.observe(
