@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 Generator = np.random.Generator
 

@@ -10,8 +10,9 @@ import numpy as np
 
 import crawler2d as c2d
 from census import Strata, drawn
-from crawler2d.diagnosis import Condition, Diagnosis, Mechanism
-from crawler2d.outcome import Outcome
+from crawler2d.results.diagnosis import Diagnosis
+from crawler2d.results.findings import Condition, Mechanism
+from crawler2d.results.outcome import Outcome
 from judge import STOPS, Opinion, judge
 
 AT_A_TIME = 100  # histories that are held in memory

@@ -26,7 +26,7 @@ from census import (
     step,
     wheel,
 )
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 # Tracks
 

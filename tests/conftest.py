@@ -9,8 +9,8 @@ import hypothesis
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
-from crawler2d.track import Track
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.track import Track
 
 SOAK = "CRAWLER2D_SOAK" in os.environ
 """Set by make soak: a hundred times the cases."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import crawler2d as c2d
-from crawler2d.track import Track
+from crawler2d.parameters.track import Track
 
 TINY = 1e-20
 """Low end of what is drawn where any number above 0 is legal."""

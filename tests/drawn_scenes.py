@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
-from crawler2d.terrain import Lane, Points, RandomStepfield, Terrain
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Lane, Points, RandomStepfield, Terrain
 from drawn_robots import TINY, Draw, drawn_robot, smallest_end
 
 STEPS = 600

@@ -14,8 +14,8 @@ import numpy as np
 
 import crawler2d as c2d
 import fuzz_texts
-from crawler2d._json import Parameters
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.scenario import Scenario
 
 
 class Refuses:

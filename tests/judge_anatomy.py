@@ -12,7 +12,8 @@ import numpy as np
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Lanes
 from judge_geometry import Array, Hull
 from judge_shoes import pieces_of_a_shoe
 
@@ -199,7 +200,7 @@ class Anatomy:
     def ground_friction(self, lane: int) -> float:
         """[-] Of what lies there: each lane has its own where they are told apart."""
         terrain = self.terrain
-        if not isinstance(terrain, c2d.terrain.Lanes):
+        if not isinstance(terrain, Lanes):
             return float(terrain.friction)
         left, right = terrain.left.friction, terrain.right.friction
         middle = max(left, right) if terrain.middle is None else terrain.middle.friction

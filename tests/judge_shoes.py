@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from crawler2d.robot import Robot
+from crawler2d.parameters.robot import Robot
 from judge_geometry import Array
 
 # [rad] Two shoes on a straight run are less bent.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 from judge_anatomy import Anatomy, Loop
 from judge_carriers import Carriers, turned
 from judge_geometry import Array, Ground, Piece, pieces, placed

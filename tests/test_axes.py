@@ -10,11 +10,11 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
-from crawler2d._axes import COLUMNS
-from crawler2d._units import METRICS
-from crawler2d.rates import rate
-from crawler2d.scenario import Scenario
-from crawler2d.sweep import sweep
+from crawler2d.common.units import METRICS
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.axes import COLUMNS
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.sweep import sweep
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=0.05)
 

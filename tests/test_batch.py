@@ -10,7 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 HEIGHTS = (0.02, 0.2, 0.03, 0.04, 0.15, 0.05)
 
@@ -133,7 +133,7 @@ def test_garbage_in_the_environment_is_refused(
 
 
 def test_the_environment_limits_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    from crawler2d._threads import thread_count  # noqa: PLC0415
+    from crawler2d.runs.threads import thread_count  # noqa: PLC0415
 
     monkeypatch.setenv("CRAWLER2D_THREADS", " 2 ")
     assert thread_count(8) == 2

@@ -9,8 +9,8 @@ import pytest
 
 import crawler2d as c2d
 from conftest import GEAR, ROBOT
-from crawler2d.diagnosis import Counterfactual
-from crawler2d.labelled import UNITS
+from crawler2d.results.findings import Counterfactual
+from crawler2d.runs.labelled import UNITS
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4))
 SEIZING = c2d.Scenario(WHEELS, c2d.terrains.step(0.10), duration=6.0)

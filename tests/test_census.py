@@ -16,8 +16,8 @@ from census_cases import (
     faults_of_kind,
     stopped,
 )
-from crawler2d.diagnosis import Mechanism
-from crawler2d.outcome import Outcome
+from crawler2d.results.findings import Mechanism
+from crawler2d.results.outcome import Outcome
 from judge import STOPS
 
 # Drawn scenarios may be odd.

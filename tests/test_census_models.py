@@ -17,8 +17,8 @@ from census_cases import (
     stopped,
 )
 from census_models import STRATA
-from crawler2d.diagnosis import Mechanism
-from crawler2d.outcome import Outcome
+from crawler2d.results.findings import Mechanism
+from crawler2d.results.outcome import Outcome
 
 # Drawn scenarios may be odd.
 pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")

@@ -9,15 +9,15 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.experiments import __main__ as command
-from crawler2d.experiments.__main__ import main
-from crawler2d.experiments.chain_steps import ChainStep, chain_steps, chain_steps_text
-from crawler2d.experiments.chains import CHAINS, CHAINS_QUICK, chain_models
-from crawler2d.experiments.chains_plot import plot_chains
-from crawler2d.experiments.models import study_models
-from crawler2d.experiments.sweeps import Study
-from crawler2d.experiments.tables import Cell
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.studies import __main__ as command
+from crawler2d.studies.__main__ import main
+from crawler2d.studies.chain_steps import ChainStep, chain_steps, chain_steps_text
+from crawler2d.studies.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.studies.chains_plot import plot_chains
+from crawler2d.studies.models import study_models
+from crawler2d.studies.sweeps import Study
+from crawler2d.studies.tables import Cell
 
 MODELS = chain_models()
 

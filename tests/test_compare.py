@@ -8,12 +8,12 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.compare import compare
-from crawler2d.draws import uniform
-from crawler2d.rates import rate
-from crawler2d.scenario import Scenario
-from crawler2d.statistics import bootstrap_mean, mcnemar, newcombe_paired
-from crawler2d.sweep import sweep
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.compare import compare
+from crawler2d.sweeps.draws import uniform
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
+from crawler2d.sweeps.sweep import sweep
 
 # At this friction some of the draws get over the step and some do not.
 BASE = Scenario(ROBOT, c2d.terrains.step(0.05, friction=0.6), duration=6.0)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.statistics import newcombe
-from crawler2d.track import Track
+from crawler2d.parameters.track import Track
+from crawler2d.sweeps.statistics import newcombe
 from judge import STOPS
 
 RUNS = 400

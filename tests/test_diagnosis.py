@@ -11,8 +11,8 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.diagnosis import Condition, Counterfactual, Intrusion
-from crawler2d.table import Table
+from crawler2d.common.table import Table
+from crawler2d.results.findings import Condition, Counterfactual, Intrusion
 
 
 def with_torque(limit: float) -> c2d.Robot:

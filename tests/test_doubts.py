@@ -11,7 +11,9 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS, with_flippers
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import Track
 
 ARMED = c2d.robots.engineer(track=c2d.BeltTrack())
 STEP = c2d.terrains.step(0.05)
@@ -30,11 +32,11 @@ def hold(angle: float) -> Scenario:
     return Scenario(ARMED, STEP, drive=c2d.Drive(gait=c2d.Hold(angle)))
 
 
-def on(track: c2d.track.Track) -> Scenario:
+def on(track: Track) -> Scenario:
     return Scenario(ROBOT.with_track(track), STEP)
 
 
-def over(terrain: c2d.terrain.Terrain) -> Scenario:
+def over(terrain: Terrain) -> Scenario:
     return Scenario(ROBOT, terrain)
 
 

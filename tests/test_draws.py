@@ -8,9 +8,9 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
-from crawler2d._plan import plan_runs
-from crawler2d.draws import Variation, scaled, uniform, uniform_int, uniform_numbers
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.draws import Variation, scaled, uniform, uniform_int, uniform_numbers
+from crawler2d.sweeps.plan import plan_runs
 
 DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.friction"]
 

@@ -51,8 +51,8 @@ def test_every_error_is_in_the_tree_and_is_what_python_calls_it() -> None:
 
 
 def test_an_interrupt_is_not_caught_as_an_exception() -> None:
-    assert issubclass(errors.BatchInterrupted, KeyboardInterrupt)
-    assert not issubclass(errors.BatchInterrupted, Exception)
+    assert issubclass(c2d.BatchInterrupted, KeyboardInterrupt)
+    assert not issubclass(c2d.BatchInterrupted, Exception)
 
 
 def test_a_scenario_error_names_path_rule_and_value() -> None:

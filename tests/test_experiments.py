@@ -13,16 +13,16 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.experiments import __main__ as command
-from crawler2d.experiments import plot, report, stops_report, tables
-from crawler2d.experiments.__main__ import main
-from crawler2d.experiments.models import gear_pairs, study_models
-from crawler2d.experiments.public_model import posts, public_wheel_model
-from crawler2d.experiments.replays import write_replays
-from crawler2d.experiments.stops import FIGURES, gear_against_round, stops
-from crawler2d.experiments.sweeps import QUICK, Design, Study, robots_of_the_study
-from crawler2d.robot import Robot
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.studies import __main__ as command
+from crawler2d.studies import plot, report, stops_report, tables
+from crawler2d.studies.__main__ import main
+from crawler2d.studies.models import gear_pairs, study_models
+from crawler2d.studies.public_model import posts, public_wheel_model
+from crawler2d.studies.replays import write_replays
+from crawler2d.studies.stops import FIGURES, gear_against_round, stops
+from crawler2d.studies.sweeps import QUICK, Design, Study, robots_of_the_study
 
 MODELS = study_models(ROBOT.outline.axle_distance)
 FEW = {name: MODELS[name] for name in ("belt", "line of 3", "line of 3 gears")}

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from crawler2d._extras import extra
-from crawler2d._progress import reporter
+from crawler2d.common.extras import extra
+from crawler2d.runs.progress import reporter
 
 # Its second half cannot be loaded twice, as that of many a compiled package.
 HALF = """

@@ -12,7 +12,7 @@ import pytest
 import crawler2d as c2d
 from conftest import with_flippers
 from crawler2d import _core
-from crawler2d._shapes import carriers, extent, mass_center, outlines, placed
+from crawler2d.pictures.shapes import carriers, extent, mass_center, outlines, placed
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt

@@ -8,7 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import refusal
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 ENGINEER = c2d.robots.engineer()
 ARMS: Any = ENGINEER.flippers

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
-from crawler2d.table import Table
+from crawler2d.common.table import Table
+from crawler2d.parameters.scenario import Scenario
 from drawn_robots import Draw
 from drawn_scenes import drawn_scenario
 from fuzz import SEED, Account, cases, interrupted

@@ -11,8 +11,8 @@ import pytest
 import crawler2d as c2d
 import fuzz_texts
 from conftest import VARIANTS
-from crawler2d._json import Parameters
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.scenario import Scenario
 from fuzz import SEED, Account, cases
 from fuzz_objects import drawn_object, fields
 

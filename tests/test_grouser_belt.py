@@ -7,9 +7,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d._shapes import grousers, placed
-from crawler2d.scenario import Scenario
-from crawler2d.terrain import Terrain
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.pictures.shapes import grousers, placed
 
 ROBOT = c2d.robots.engineer(flippers=None).with_track(c2d.GrouserBeltTrack())
 BELT, BELLY, GROUSER = 1, 3, 4

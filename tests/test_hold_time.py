@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 HOLDS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0)  # [s]
 DURATION = 80.0  # [s]

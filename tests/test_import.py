@@ -25,10 +25,12 @@ assert not heavy, heavy
 """
 
 SHADOWED = """
-import crawler2d.compare
-import crawler2d.sweep
+import crawler2d.presets.robots.engineer
+import crawler2d.sweeps.compare
+import crawler2d.sweeps.sweep
 assert callable(crawler2d.compare)
 assert callable(crawler2d.sweep)
+assert callable(crawler2d.robots.engineer)
 """
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 # Three wheels with slots of 26 mm between them.
 RADIUS, SPACING = 0.08, 0.186

@@ -11,7 +11,7 @@ import pytest
 import crawler2d as c2d
 from census import draw
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 SHIFT = 10.0  # [m]
 PIECE = 0.03  # [m] of a face that is cut finer

@@ -7,9 +7,9 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.rates import rate
-from crawler2d.scenario import Scenario
-from crawler2d.sweep import sweep
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.sweep import sweep
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=4.0)
 LOW, MIDDLE, HIGH = 0.02, 0.03, 0.2

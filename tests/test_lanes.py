@@ -9,8 +9,8 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.scenario import Scenario
-from crawler2d.statistics import newcombe
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.statistics import newcombe
 
 ENGINEER = c2d.robots.engineer(flippers=None)
 SIDES = {"both": 0, "left": 1, "right": 2, "middle": 3}

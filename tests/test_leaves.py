@@ -9,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import VARIANTS
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 # Where -1 is a legal number.
 SIGNED = (

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 from fuzz_objects import Refuses
 
 HUGE = 10**5000

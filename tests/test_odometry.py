@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.parameters.terrain import Points
 
 ENGINEER = c2d.robots.engineer(flippers=None)
 RADIUS, AXLES = ENGINEER.outline.front_radius, ENGINEER.outline.axle_distance
 BELT, GROUSERS, WHEELS = c2d.BeltTrack(), c2d.GrouserBeltTrack(), c2d.LineOfWheels(9)
 
 
-def arc(radius: float, *, upwards: bool) -> c2d.terrain.Points:
+def arc(radius: float, *, upwards: bool) -> Points:
     """A cap or a hollow of so large a radius [m], 1 rad long, in facets of 0.01 rad."""
     angles = np.linspace(-0.5, 0.5, 101)
     x = radius * (np.sin(angles) + math.sin(0.5))

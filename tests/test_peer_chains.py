@@ -8,7 +8,7 @@ import pytest
 from benches.peers import chain_crawler2d, chain_robot, chains_report
 from benches.peers.chain_robot import TEETH, ChainRobot
 from benches.peers.engine import Setting
-from crawler2d.simulation import Simulation
+from crawler2d.runs.simulation import Simulation
 
 STEP = np.array([(-5.0, 0.0), (0.8, 0.0), (0.8, 0.15), (15.0, 0.15)])
 every_chain = pytest.mark.parametrize("count", TEETH)

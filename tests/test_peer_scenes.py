@@ -12,7 +12,7 @@ from benches.peers.engine_crawler2d import Crawler2D
 from benches.peers.motion import Motion
 from benches.peers.scenes import Scene
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 SCENARIOS = Path(__file__).parent / "scenarios"
 # Both are written with all digits; what is left is the rounding of their generators.

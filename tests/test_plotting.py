@@ -8,7 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import GEAR, PLACEMENTS, POINTS, ROBOT
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 
 def test_the_engineer_has_the_figures_of_its_sources() -> None:

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
-from crawler2d.rates import rate
+from crawler2d.sweeps.rates import rate
 
 TABLE = xr.Dataset(
     {

@@ -9,8 +9,8 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT, VARIANTS
-from crawler2d._paths import read_path
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.scenario import Scenario
 
 
 def test_a_path_replaces_one_field_and_nothing_else() -> None:

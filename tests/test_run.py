@@ -12,9 +12,9 @@ import pytest
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d.labelled import UNITS
-from crawler2d.scenario import Scenario
-from crawler2d.table import Table
+from crawler2d.common.table import Table
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.runs.labelled import UNITS
 
 
 def test_the_arrays_share_their_samples(run: c2d.Run) -> None:

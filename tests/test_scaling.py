@@ -11,7 +11,7 @@ import crawler2d as c2d
 from benches.scaling import plot, report, scenes
 from benches.scaling.scenes import Point
 from benches.scaling.slopes import curves
-from crawler2d.terrain import Points, Terrain
+from crawler2d.parameters.terrain import Points, Terrain
 
 POINTS = list(scenes.points())
 # A belt on more pieces takes seconds to get anywhere.

@@ -17,7 +17,7 @@ from hypothesis import given
 import crawler2d as c2d
 from conftest import POINTS, ROBOT, VARIANTS
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 SHARED = sorted((Path(__file__).parent / "scenarios").glob("*.json"))
 

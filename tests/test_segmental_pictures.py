@@ -12,9 +12,9 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d._shapes import carriers, outlines, pins, shoes
-from crawler2d.table import Table
-from crawler2d.track import Track
+from crawler2d.common.table import Table
+from crawler2d.parameters.track import Track
+from crawler2d.pictures.shapes import carriers, outlines, pins, shoes
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt

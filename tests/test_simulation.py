@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 
 def test_steps_of_any_length_give_the_run(scenario: Scenario) -> None:

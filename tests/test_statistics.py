@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crawler2d import newcombe, wilson
-from crawler2d.statistics import bootstrap_mean, mcnemar, newcombe_paired
+from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
 
 # Newcombe (1998), Two-sided confidence intervals for the single proportion, table I, method 3.
 PUBLISHED_RATES = [

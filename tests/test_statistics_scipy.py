@@ -9,7 +9,7 @@ from scipy import stats  # type: ignore[import-untyped]
 
 from conftest import SOAK
 from crawler2d import newcombe, newcombe_paired, wilson
-from crawler2d.statistics import bootstrap_mean, mcnemar
+from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar
 
 DRAWN = random.Random(0)
 CASES = 20_000 if SOAK else 400

@@ -14,10 +14,10 @@ import xarray as xr
 
 import crawler2d as c2d
 from conftest import ROBOT
-from crawler2d._units import METRICS
-from crawler2d.draws import scaled, uniform, uniform_int
-from crawler2d.scenario import Scenario
-from crawler2d.sweep import sweep
+from crawler2d.common.units import METRICS
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.draws import scaled, uniform, uniform_int
+from crawler2d.sweeps.sweep import sweep
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=4.0)
 BRIEF = BASE.replace({"duration": 0.05})
@@ -359,7 +359,7 @@ def diverging(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
         return runs
 
     # By the table of modules: the package may have a function of that name.
-    monkeypatch.setattr(sys.modules["crawler2d.sweep"], "simulate_many", simulate_many)
+    monkeypatch.setattr(sys.modules["crawler2d.sweeps.sweep"], "simulate_many", simulate_many)
 
 
 def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) -> None:

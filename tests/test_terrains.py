@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from conftest import POINTS, ROBOT
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 HALF = 0.05 * math.tan(0.5)
 

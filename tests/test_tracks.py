@@ -11,7 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from conftest import GEAR, PLACEMENTS, POINTS, ROBOT, refusal
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 OUTLINE = ROBOT.outline
 # Counts and sizes

@@ -6,9 +6,9 @@ import re
 import pytest
 
 import crawler2d as c2d
-from crawler2d import flippers, gaits, robot, scenario, terrain, track
-from crawler2d._json import Parameters
-from crawler2d._units import METRICS, unit_of
+from crawler2d.common.units import METRICS, unit_of
+from crawler2d.parameters import flippers, gaits, robot, scenario, settings, terrain, track
+from crawler2d.parameters.plain import Parameters
 
 
 def test_every_metric_has_a_unit(run: c2d.Run) -> None:
@@ -35,7 +35,7 @@ def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> N
 
 def test_units_are_those_of_the_docstrings() -> None:
     documented: dict[str, str] = {}
-    for module in (scenario, gaits, robot, flippers, terrain, track):
+    for module in (scenario, settings, gaits, robot, flippers, terrain, track):
         for kind in vars(module).values():
             if inspect.isclass(kind) and issubclass(kind, Parameters):
                 text = inspect.getdoc(kind) or ""

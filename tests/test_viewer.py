@@ -16,9 +16,9 @@ import pytest
 import crawler2d as c2d
 from conftest import GEAR, ROBOT, VARIANTS
 from crawler2d import _core
-from crawler2d._shapes import circle, inset
-from crawler2d.viewer.packed import packed
-from crawler2d.viewer.recording import MOST_FRAMES
+from crawler2d.pictures.page.packed import packed
+from crawler2d.pictures.page.recording import MOST_FRAMES
+from crawler2d.pictures.shapes import circle, inset
 
 HOSTILE = "</script><img src=x onerror=alert(1)> $data ${title} \"' & <!-- ]]> \u2028"
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
@@ -326,5 +326,5 @@ def test_packed_numbers_come_back() -> None:
 
 
 def test_the_parts_of_the_page_are_in_the_package() -> None:
-    names = {path.name for path in files("crawler2d.viewer").iterdir()}
+    names = {path.name for path in files("crawler2d.pictures.page").iterdir()}
     assert {"page.html", "replay.css", "replay.js", "data.js", "scene.js"} <= names

@@ -10,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from conftest import GEAR, PLACEMENTS, ROBOT, refusal, with_flippers
 from crawler2d import _core
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 OUTLINE = ROBOT.outline
 TAPERED = dataclasses.replace(

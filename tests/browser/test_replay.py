@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Frame, Page, sync_playwright
 import crawler2d as c2d
 from conftest import ROBOT, with_flippers
 from crawler2d import _core
-from crawler2d._shapes import carriers, outlines
+from crawler2d.pictures.shapes import carriers, outlines
 
 STEP = c2d.terrains.step(0.075)
 LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
