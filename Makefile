@@ -63,7 +63,7 @@ format: $(VENV)/.dependencies ## format all code
 build: $(VENV)/.built ## the compiled core, in place
 
 fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
-	$(BIN)/python -m pytest -m soak tests/test_fuzz_ways_in.py tests/test_fuzz_runs.py
+	$(BIN)/python -m pytest -m soak tests/fuzz
 
 soak: $(VENV)/.built ## the long tests, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored

@@ -13,9 +13,9 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
 import crawler2d as c2d
-from conftest import ROBOT, with_flippers
 from crawler2d import _core
 from crawler2d.pictures.shapes import carriers, outlines
+from tests.shared import ROBOT, with_flippers
 
 STEP = c2d.terrains.step(0.075)
 LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))

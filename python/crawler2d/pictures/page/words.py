@@ -1,4 +1,4 @@
-"""What a page says in words and figures, and how a notebook holds it."""
+"""What a page says of a run in words and figures."""
 
 from __future__ import annotations
 
@@ -11,10 +11,7 @@ from crawler2d.common.units import METRICS
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["all_figures", "embedded", "figures", "heading", "sentence", "verdicts"]
-
-# [px] Header, picture, controls and strip; the figures below are scrolled to.
-_FRAME_HEIGHT = 820
+__all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdicts"]
 
 # metric, what a reader calls it, units a metric unit, unit, digits after the point
 _FIGURES = (
@@ -31,28 +28,6 @@ _FIGURES = (
 )
 # Shown only where it happened.
 _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
-
-
-def embedded(run: Record) -> str:
-    """Show a run in a notebook: the page in a frame, or its figures; never an exception.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    from crawler2d.pictures.page.replay import replay_page  # noqa: PLC0415 - only runs with history need it
-
-    try:
-        page = replay_page(run)
-    except Exception:  # what a notebook shows must not fail, whatever the run holds
-        return _summary(run)
-    # Scripts alone: the page can reach neither the notebook nor the network.
-    return (
-        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
-        f'title="{escaped(heading(run))}" '
-        f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
-    )
 
 
 def escaped(text: str) -> str:
@@ -96,17 +71,3 @@ def figures(run: Record) -> list[tuple[str, str]]:
 def all_figures(run: Record) -> list[tuple[str, str]]:
     """Every metric by its own name, in its own unit."""
     return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]
-
-
-def _summary(run: Record) -> str:
-    rows = "".join(
-        f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>"
-        for name, value in all_figures(run)
-    )
-    table = f"<table><tbody>{rows}</tbody></table>" if rows else ""
-    try:
-        why = sentence(run)
-    except Exception:
-        why = ""
-    note = f"<p>{escaped(why)}</p>" if why else ""
-    return f"<div><p><strong>{escaped(heading(run))}</strong></p>{note}{table}</div>"
