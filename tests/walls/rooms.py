@@ -48,15 +48,15 @@ def violations(house: House, files: Iterable[str], imports: Sequence[Import]) ->
     floors = {file: house.floor(file) for file in files}
     for file, floor in floors.items():
         if floor is None:
-            yield f"{house.folder / file}: lies in no room of {LIST}"
+            yield f"{place(house, file)}: lies in no room of {LIST}"
     for index, room in enumerate(house.rooms):
         if index not in floors.values():
-            yield f"{house.folder / room}: {LIST} lists this room, but no file lies there"
+            yield f"{place(house, room)}: {LIST} lists this room, but no file lies there"
     for each in imports:
         here, there = floors.get(each.file), floors.get(each.imported)
         if here is not None and there is not None and there > here:
             yield (
-                f"{house.folder / each.file}:{each.line}: imports {each.imported}, but"
+                f"{place(house, each.file)}:{each.line}: imports {each.imported}, but"
                 f" {house.rooms[here]} must not know {house.rooms[there]}, which {LIST} lists later"
             )
     edges = {each.file: set[str]() for each in imports}
@@ -68,9 +68,15 @@ def violations(house: House, files: Iterable[str], imports: Sequence[Import]) ->
         file, then = circle[0], circle[1 % len(circle)]
         way = " -> ".join([*circle, file])
         yield (
-            f"{house.folder / file}:{lines[file, then]}: imports {then}, which leads back to it:"
+            f"{place(house, file)}:{lines[file, then]}: imports {then}, which leads back to it:"
             f" {way}; files may import each other in a circle {house.circles}"
         )
+
+
+def place(house: House, name: str) -> str:
+    """Write where a file or a room lies, from the root of the project if it is part of that."""
+    folder = house.folder.relative_to(ROOT) if ROOT in house.folder.parents else house.folder
+    return f"{folder.as_posix()}/{name}"
 
 
 def circles(edges: Mapping[str, set[str]]) -> Iterator[list[str]]:
