@@ -10,10 +10,11 @@ from benches.peers import chain_robot
 from benches.peers.chain_robot import ChainRobot
 from benches.peers.engine import Setting
 from benches.peers.motion import Array
-from crawler2d.robot import Drivetrain, Robot, TrackOutline
-from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
-from crawler2d.terrain import Points
-from crawler2d.track import SegmentalTrack
+from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
+from crawler2d.parameters.terrain import Points
+from crawler2d.parameters.track import SegmentalTrack
 
 # [s] No run is as long: nothing ends it.
 _NEVER = 1000.0

@@ -30,9 +30,10 @@ from benches.peers.engine import Setting
 from benches.peers.errors import JOINT_GAP
 from benches.peers.motion import Array
 from benches.peers.timing import interleaved, progress
-from crawler2d.scenario import Drive, Scenario, Solver
-from crawler2d.terrain import Points, Terrain
-from crawler2d.track import GrouserBeltTrack, SegmentalTrack, Track
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, Solver
+from crawler2d.parameters.terrain import Points, Terrain
+from crawler2d.parameters.track import GrouserBeltTrack, SegmentalTrack, Track
 
 TERRAINS = ("flat", "step", "field")
 SETTINGS = {

@@ -19,7 +19,8 @@ from benches.peers.engine import Setting
 from benches.peers.motion import Array, Motion
 from benches.peers.scenes import Scene
 from crawler2d.errors import SimulationDiverged
-from crawler2d.scenario import Scenario, Solver
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Solver
 
 _SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
 # [s] No run is as long.

@@ -27,6 +27,7 @@ mod robot;
 mod run;
 mod scenario;
 mod terrain;
+mod version;
 
 pub use contact::Intrusion;
 pub use diagnosis::{
@@ -53,9 +54,4 @@ pub use scenario::{
     TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
-
-/// The engine that finds the contacts, with its exact version.
-pub const ENGINE: &str = "rapier2d-f64 0.36.1";
-
-/// Names the sources that this core was built from.
-pub const BUILD_ID: &str = env!("CRAWLER2D_BUILD_ID");
+pub use version::{BUILD_ID, ENGINE};

@@ -13,14 +13,15 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
 import crawler2d as c2d
-from conftest import ROBOT, with_flippers
 from crawler2d import _core
-from crawler2d._shapes import carriers, outlines
+from crawler2d.pictures.shapes import carriers, outlines
+from tests.shared import ROBOT, with_flippers
 
 STEP = c2d.terrains.step(0.075)
 LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
 ROUND = c2d.LineOfWheels(4, wheel_radius=0.0608)
 GEARED = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
+GEARED_ARMS = c2d.LineOfWheels(4, wheel_radius=0.037, wheel=c2d.GearWheel(grouser_count=12))
 RING = c2d.CircumferentialWheels(24, wheel_radius=0.015)
 SPROCKET = c2d.SegmentalTrack(mechanism="sprocket")
 HOSTILE = "</script><img src=x onerror=\"document.title='broken'\">`${document.title='broken'}`"
@@ -37,7 +38,7 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "two lanes": (ROBOT.with_track(GEARED), c2d.terrains.diagonal_barrier(0.5, height=0.03)),
     "circumferential": (ROBOT.with_track(RING), c2d.terrains.barrier(0.1, 0.02)),
     "flippers with grousers": (with_flippers(c2d.GrouserBeltTrack()), c2d.terrains.step(0.2)),
-    "flippers with gear wheels": (with_flippers(GEARED), c2d.terrains.step(0.2)),
+    "flippers with gear wheels": (with_flippers(GEARED, GEARED_ARMS), c2d.terrains.step(0.2)),
 }
 
 # The pixels of a copy: a canvas that is read itself is drawn by other means from then on.

@@ -17,7 +17,7 @@ const IN_ORDER: [(Outcome, &str); 10] = [
 
 #[test]
 fn python_lists_the_outcomes_in_the_order_of_the_core() {
-    let python = include_str!("../../../../python/crawler2d/outcome.py");
+    let python = include_str!("../../../../python/crawler2d/results/outcome.py");
     let members = python.lines().filter_map(|line| {
         let (_, value) = line.strip_prefix("    ")?.split_once(" = \"")?;
         value.strip_suffix('"')

@@ -8,12 +8,12 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use super::gait::Driver;
-use crate::BUILD_ID;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
 use crate::observe::Seen;
 use crate::run::Checked;
+use crate::version::BUILD_ID;
 use crate::scenario::ScenarioError;
 
 /// First bytes of every snapshot; the number is the version of the layout around the state.
