@@ -1,6 +1,6 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, the drives.
 
-use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Shape, track};
+use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Vector};
 use crate::scenario::{Robot, ScenarioError};
 
@@ -93,6 +93,17 @@ impl Model {
             return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
         }
         Ok(model)
+    }
+
+    /// Where what moves over the chassis is at time 0, when its tracks have run by `track_phase` [m].
+    pub(crate) fn running_at_start(&self, track_phase: f64) -> Running {
+        let places = |chain: &ChainOfShoes| chain.path.places(track_phase);
+        let mounted = |arm: &Flipper| arm.mounted(arm.sign() * arm.start_angle, self.drive_radius);
+        Running {
+            drives: vec![track_phase; self.drives],
+            shoes: self.chains.iter().flat_map(places).collect(),
+            flippers: self.flippers.iter().map(mounted).collect(),
+        }
     }
 
     /// [kg m^2] Moment of inertia of one drive.

@@ -1,6 +1,6 @@
 //! How far what moves over the chassis has moved, and so where every part is.
 
-use super::{ChainOfShoes, Flipper, Model, Mount, Mounted};
+use super::{Mount, Mounted};
 use crate::geometry::Pose;
 
 /// How far what moves over the chassis has moved.
@@ -15,17 +15,6 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    /// All of a robot at time 0, when its tracks have run by `track_phase` [m].
-    pub(crate) fn at_start(model: &Model, track_phase: f64) -> Self {
-        let places = |chain: &ChainOfShoes| chain.path.places(track_phase);
-        let mounted = |arm: &Flipper| arm.mounted(arm.sign() * arm.start_angle, model.drive_radius);
-        Self {
-            drives: vec![track_phase; model.drives],
-            shoes: model.chains.iter().flat_map(places).collect(),
-            flippers: model.flippers.iter().map(mounted).collect(),
-        }
-    }
-
     /// Frame of a mount on a robot whose chassis frame is `pose`.
     pub(crate) fn mounted(&self, mount: Mount, pose: Pose) -> Pose {
         match mount {

@@ -13,8 +13,8 @@ use crate::dynamics::{Impulses, State};
 use crate::error::Error;
 use crate::observe::Seen;
 use crate::run::Checked;
-use crate::version::BUILD_ID;
 use crate::scenario::ScenarioError;
+use crate::version::BUILD_ID;
 
 /// First bytes of every snapshot; the number is the version of the layout around the state.
 const MAGIC: &[u8] = b"crawler2d snapshot 1\n";
