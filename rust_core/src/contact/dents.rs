@@ -3,13 +3,12 @@
 //! The part is dented there: the overlap that it begins with is no penetration. It may not grow, and
 //! heals as the robot's own motion lets the ground out, so it never gives the robot any energy.
 
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
-use crate::geometry::{Vector, plausible};
-
-/// [m] A dent moves less than this in a step.
-const SAME_PLACE: f64 = 0.01;
+use crate::geometry::plausible;
 
 /// The dents that are left.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -19,8 +18,9 @@ pub(crate) struct Dents {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Dent {
-    part: usize,
-    point: Vector,
+    /// Number of the contact that it is at.
+    contact: u64,
+    /// [m]
     depth: f64,
 }
 
@@ -28,19 +28,27 @@ impl Dents {
     /// Dents as deep as these contacts overlap.
     pub(crate) fn of(contacts: &[Contact]) -> Self {
         let overlapping = contacts.iter().filter(|c| c.distance < 0.0);
+        let dents = overlapping.map(|c| Dent {
+            contact: c.number,
+            depth: -c.distance,
+        });
         Self {
-            dents: overlapping.map(|c| Dent::of(c, -c.distance)).collect(),
+            dents: dents.collect(),
         }
     }
 
-    /// Whether a robot of so many parts can have them.
-    pub(crate) fn fits(&self, parts: usize) -> bool {
-        let fits = |d: &Dent| d.part < parts && plausible(&[d.point.x, d.point.y, d.depth]);
+    /// Whether the contacts of a last step can have left them.
+    pub(crate) fn fits<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> bool {
+        let numbers: HashSet<u64> = contacts.map(|c| c.number).collect();
+        let fits = |d: &Dent| plausible(&[d.depth]) && numbers.contains(&d.contact);
         self.dents.iter().all(fits)
     }
 
     /// Measures gaps from the bottom of the dents.
     pub(crate) fn forgive(&self, contacts: &mut [Contact]) {
+        if self.dents.is_empty() {
+            return;
+        }
         for contact in contacts {
             contact.distance += self.depth_at(contact).unwrap_or(0.0);
         }
@@ -53,29 +61,19 @@ impl Dents {
         }
         let left = contacts.filter_map(|contact| {
             let depth = self.depth_at(contact)? - contact.distance.max(0.0);
-            (depth > 0.0).then(|| Dent::of(contact, depth))
+            (depth > 0.0).then_some(Dent {
+                contact: contact.number,
+                depth,
+            })
         });
         self.dents = left.collect();
     }
 
-    /// [m] Depth of the nearest dent, if there is one at the contact.
+    /// [m] Depth of the dent at the contact, if there is one.
     fn depth_at(&self, contact: &Contact) -> Option<f64> {
-        let distance = |dent: &Dent| (dent.point - contact.point).length();
-        self.dents
-            .iter()
-            .filter(|dent| dent.part == contact.part && distance(dent) < SAME_PLACE)
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .map(|dent| dent.depth)
-    }
-}
-
-impl Dent {
-    fn of(contact: &Contact, depth: f64) -> Self {
-        Self {
-            part: contact.part,
-            point: contact.point,
-            depth,
-        }
+        let mut dents = self.dents.iter();
+        let at = dents.find(|dent| dent.contact == contact.number);
+        at.map(|dent| dent.depth)
     }
 }
 

@@ -36,6 +36,8 @@ pub(crate) struct Contact {
     pub normal: Vector,
     /// [m] Gap; negative in penetration.
     pub distance: f64,
+    /// The same from step to step for as long as the contact lasts, and no other's; 0 as it is found.
+    pub number: u64,
 }
 
 impl Contact {

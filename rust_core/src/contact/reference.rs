@@ -135,6 +135,7 @@ impl ReferenceContact {
                     point: 0.5 * (point.local_p1 + on_solid),
                     normal: manifold.local_n1,
                     distance: point.dist,
+                    number: 0,
                 });
             }
         }

@@ -15,6 +15,7 @@ mod descent;
 mod direct;
 mod flippers;
 mod grip;
+mod identity;
 mod impulses;
 mod levers;
 mod loaded;
@@ -29,6 +30,7 @@ mod tests;
 
 use chain::Chain;
 use flippers::Arm;
+use identity::{Identity, Numbered};
 use motors::Motor;
 use row::Row;
 use solve::{Phase, Push, Softness};
@@ -62,8 +64,6 @@ const COLLISION_SPEED: f64 = 0.001;
 /// an edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which
 /// a robot just climbs by 1 %, this shifts it by less than 0.1 %.
 const COLLISION_SUBSTEP: f64 = 2e-5;
-/// [m] A contact carries on from the last step's if it moved less than this.
-const CARRIED_OVER: f64 = 5e-3;
 
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
@@ -88,6 +88,7 @@ pub(crate) struct Dynamics {
     shoes_a_chain: usize,
     phase: Phase,
     loaded: Vec<LoadedContact>,
+    identity: Identity,
     /// [N] Push of the surroundings at the centre of mass.
     pub outer_force: Vector,
 }
@@ -119,6 +120,7 @@ impl Dynamics {
             solver,
             rows: Vec::new(),
             loaded: Vec::new(),
+            identity: Identity::default(),
             outer_force: Vector::ZERO,
         }
     }
@@ -134,7 +136,8 @@ impl Dynamics {
 
     /// Advances the state by one step towards the surface speed `set_point`.
     ///
-    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it.
+    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it, with the numbers
+    /// of [`Dynamics::recognise`].
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -276,17 +279,14 @@ impl Dynamics {
         self.phase = phase;
     }
 
-    /// Turns contacts into rows, each with the impulses of the last step's nearest one.
+    /// Turns contacts into rows, each with the impulses that it had in the last step.
     fn prepare(&mut self, state: &State, contacts: &[Contact]) {
         let half = 0.5 * self.solver.time_step;
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
         self.rows.clear();
-        let mut last = Last {
-            contacts: &mut self.loaded,
-            from: 0,
-        };
+        let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
-            let last = last.take_nearest(contact);
+            let last = last.get(contact.number);
             let mut row = match self.model.parts[contact.part].mount {
                 Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
                 Mount::Chassis | Mount::Flipper(_) => {
@@ -317,37 +317,9 @@ impl Dynamics {
                 normal_guess: row.normal_guess,
                 friction_guess: row.friction_guess,
                 grip: row.grip,
-                carried_over: false,
             });
         }
         self.loaded = loaded;
         self.remember_rests(contacts.len());
-    }
-}
-
-/// The last step's contacts, from the left in each part as this step's are.
-struct Last<'a> {
-    contacts: &'a mut [LoadedContact],
-    /// Those before this one lie too far left for all that come.
-    from: usize,
-}
-
-impl Last<'_> {
-    /// The contact of the same part that lies nearest, if near enough; each is taken once.
-    fn take_nearest(&mut self, contact: &Contact) -> Option<LoadedContact> {
-        let place = (contact.part, contact.point.x);
-        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + CARRIED_OVER) < place;
-        while self.contacts.get(self.from).is_some_and(behind) {
-            self.from += 1;
-        }
-        let near = |l: &LoadedContact| (l.contact.point - contact.point).length();
-        let last = self.contacts[self.from..]
-            .iter_mut()
-            .take_while(|l| (l.contact.part, l.contact.point.x - CARRIED_OVER) <= place)
-            .filter(|l| !l.carried_over && l.contact.normal.dot(contact.normal) > 0.9)
-            .filter(|l| near(l) < CARRIED_OVER)
-            .min_by(|a, b| near(a).total_cmp(&near(b)))?;
-        last.carried_over = true;
-        Some(*last)
     }
 }

@@ -128,6 +128,7 @@ impl Simulation {
         self.state.running_after(half, model, &mut self.then);
         self.contact
             .find(middle, &self.then, prediction, &mut self.contacts);
+        self.dynamics.recognise(&mut self.contacts);
         self.dents.forgive(&mut self.contacts);
     }
 

@@ -61,7 +61,7 @@ pub(crate) struct Columns {
 
 impl Columns {
     /// Bytes of a row of the contact table.
-    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
+    pub(crate) const BYTES_A_CONTACT: u64 = 15 * 8;
 
     pub(crate) fn of(model: &Model) -> Self {
         Self {
@@ -161,6 +161,7 @@ impl Trace {
 #[allow(missing_docs)] // the columns are described in docs/conventions.md
 pub struct ContactTable {
     pub time: Vec<f64>,
+    pub contact: Vec<i64>,
     pub lane: Vec<i64>,
     pub body: Vec<i64>,
     pub body_kind: Vec<i64>,
@@ -189,7 +190,7 @@ impl Simulation {
 
 impl ContactTable {
     /// Every column.
-    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 5]) {
+    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 6]) {
         let numbers = [
             &mut self.time,
             &mut self.x,
@@ -202,6 +203,7 @@ impl ContactTable {
             &mut self.penetration,
         ];
         let codes = [
+            &mut self.contact,
             &mut self.lane,
             &mut self.body,
             &mut self.body_kind,
@@ -229,6 +231,7 @@ impl ContactTable {
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
         for r in readings.drain() {
             self.time.push(simulation.time());
+            self.contact.push(r.contact.number as i64);
             self.lane.push(simulation.side(r.contact.part) as i64);
             self.body.push(r.contact.part as i64);
             self.body_kind

@@ -85,6 +85,7 @@ impl Touch {
             point: self.place + self.normal * (0.5 * self.distance),
             normal: self.normal,
             distance: self.distance,
+            number: 0,
         }
     }
 }
