@@ -60,13 +60,14 @@ impl Identity {
         self.taken.resize(last.len(), false);
         let mut from = 0;
         for contact in contacts {
-            let known = self.take_nearest(last, &mut from, contact);
-            contact.number = known
-                .or_else(|| self.find_again(contact))
-                .unwrap_or_else(|| {
+            if let Some(known) = self.take_nearest(last, &mut from, contact) {
+                (contact.number, contact.began) = (known.number, known.began);
+            } else {
+                contact.number = self.find_again(contact).unwrap_or_else(|| {
                     self.given += 1;
                     self.given
                 });
+            }
         }
         let opened = last.iter().zip(&self.taken).filter(|(_, taken)| !**taken);
         self.lost.extend(opened.map(|(l, _)| Lost {
@@ -77,14 +78,14 @@ impl Identity {
         self.lost.drain(..too_many);
     }
 
-    /// The number of the nearest contact of the last step, if near enough; each is taken once. Those before
+    /// The nearest contact of the last step, if near enough; each is taken once. Those before
     /// `from` lie too far left for all that come.
     fn take_nearest(
         &mut self,
         last: &[LoadedContact],
         from: &mut usize,
         contact: &Contact,
-    ) -> Option<u64> {
+    ) -> Option<Contact> {
         let place = (contact.part, contact.point.x);
         let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + SAME_PLACE) < place;
         while last.get(*from).is_some_and(behind) {
@@ -95,16 +96,23 @@ impl Identity {
             (known.part, known.point.x - SAME_PLACE) <= place
         });
         let free = within.filter(|i| !self.taken[*i]);
-        let nearest = nearest(free.map(|i| (i, &last[i].contact)), contact)?;
+        let nearest = nearest(free.map(|i| (i, last[i].contact)), contact)?;
         self.taken[nearest] = true;
-        Some(last[nearest].contact.number)
+        Some(last[nearest].contact)
     }
 
     /// The number of the nearest contact that has opened, if near enough; it is lost no more.
     fn find_again(&mut self, contact: &Contact) -> Option<u64> {
-        let lost = self.lost.iter().map(|lost| &lost.contact).enumerate();
+        let lost = self.lost.iter().map(|lost| lost.contact).enumerate();
         let of_part = lost.filter(|(_, lost)| lost.part == contact.part);
-        let nearest = nearest(of_part, contact)?;
+        let both_ends = of_part.flat_map(|(i, lost)| {
+            let closed = Contact {
+                point: lost.began,
+                ..lost
+            };
+            [(i, lost), (i, closed)]
+        });
+        let nearest = nearest(both_ends, contact)?;
         Some(self.lost.remove(nearest).contact.number)
     }
 
@@ -126,10 +134,7 @@ impl Identity {
 }
 
 /// The nearest of the contacts of the same part, if it is at the same place.
-fn nearest<'a>(
-    known: impl Iterator<Item = (usize, &'a Contact)>,
-    contact: &Contact,
-) -> Option<usize> {
+fn nearest(known: impl Iterator<Item = (usize, Contact)>, contact: &Contact) -> Option<usize> {
     let alike = known.filter(|(_, c)| c.normal.dot(contact.normal) > SAME_NORMAL);
     alike
         .map(|(i, c)| (i, (c.point - contact.point).length()))

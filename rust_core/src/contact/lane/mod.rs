@@ -78,14 +78,16 @@ pub(super) enum On {
 impl Touch {
     /// The same as a contact of a part.
     pub(super) fn contact(&self, part: usize) -> Contact {
+        let point = self.place + self.normal * (0.5 * self.distance);
         Contact {
             part,
             facet: self.facet,
             edge: self.edge,
-            point: self.place + self.normal * (0.5 * self.distance),
+            point,
             normal: self.normal,
             distance: self.distance,
             number: 0,
+            began: point,
         }
     }
 }
