@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use super::Contact;
 use crate::geometry::plausible;
 
+/// [m] Ground that comes to bear so close to a dent was in it.
+const BESIDE: f64 = 0.01;
+
 /// The dents that are left.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Dents {
@@ -44,13 +47,29 @@ impl Dents {
         self.dents.iter().all(fits)
     }
 
-    /// Measures gaps from the bottom of the dents.
-    pub(crate) fn forgive(&self, contacts: &mut [Contact]) {
+    /// Measures gaps from the bottom of the dents; `last` are the contacts of the last step.
+    ///
+    /// Where the ground in a dent comes to bear on another face of the part, too, that is dented as deep.
+    pub(crate) fn forgive<'a>(
+        &mut self,
+        contacts: &mut [Contact],
+        last: impl Iterator<Item = &'a Contact> + Clone,
+    ) {
         if self.dents.is_empty() {
             return;
         }
         for contact in contacts {
-            contact.distance += self.depth_at(contact).unwrap_or(0.0);
+            let is_new = || last.clone().all(|c| c.number != contact.number);
+            let known = self.depth_at(contact);
+            if let Some(depth) = known {
+                contact.distance += depth;
+            } else if is_new() && let Some(depth) = self.depth_beside(contact, last.clone()) {
+                contact.distance += depth;
+                self.dents.push(Dent {
+                    contact: contact.number,
+                    depth,
+                });
+            }
         }
     }
 
@@ -69,11 +88,24 @@ impl Dents {
         self.dents = left.collect();
     }
 
-    /// [m] Depth of the dent at the contact, if there is one.
+    /// [m] Depth of the dent at a contact, if there is one.
     fn depth_at(&self, contact: &Contact) -> Option<f64> {
         let mut dents = self.dents.iter();
         let at = dents.find(|dent| dent.contact == contact.number);
         at.map(|dent| dent.depth)
+    }
+
+    /// [m] Depth of the nearest dent of the same part beside a contact, if there is one.
+    fn depth_beside<'a>(
+        &self,
+        contact: &Contact,
+        last: impl Iterator<Item = &'a Contact>,
+    ) -> Option<f64> {
+        let apart = |c: &Contact| (c.point - contact.point).length();
+        let of_part = last.filter(|c| c.part == contact.part && apart(c) < BESIDE);
+        let dented = of_part.filter_map(|c| Some((apart(c), self.depth_at(c)?)));
+        let nearest = dented.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, depth)| depth)
     }
 }
 
