@@ -63,7 +63,9 @@ impl Dents {
             let known = self.depth_at(contact);
             if let Some(depth) = known {
                 contact.distance += depth;
-            } else if is_new() && let Some(depth) = self.depth_beside(contact, last.clone()) {
+            } else if is_new()
+                && let Some(depth) = self.depth_beside(contact, last.clone())
+            {
                 contact.distance += depth;
                 self.dents.push(Dent {
                     contact: contact.number,
@@ -111,52 +113,86 @@ impl Dents {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    #![allow(clippy::float_cmp)] // sums of exact lengths
 
-    fn contact(x: f64, distance: f64) -> Contact {
+    use super::*;
+    use crate::geometry::Vector;
+
+    fn contact(number: u64, x: f64, distance: f64) -> Contact {
+        let point = Vector::new(x, 0.0);
         Contact {
             part: 0,
             facet: 0,
             edge: 1,
-            point: Vector::new(x, 0.0),
+            point,
             normal: Vector::Y,
             distance,
+            number,
+            began: point,
         }
     }
 
-    /// The gap that is left of a contact.
-    fn gap(dents: &Dents, x: f64, distance: f64) -> f64 {
-        let mut contacts = [contact(x, distance)];
-        dents.forgive(&mut contacts);
+    /// The gap that is left of a contact, which the last step had.
+    fn gap(dents: &mut Dents, x: f64, distance: f64) -> f64 {
+        let last = contact(1, x, distance);
+        let mut contacts = [last];
+        dents.forgive(&mut contacts, [last].iter());
         contacts[0].distance
     }
 
     /// A step that ends with that distance.
     fn step(dents: &mut Dents, x: f64, distance: f64) {
-        let contact = contact(x, gap(dents, x, distance));
+        let contact = contact(1, x, gap(dents, x, distance));
         dents.heal([contact].iter());
     }
 
     #[test]
     fn a_dent_is_no_penetration_but_may_not_grow() {
-        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert!(gap(&dents, 0.0, -0.04).abs() < 1e-15);
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+        assert!(gap(&mut dents, 0.0, -0.04).abs() < 1e-15);
         step(&mut dents, 0.001, -0.05);
-        assert!((gap(&dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
     }
 
     #[test]
     fn a_dent_heals_and_stays_healed() {
-        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
         step(&mut dents, 0.0, -0.03);
-        assert!((gap(&dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
         step(&mut dents, 0.0, 0.001);
-        assert!((gap(&dents, 0.0, -0.001) + 0.001).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.0, -0.001) + 0.001).abs() < 1e-15);
     }
 
     #[test]
-    fn elsewhere_the_part_is_whole() {
-        let dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert!((gap(&dents, 0.1, -0.02) + 0.02).abs() < 1e-15);
+    fn another_contact_beside_a_dent_has_none_of_it() {
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+        let last = [contact(1, 0.0, -0.04), contact(2, 0.009, 0.0)];
+        let mut contacts = [contact(1, 0.0, -0.04), contact(2, 0.009, -0.02)];
+        dents.forgive(&mut contacts, last.iter());
+        assert_eq!(contacts.map(|c| c.distance), [0.0, -0.02]);
+    }
+
+    #[test]
+    fn ground_in_a_dent_is_forgiven_where_it_comes_to_bear_on_another_face() {
+        let gap = |x: f64, part: usize| {
+            let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+            let last = [contact(1, 0.0, -0.04)];
+            let mut closed = contact(2, x, -0.03);
+            closed.part = part;
+            let mut contacts = [last[0], closed];
+            dents.forgive(&mut contacts, last.iter());
+            dents.heal(contacts.iter());
+            // From then on its dent is as deep as the ground was in it. In micrometres:
+            let mut deeper = [contact(2, x, -0.05)];
+            dents.forgive(&mut deeper, contacts.iter());
+            [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())
+        };
+        assert_eq!(gap(0.009, 0), [10_000.0, -20_000.0]);
+        assert_eq!(gap(0.011, 0), [-30_000.0, -50_000.0], "that is elsewhere");
+        assert_eq!(
+            gap(0.009, 1),
+            [-30_000.0, -50_000.0],
+            "that is another part"
+        );
     }
 }

@@ -118,9 +118,8 @@ impl Identity {
 
     /// Whether these can be the contacts of the last step: no two of all that are known share a number.
     pub(super) fn fits(&self, last: &[LoadedContact], model: &Model, lanes: &[Profile]) -> bool {
-        let fits = |lost: &Lost| {
-            lost.contact.fits(model, lanes) && (0.0..REMEMBERED).contains(&lost.age)
-        };
+        let fits =
+            |lost: &Lost| lost.contact.fits(model, lanes) && (0.0..REMEMBERED).contains(&lost.age);
         let last = last.iter().map(|l| l.contact.number);
         let lost = self.lost.iter().map(|lost| lost.contact.number);
         let mut numbers: Vec<u64> = last.chain(lost).collect();
@@ -128,7 +127,9 @@ impl Identity {
         self.given <= MOST_GIVEN
             && self.lost.len() <= MOST_LOST
             && self.lost.iter().all(fits)
-            && numbers.iter().all(|number| (1..=self.given).contains(number))
+            && numbers
+                .iter()
+                .all(|number| (1..=self.given).contains(number))
             && numbers.windows(2).all(|pair| pair[0] < pair[1])
     }
 }

@@ -16,8 +16,8 @@ use crate::terrain::Profile;
 pub(crate) struct Impulses {
     push: Option<f64>,
     motors: Vec<Motor>,
-    contacts: Vec<LoadedContact>,
-    identity: Identity,
+    pub(super) contacts: Vec<LoadedContact>,
+    pub(super) identity: Identity,
     chains: Vec<ChainImpulses>,
     flippers: Vec<Motor>,
 }

@@ -3,6 +3,8 @@
 //! A state that rattles has no forces of an instant that balance, but its means over a time in
 //! which it gets nowhere do.
 
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::Reading;
@@ -111,6 +113,7 @@ impl Signals {
                 && (0.0..1e15).contains(&block.steps)
                 && numbers.iter().all(|number| number.is_finite())
                 && block.contacts.iter().all(|c| c.fits(model, lanes))
+                && block.numbers_differ()
         })
     }
 
@@ -137,6 +140,12 @@ impl Signals {
 }
 
 impl Block {
+    fn numbers_differ(&self) -> bool {
+        let mut seen = HashSet::new();
+        let mut numbers = self.contacts.iter().map(|c| c.last.number);
+        numbers.all(|number| seen.insert(number))
+    }
+
     fn add(
         &mut self,
         now: &Reading,
