@@ -224,11 +224,11 @@ def test_a_wheel_is_one_contact_from_facet_to_facet() -> None:
     robot = ROBOT.with_track(c2d.LineOfWheels(3))
     contacts = c2d.simulate(robot, ground, start=c2d.Start(approach=0.6), duration=1.5).contacts
     assert contacts["contact"].dtype == np.int64
-    for wheel in range(3):
+    for wheel in (0, 2):  # the ground is hollow under the middle one
         rows = contacts["body"] == wheel
         assert len(set(contacts["segment"][rows])) > 20
         assert len(set(contacts["contact"][rows])) == 1
-    assert len(set(contacts["contact"])) == 3
+    assert len(set(contacts["contact"])) == 2
 
 
 def test_a_diagnosis_names_contacts_by_the_numbers_of_the_table() -> None:
