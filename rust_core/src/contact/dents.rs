@@ -53,7 +53,7 @@ impl Dents {
     pub(crate) fn forgive<'a>(
         &mut self,
         contacts: &mut [Contact],
-        last: impl Iterator<Item = &'a Contact> + Clone,
+        last: &(impl Iterator<Item = &'a Contact> + Clone),
     ) {
         if self.dents.is_empty() {
             return;
@@ -136,7 +136,7 @@ mod tests {
     fn gap(dents: &mut Dents, x: f64, distance: f64) -> f64 {
         let last = contact(1, x, distance);
         let mut contacts = [last];
-        dents.forgive(&mut contacts, [last].iter());
+        dents.forgive(&mut contacts, &[last].iter());
         contacts[0].distance
     }
 
@@ -168,7 +168,7 @@ mod tests {
         let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
         let last = [contact(1, 0.0, -0.04), contact(2, 0.009, 0.0)];
         let mut contacts = [contact(1, 0.0, -0.04), contact(2, 0.009, -0.02)];
-        dents.forgive(&mut contacts, last.iter());
+        dents.forgive(&mut contacts, &last.iter());
         assert_eq!(contacts.map(|c| c.distance), [0.0, -0.02]);
     }
 
@@ -180,11 +180,11 @@ mod tests {
             let mut closed = contact(2, x, -0.03);
             closed.part = part;
             let mut contacts = [last[0], closed];
-            dents.forgive(&mut contacts, last.iter());
+            dents.forgive(&mut contacts, &last.iter());
             dents.heal(contacts.iter());
             // From then on its dent is as deep as the ground was in it. In micrometres:
             let mut deeper = [contact(2, x, -0.05)];
-            dents.forgive(&mut deeper, contacts.iter());
+            dents.forgive(&mut deeper, &contacts.iter());
             [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())
         };
         assert_eq!(gap(0.009, 0), [10_000.0, -20_000.0]);

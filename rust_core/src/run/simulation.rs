@@ -130,7 +130,7 @@ impl Simulation {
             .find(middle, &self.then, prediction, &mut self.contacts);
         self.dynamics.recognise(&mut self.contacts);
         let last = self.dynamics.loaded().iter().map(|l| &l.contact);
-        self.dents.forgive(&mut self.contacts, last);
+        self.dents.forgive(&mut self.contacts, &last);
     }
 
     /// Contacts of this very instant.
