@@ -21,8 +21,8 @@ const SAME_NORMAL: f64 = 0.9;
 /// [s] For so long a contact that has opened is remembered: the default window of a stop, over which its
 /// forces are averaged.
 const REMEMBERED: f64 = 1.0;
-/// So many of them are remembered at most. Stops have a few; more there are only where all moves so fast that
-/// no contact is at the place of another.
+/// So many of them are remembered at most. Runs have some ten of them, those of 24 gear wheels up to 240; more
+/// there are only where all moves so fast that no contact is at the place of another.
 const MOST_LOST: usize = 256;
 /// Numbers that a run comes nowhere near, and that leave room for more.
 const MOST_GIVEN: u64 = 1 << 60;
