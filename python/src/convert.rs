@@ -185,6 +185,7 @@ fn trace(
 pub(crate) fn contacts(py: Python<'_>, table: ContactTable) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
     columns.set_item("time", table.time.into_pyarray(py))?;
+    columns.set_item("contact", table.contact.into_pyarray(py))?;
     columns.set_item("lane", table.lane.into_pyarray(py))?;
     columns.set_item("body", table.body.into_pyarray(py))?;
     columns.set_item("body_kind", table.body_kind.into_pyarray(py))?;

@@ -83,6 +83,7 @@ fn contacts<'py>(py: Python<'py>, found: &[StopContact]) -> PyResult<Bound<'py, 
         let column: Vec<bool> = found.iter().map(value).collect();
         column.into_pyarray(py)
     };
+    columns.set_item("contact", whole(|c| c.number as i64))?;
     columns.set_item("lane", whole(|c| c.side as i64))?;
     columns.set_item("body", whole(|c| c.body as i64))?;
     columns.set_item("body_kind", whole(|c| c.kind as i64))?;

@@ -217,9 +217,35 @@ def test_contacts_carry_the_weight_on_flat_ground() -> None:
     assert set(run.contacts["body_kind"]) == {1}  # belt
 
 
+def test_a_wheel_is_one_contact_from_facet_to_facet() -> None:
+    xs = np.linspace(-3.0, 3.0, 601)
+    # All but flat: facets of one line would be one.
+    ground = c2d.terrains.from_points(np.column_stack([xs, 1e-3 * xs**2]), goal=1.0)
+    robot = ROBOT.with_track(c2d.LineOfWheels(3))
+    contacts = c2d.simulate(robot, ground, start=c2d.Start(approach=0.6), duration=1.5).contacts
+    assert contacts["contact"].dtype == np.int64
+    for wheel in (0, 2):  # the ground is hollow under the middle one
+        rows = contacts["body"] == wheel
+        assert len(set(contacts["segment"][rows])) > 20
+        assert len(set(contacts["contact"][rows])) == 1
+    assert len(set(contacts["contact"])) == 2
+
+
+def test_a_diagnosis_names_contacts_by_the_numbers_of_the_table() -> None:
+    robot = ROBOT.with_track(c2d.LineOfWheels(4, wheel=c2d.GearWheel()))
+    run = c2d.simulate(robot, c2d.terrains.step(0.2), duration=6.0)
+    assert run.diagnosis is not None
+    bearing, table = run.diagnosis.contacts, run.contacts
+    bodies = dict(zip(table["contact"].tolist(), table["body"].tolist(), strict=True))
+    assert len(set(bearing["contact"])) == len(bearing["contact"]) > 1
+    for contact, body in zip(bearing["contact"].tolist(), bearing["body"].tolist(), strict=True):
+        assert bodies[contact] == body
+
+
 def test_the_contact_table_has_the_documented_columns(run: c2d.Run) -> None:
     assert list(run.contacts) == [
         "time",
+        "contact",
         "lane",
         "body",
         "body_kind",

@@ -2,14 +2,18 @@
 //!
 //! The part is dented there: the overlap that it begins with is no penetration. It may not grow, and
 //! heals as the robot's own motion lets the ground out, so it never gives the robot any energy.
+//!
+//! The equations: docs/physics.md, "Contacts".
+
+use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
 use super::Contact;
-use crate::geometry::{Vector, plausible};
+use crate::geometry::plausible;
 
-/// [m] A dent moves less than this in a step.
-const SAME_PLACE: f64 = 0.01;
+/// [m] Ground that comes to bear so close to a dent was in it.
+const BESIDE: f64 = 0.01;
 
 /// The dents that are left.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -19,8 +23,9 @@ pub(crate) struct Dents {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Dent {
-    part: usize,
-    point: Vector,
+    /// Number of the contact that it is at.
+    contact: u64,
+    /// [m]
     depth: f64,
 }
 
@@ -28,21 +33,47 @@ impl Dents {
     /// Dents as deep as these contacts overlap.
     pub(crate) fn of(contacts: &[Contact]) -> Self {
         let overlapping = contacts.iter().filter(|c| c.distance < 0.0);
+        let dents = overlapping.map(|c| Dent {
+            contact: c.number,
+            depth: -c.distance,
+        });
         Self {
-            dents: overlapping.map(|c| Dent::of(c, -c.distance)).collect(),
+            dents: dents.collect(),
         }
     }
 
-    /// Whether a robot of so many parts can have them.
-    pub(crate) fn fits(&self, parts: usize) -> bool {
-        let fits = |d: &Dent| d.part < parts && plausible(&[d.point.x, d.point.y, d.depth]);
+    /// Whether the contacts of a last step can have left them.
+    pub(crate) fn fits<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> bool {
+        let numbers: HashSet<u64> = contacts.map(|c| c.number).collect();
+        let fits = |d: &Dent| plausible(&[d.depth]) && numbers.contains(&d.contact);
         self.dents.iter().all(fits)
     }
 
-    /// Measures gaps from the bottom of the dents.
-    pub(crate) fn forgive(&self, contacts: &mut [Contact]) {
+    /// Measures gaps from the bottom of the dents; `last` are the contacts of the last step.
+    ///
+    /// Where the ground in a dent comes to bear on another face of the part, too, that is dented as deep.
+    pub(crate) fn forgive<'a>(
+        &mut self,
+        contacts: &mut [Contact],
+        last: &(impl Iterator<Item = &'a Contact> + Clone),
+    ) {
+        if self.dents.is_empty() {
+            return;
+        }
         for contact in contacts {
-            contact.distance += self.depth_at(contact).unwrap_or(0.0);
+            let is_new = || last.clone().all(|c| c.number != contact.number);
+            let known = self.depth_at(contact);
+            if let Some(depth) = known {
+                contact.distance += depth;
+            } else if is_new()
+                && let Some(depth) = self.depth_beside(contact, last.clone())
+            {
+                contact.distance += depth;
+                self.dents.push(Dent {
+                    contact: contact.number,
+                    depth,
+                });
+            }
         }
     }
 
@@ -53,80 +84,117 @@ impl Dents {
         }
         let left = contacts.filter_map(|contact| {
             let depth = self.depth_at(contact)? - contact.distance.max(0.0);
-            (depth > 0.0).then(|| Dent::of(contact, depth))
+            (depth > 0.0).then_some(Dent {
+                contact: contact.number,
+                depth,
+            })
         });
         self.dents = left.collect();
     }
 
-    /// [m] Depth of the nearest dent, if there is one at the contact.
+    /// [m] Depth of the dent at a contact, if there is one.
     fn depth_at(&self, contact: &Contact) -> Option<f64> {
-        let distance = |dent: &Dent| (dent.point - contact.point).length();
-        self.dents
-            .iter()
-            .filter(|dent| dent.part == contact.part && distance(dent) < SAME_PLACE)
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .map(|dent| dent.depth)
+        let mut dents = self.dents.iter();
+        let at = dents.find(|dent| dent.contact == contact.number);
+        at.map(|dent| dent.depth)
     }
-}
 
-impl Dent {
-    fn of(contact: &Contact, depth: f64) -> Self {
-        Self {
-            part: contact.part,
-            point: contact.point,
-            depth,
-        }
+    /// [m] Depth of the nearest dent of the same part beside a contact, if there is one.
+    fn depth_beside<'a>(
+        &self,
+        contact: &Contact,
+        last: impl Iterator<Item = &'a Contact>,
+    ) -> Option<f64> {
+        let apart = |c: &Contact| (c.point - contact.point).length();
+        let of_part = last.filter(|c| c.part == contact.part && apart(c) < BESIDE);
+        let dented = of_part.filter_map(|c| Some((apart(c), self.depth_at(c)?)));
+        let nearest = dented.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, depth)| depth)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    #![allow(clippy::float_cmp)] // sums of exact lengths
 
-    fn contact(x: f64, distance: f64) -> Contact {
+    use super::*;
+    use crate::geometry::Vector;
+
+    fn contact(number: u64, x: f64, distance: f64) -> Contact {
+        let point = Vector::new(x, 0.0);
         Contact {
             part: 0,
             facet: 0,
             edge: 1,
-            point: Vector::new(x, 0.0),
+            point,
             normal: Vector::Y,
             distance,
+            number,
+            began: point,
         }
     }
 
-    /// The gap that is left of a contact.
-    fn gap(dents: &Dents, x: f64, distance: f64) -> f64 {
-        let mut contacts = [contact(x, distance)];
-        dents.forgive(&mut contacts);
+    /// The gap that is left of a contact, which the last step had.
+    fn gap(dents: &mut Dents, x: f64, distance: f64) -> f64 {
+        let last = contact(1, x, distance);
+        let mut contacts = [last];
+        dents.forgive(&mut contacts, &[last].iter());
         contacts[0].distance
     }
 
     /// A step that ends with that distance.
     fn step(dents: &mut Dents, x: f64, distance: f64) {
-        let contact = contact(x, gap(dents, x, distance));
+        let contact = contact(1, x, gap(dents, x, distance));
         dents.heal([contact].iter());
     }
 
     #[test]
     fn a_dent_is_no_penetration_but_may_not_grow() {
-        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert!(gap(&dents, 0.0, -0.04).abs() < 1e-15);
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+        assert!(gap(&mut dents, 0.0, -0.04).abs() < 1e-15);
         step(&mut dents, 0.001, -0.05);
-        assert!((gap(&dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.001, -0.05) + 0.01).abs() < 1e-15);
     }
 
     #[test]
     fn a_dent_heals_and_stays_healed() {
-        let mut dents = Dents::of(&[contact(0.0, -0.04)]);
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
         step(&mut dents, 0.0, -0.03);
-        assert!((gap(&dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.0, -0.04) + 0.01).abs() < 1e-15);
         step(&mut dents, 0.0, 0.001);
-        assert!((gap(&dents, 0.0, -0.001) + 0.001).abs() < 1e-15);
+        assert!((gap(&mut dents, 0.0, -0.001) + 0.001).abs() < 1e-15);
     }
 
     #[test]
-    fn elsewhere_the_part_is_whole() {
-        let dents = Dents::of(&[contact(0.0, -0.04)]);
-        assert!((gap(&dents, 0.1, -0.02) + 0.02).abs() < 1e-15);
+    fn another_contact_beside_a_dent_has_none_of_it() {
+        let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+        let last = [contact(1, 0.0, -0.04), contact(2, 0.009, 0.0)];
+        let mut contacts = [contact(1, 0.0, -0.04), contact(2, 0.009, -0.02)];
+        dents.forgive(&mut contacts, &last.iter());
+        assert_eq!(contacts.map(|c| c.distance), [0.0, -0.02]);
+    }
+
+    #[test]
+    fn ground_in_a_dent_is_forgiven_where_it_comes_to_bear_on_another_face() {
+        let gap = |x: f64, part: usize| {
+            let mut dents = Dents::of(&[contact(1, 0.0, -0.04)]);
+            let last = [contact(1, 0.0, -0.04)];
+            let mut closed = contact(2, x, -0.03);
+            closed.part = part;
+            let mut contacts = [last[0], closed];
+            dents.forgive(&mut contacts, &last.iter());
+            dents.heal(contacts.iter());
+            // From then on its dent is as deep as the ground was in it. In micrometres:
+            let mut deeper = [contact(2, x, -0.05)];
+            dents.forgive(&mut deeper, &contacts.iter());
+            [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())
+        };
+        assert_eq!(gap(0.009, 0), [10_000.0, -20_000.0]);
+        assert_eq!(gap(0.011, 0), [-30_000.0, -50_000.0], "that is elsewhere");
+        assert_eq!(
+            gap(0.009, 1),
+            [-30_000.0, -50_000.0],
+            "that is another part"
+        );
     }
 }

@@ -1,4 +1,6 @@
 //! Who finds the contacts.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::Contact;
 use super::own::OwnContact;

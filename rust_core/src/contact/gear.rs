@@ -3,6 +3,8 @@
 //! The root circle bears between grousers, the corners of the tips bear on faces and corners of the
 //! ground, flanks and tips on its corners. Where a corner of the tip and one of the ground have run
 //! into each other, the way out is the shortest of those that both allow.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::Contact;
 use super::lane::{Lane, On, Touch};

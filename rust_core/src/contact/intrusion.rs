@@ -1,5 +1,7 @@
 //! What of the ground is inside the track: its connected pieces within the taut belt round the
 //! robot's own bodies.
+//!
+//! The equations: docs/physics.md, "Shapes".
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,6 @@
 //! Contacts between the robot's parts and the ground.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 mod dents;
 mod finder;
@@ -36,6 +38,10 @@ pub(crate) struct Contact {
     pub normal: Vector,
     /// [m] Gap; negative in penetration.
     pub distance: f64,
+    /// The same from step to step for as long as the contact lasts, and no other's; 0 as it is found.
+    pub number: u64,
+    /// [m] Where it closed.
+    pub began: Vector,
 }
 
 impl Contact {
@@ -45,7 +51,7 @@ impl Contact {
         lane.is_some_and(|lane| {
             let edges = -1..lane.edges.len() as i32;
             self.facet + 1 < lane.points.len() && edges.contains(&self.edge)
-        }) && plausible_vectors(&[self.point, self.normal])
+        }) && plausible_vectors(&[self.point, self.normal, self.began])
             && plausible(&[self.distance])
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! The overlap can be left along each of the four faces that meet there, as far as the other corner is
 //! what the face meets. The shortest of these ways is the contact; the others yield to it.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::lane::{Corner, Lane, On, ROUNDING, Touch};
 use crate::geometry::{Vector, cross};

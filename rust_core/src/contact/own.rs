@@ -1,6 +1,8 @@
 //! Our own contact: every part's outline against the faces and corners of the lane, exactly.
 //!
 //! Contacts are of this very pose, nothing is kept, and no memory is taken but for the list of contacts.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,8 @@
 //!
 //! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
 //! kept from step to step, so a contact is always of this pose.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use rapier2d_f64::parry::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -128,13 +130,16 @@ impl ReferenceContact {
             let facet = profile.points.len() - 2 - manifold.subshape1 as usize;
             for point in manifold.points.iter().filter(|p| p.dist < prediction) {
                 let on_solid = pose.transform_point(point.local_p2);
+                let middle = 0.5 * (point.local_p1 + on_solid);
                 contacts.push(Contact {
                     part: body,
                     facet,
                     edge: profile.edge_at(facet, point.local_p1),
-                    point: 0.5 * (point.local_p1 + on_solid),
+                    point: middle,
                     normal: manifold.local_n1,
                     distance: point.dist,
+                    number: 0,
+                    began: middle,
                 });
             }
         }

@@ -92,6 +92,8 @@ pub struct LoadedIntrusion {
 /// A contact of a stop, in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopContact {
+    /// Its number.
+    pub number: u64,
     /// Lane that it is with.
     pub side: Side,
     /// Index of the part.

@@ -97,6 +97,7 @@ impl Scene<'_> {
             .iter()
             .filter(|b| b.normal_force > 0.0)
             .map(|b| StopContact {
+                number: b.contact.number,
                 body: b.contact.part,
                 kind: self.model.parts[b.contact.part].kind,
                 segment: b.contact.facet,

@@ -69,6 +69,8 @@ impl Stage {
                 point: Vector::new(x, POST),
                 normal: Vector::Y,
                 distance: 0.0,
+                number: facet as u64,
+                began: Vector::ZERO,
             },
             normal_force: share * self.weight(),
             friction_force: 0.0,

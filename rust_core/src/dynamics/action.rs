@@ -1,4 +1,6 @@
 //! A direction in which a constraint acts, and how velocities count along it.
+//!
+//! The equations: docs/physics.md, "Levers".
 
 use super::levers::Direction;
 use crate::geometry::Vector;

@@ -1,4 +1,6 @@
 //! The arms at one end in the equations of motion.
+//!
+//! The equations: docs/physics.md, "Arms".
 
 use super::action::Action;
 use super::damper::Damper;

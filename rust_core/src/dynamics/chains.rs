@@ -1,4 +1,6 @@
 //! What a robot's chains of shoes add to the equations of motion.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use super::Dynamics;
 use super::arm::Arm;

@@ -1,4 +1,6 @@
 //! A change of all velocities: from those of a state to those that come out of a solve.
+//!
+//! The equations: docs/physics.md, "Descent".
 
 use super::Dynamics;
 use super::chain::Chain;

@@ -1,4 +1,6 @@
 //! An impulse that falls with a speed: what every constraint is to a solve.
+//!
+//! The equations: docs/physics.md, "The linear system".
 
 /// Compliance of the dampers, in units of the contact's own admittance.
 pub(super) const DAMPING: f64 = 1e-6;

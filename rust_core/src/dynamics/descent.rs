@@ -4,6 +4,8 @@
 //! each step no longer than the potential falls along it, ends at the one minimum from wherever it
 //! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
 //! energy.
+//!
+//! The equations: docs/physics.md, "Descent".
 
 use super::Dynamics;
 use super::damper::Damper;

@@ -6,6 +6,8 @@
 //! the damping leaves vanishes as the impulses become their own starting point. The system has three
 //! rows for the chassis, whatever the number of contacts, and one more to be eliminated at once for
 //! each drive with a spin of its own.
+//!
+//! The equations: docs/physics.md, "Direct search".
 
 use super::Dynamics;
 use super::action::Action;

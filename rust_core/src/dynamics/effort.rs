@@ -1,4 +1,6 @@
 //! What the solves of the motion took: nothing that moves depends on it.
+//!
+//! The equations: docs/physics.md, "Direct search".
 
 use serde::{Deserialize, Serialize};
 

@@ -4,6 +4,8 @@
 //! while its motor holds the commanded rate: it is then inertia of the chassis. Its mass enters as a
 //! damper about the velocity that its centre of mass would have by itself: the impulse of that damper is
 //! what the pivot takes.
+//!
+//! The equations: docs/physics.md, "Arms".
 
 #[cfg(test)]
 mod tests;

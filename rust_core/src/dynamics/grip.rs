@@ -1,4 +1,6 @@
-//! What a contact does at given velocities: it is open, holds or slides, and with which impulses.
+//! What a contact does: it is open, sticks or slides.
+//!
+//! The equations: docs/physics.md, "Coulomb's law".
 
 use serde::{Deserialize, Serialize};
 

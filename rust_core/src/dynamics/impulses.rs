@@ -1,11 +1,15 @@
 //! What a step hands to the next besides the state: where its solves start from.
+//!
+//! The equations: docs/physics.md, "State".
 
 use serde::{Deserialize, Serialize};
 
 use super::Dynamics;
 use super::LoadedContact;
 use super::chain::{Chain, ChainImpulses};
+use super::identity::Identity;
 use super::motor::Motor;
+use crate::contact::Contact;
 use crate::geometry::plausible;
 use crate::terrain::Profile;
 
@@ -14,9 +18,17 @@ use crate::terrain::Profile;
 pub(crate) struct Impulses {
     push: Option<f64>,
     motors: Vec<Motor>,
-    contacts: Vec<LoadedContact>,
+    pub(super) contacts: Vec<LoadedContact>,
+    pub(super) identity: Identity,
     chains: Vec<ChainImpulses>,
     flippers: Vec<Motor>,
+}
+
+impl Impulses {
+    /// The contacts of the step.
+    pub(crate) fn contacts(&self) -> impl Iterator<Item = &Contact> {
+        self.contacts.iter().map(|l| &l.contact)
+    }
 }
 
 impl Dynamics {
@@ -26,6 +38,7 @@ impl Dynamics {
             push: self.push.as_ref().map(|push| push.force),
             motors: self.motors.clone(),
             contacts: self.loaded.clone(),
+            identity: self.identity.clone(),
             chains: self.chains.iter().map(Chain::impulses).collect(),
             flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
         }
@@ -37,6 +50,7 @@ impl Dynamics {
             push,
             motors,
             contacts,
+            identity,
             chains,
             flippers,
         } = impulses;
@@ -50,6 +64,7 @@ impl Dynamics {
                 .zip(&self.chains)
                 .all(|(i, chain)| chain.fits(i))
             && contacts.iter().all(|l| l.fits(&self.model, lanes))
+            && identity.fits(contacts, &self.model, lanes)
     }
 
     /// Starts from what a step of the same model left.
@@ -59,6 +74,7 @@ impl Dynamics {
         }
         self.motors = impulses.motors;
         self.loaded = impulses.contacts;
+        self.identity = impulses.identity;
         for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
             chain.start_from(impulses);
         }

@@ -1,4 +1,6 @@
 //! What a contact does at given velocities, and with which impulses: Coulomb's law with softness.
+//!
+//! The equations: docs/physics.md, "Coulomb's law".
 
 use super::damper::{DAMPING, Damper};
 use super::grip::Grip;

@@ -1,4 +1,6 @@
 //! Where a contact lies on the robot, and how the velocities of body, flipper and drive add up along it.
+//!
+//! The equations: docs/physics.md, "Levers".
 
 use super::state::Carrier;
 use crate::contact::Contact;

@@ -1,4 +1,6 @@
 //! A contact with what a step found that it does.
+//!
+//! The equations: docs/physics.md, "State".
 
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +27,22 @@ pub(crate) struct LoadedContact {
     pub friction_guess: f64,
     /// What it did last.
     pub grip: Grip,
-    pub carried_over: bool,
 }
 
 impl LoadedContact {
+    /// One that has not borne yet.
+    pub(crate) fn open(contact: Contact) -> Self {
+        Self {
+            contact,
+            normal_force: 0.0,
+            friction_force: 0.0,
+            surface_speed: 0.0,
+            normal_guess: 0.0,
+            friction_guess: 0.0,
+            grip: Grip::Open,
+        }
+    }
+
     /// The same, with its forces.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let forces = [

@@ -5,6 +5,8 @@
 //! only. Before the motion constraints close gaps and push out of penetration, after it they do not:
 //! the soft step of Erin Catto's 2D solvers (2024). A surface speed is found together with the contact
 //! forces, so that the force limit of its motor acts on the net traction inside the step.
+//!
+//! The equations: docs/physics.md, "A substep".
 
 mod action;
 mod arm;
@@ -17,6 +19,7 @@ mod direct;
 mod effort;
 mod flippers;
 mod grip;
+mod identity;
 mod impulses;
 mod law;
 mod levers;
@@ -37,6 +40,7 @@ mod way;
 
 use arm::Arm;
 use chain::Chain;
+use identity::{Identity, Numbered};
 use motor::Motor;
 use phase::Phase;
 use push::Push;
@@ -73,8 +77,6 @@ const COLLISION_SPEED: f64 = 0.001;
 /// an edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which
 /// a robot just climbs by 1 %, this shifts it by less than 0.1 %.
 const COLLISION_SUBSTEP: f64 = 2e-5;
-/// [m] A contact carries on from the last step's if it moved less than this.
-const CARRIED_OVER: f64 = 5e-3;
 
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
@@ -99,6 +101,7 @@ pub(crate) struct Dynamics {
     shoes_a_chain: usize,
     phase: Phase,
     loaded: Vec<LoadedContact>,
+    identity: Identity,
     /// What the last step took.
     effort: Effort,
     /// [N] Push of the surroundings at the centre of mass.
@@ -132,6 +135,7 @@ impl Dynamics {
             solver,
             rows: Vec::new(),
             loaded: Vec::new(),
+            identity: Identity::default(),
             effort: Effort::default(),
             outer_force: Vector::ZERO,
         }
@@ -151,9 +155,23 @@ impl Dynamics {
         &self.model
     }
 
+    /// Gives the contacts of the next step their numbers.
+    pub(crate) fn recognise(&mut self, contacts: &mut [Contact]) {
+        let dt = self.solver.time_step;
+        self.identity.recognise(&self.loaded, contacts, dt);
+    }
+
+    /// The same of contacts that another model of the robot takes over: the next step goes on from them,
+    /// without forces.
+    pub(crate) fn take_over(&mut self, contacts: &mut [Contact]) {
+        self.recognise(contacts);
+        self.loaded = contacts.iter().copied().map(LoadedContact::open).collect();
+    }
+
     /// Advances the state by one step towards the surface speed `set_point`.
     ///
-    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it.
+    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it, with the numbers
+    /// of [`Dynamics::recognise`].
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -296,17 +314,14 @@ impl Dynamics {
         self.phase = phase;
     }
 
-    /// Turns contacts into rows, each with the impulses of the last step's nearest one.
+    /// Turns contacts into rows, each with the impulses that it had in the last step.
     fn prepare(&mut self, state: &State, contacts: &[Contact]) {
         let half = 0.5 * self.solver.time_step;
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
         self.rows.clear();
-        let mut last = Last {
-            contacts: &mut self.loaded,
-            from: 0,
-        };
+        let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
-            let last = last.take_nearest(contact);
+            let last = last.get(contact.number);
             let mut row = match self.model.parts[contact.part].mount {
                 Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
                 Mount::Chassis | Mount::Flipper(_) => {
@@ -337,37 +352,9 @@ impl Dynamics {
                 normal_guess: row.normal_guess,
                 friction_guess: row.friction_guess,
                 grip: row.grip,
-                carried_over: false,
             });
         }
         self.loaded = loaded;
         self.remember_rests(contacts.len());
-    }
-}
-
-/// The last step's contacts, from the left in each part as this step's are.
-struct Last<'a> {
-    contacts: &'a mut [LoadedContact],
-    /// Those before this one lie too far left for all that come.
-    from: usize,
-}
-
-impl Last<'_> {
-    /// The contact of the same part that lies nearest, if near enough; each is taken once.
-    fn take_nearest(&mut self, contact: &Contact) -> Option<LoadedContact> {
-        let place = (contact.part, contact.point.x);
-        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + CARRIED_OVER) < place;
-        while self.contacts.get(self.from).is_some_and(behind) {
-            self.from += 1;
-        }
-        let near = |l: &LoadedContact| (l.contact.point - contact.point).length();
-        let last = self.contacts[self.from..]
-            .iter_mut()
-            .take_while(|l| (l.contact.part, l.contact.point.x - CARRIED_OVER) <= place)
-            .filter(|l| !l.carried_over && l.contact.normal.dot(contact.normal) > 0.9)
-            .filter(|l| near(l) < CARRIED_OVER)
-            .min_by(|a, b| near(a).total_cmp(&near(b)))?;
-        last.carried_over = true;
-        Some(*last)
     }
 }

@@ -1,4 +1,6 @@
 //! What one motor does.
+//!
+//! The equations: docs/physics.md, "Motors".
 
 use serde::{Deserialize, Serialize};
 

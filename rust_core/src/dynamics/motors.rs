@@ -3,6 +3,8 @@
 //! A drive whose motor holds turns with the chassis but for the set-point: it is inertia of the chassis,
 //! wherever its wheel is, and nothing to solve for. Only drives at their limit, or without a motor, have
 //! a spin of their own.
+//!
+//! The equations: docs/physics.md, "Motors".
 
 use super::Dynamics;
 use super::motor::{AT_LIMIT, Motor, PAST};

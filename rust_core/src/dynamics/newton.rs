@@ -6,6 +6,8 @@
 //! the contacts' laws give at the velocities differs from these impulses by a misfit. Newton's method
 //! has each law start along the way that the guess follows, so that at first every contact's misfit shrinks
 //! in proportion: a step that is short enough always pays, but for kinks on the spot.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use super::Dynamics;
 use super::grip::Grip;

@@ -1,4 +1,6 @@
 //! What a solve starts from.
+//!
+//! The equations: docs/physics.md, "A substep".
 
 use crate::geometry::Vector;
 use crate::robot::Model;

@@ -1,4 +1,6 @@
 //! The push of a track that is modelled by a force alone.
+//!
+//! The equations: docs/physics.md, "Motors".
 
 use super::action::Action;
 use super::damper::{DAMPING, Damper};

@@ -1,4 +1,6 @@
 //! One contact as the solver sees it: levers on the body and its drive, gap, impulses.
+//!
+//! The equations: docs/physics.md, "Softness".
 
 use super::LoadedContact;
 use super::action::Action;

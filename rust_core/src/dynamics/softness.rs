@@ -1,4 +1,6 @@
 //! How contacts give way: as a damped spring that a step integrates implicitly.
+//!
+//! The equations: docs/physics.md, "Softness".
 
 /// Coefficients of a damped spring integrated implicitly.
 #[derive(Clone, Copy)]

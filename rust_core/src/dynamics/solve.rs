@@ -1,4 +1,6 @@
 //! The velocities at which all constraints agree: which contacts bear, grip and slide, and which motors hold.
+//!
+//! The equations: docs/physics.md, "The linear system".
 
 use super::Dynamics;
 use super::action::Action;

@@ -1,4 +1,6 @@
 //! What moves: the body and its drives.
+//!
+//! The equations: docs/physics.md, "State".
 
 use serde::{Deserialize, Serialize};
 

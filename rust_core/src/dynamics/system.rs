@@ -1,4 +1,6 @@
 //! The linear system of a solve: chassis, flippers that turn by themselves, drives with a spin of their own.
+//!
+//! The equations: docs/physics.md, "The linear system".
 
 use super::action::Action;
 use super::damper::Damper;

@@ -7,12 +7,12 @@ use crate::draw::Draw;
 use crate::geometry::{Vector, direction};
 use crate::scenario::{Scenario, Track};
 
-fn engineer() -> Scenario {
+pub(super) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
     Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
-fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
+pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
     let mut scenario = engineer();
     change(&mut scenario);
     let model = Model::new(&scenario.robot).expect("the robot can be built");
@@ -30,9 +30,11 @@ fn advance(
     set_point: f64,
     contacts: &[Contact],
 ) {
+    let mut contacts = contacts.to_vec();
     for step in 0..steps {
+        dynamics.recognise(&mut contacts);
         dynamics
-            .advance(state, contacts, set_point, step)
+            .advance(state, &contacts, set_point, step)
             .expect("finite");
     }
 }
@@ -75,6 +77,8 @@ fn clamped(state: &State) -> [Contact; 2] {
         point: state.center + Vector::new(0.0, y),
         normal: Vector::new(0.0, up),
         distance: -3e-7,
+        number: 0,
+        began: Vector::ZERO,
     };
     [at(-0.064, 1.0), at(0.064, -1.0)]
 }
@@ -153,6 +157,8 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                     point: state.center + 0.2 * direction(place),
                     normal: direction(normal),
                     distance: 0.0,
+                    number: 0,
+                    began: Vector::ZERO,
                 }
             };
             let mut contacts: Vec<Contact> = (0..count).map(|_| contact()).collect();

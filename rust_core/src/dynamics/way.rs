@@ -1,4 +1,6 @@
 //! Where a step of a search leads a contact.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 /// A row on the way between two solutions: its speeds along normal and tangent [m/s], and the impulses
 /// along them that balance these velocities [N s].

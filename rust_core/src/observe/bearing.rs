@@ -49,6 +49,8 @@ mod tests {
                 point: Vector::ZERO,
                 normal: Vector::Y,
                 distance: 0.0,
+                number: 0,
+                began: Vector::ZERO,
             },
             normal_force: force,
             friction_force: 0.0,
@@ -56,7 +58,6 @@ mod tests {
             normal_guess: 0.0,
             friction_guess: 0.0,
             grip: Grip::Sticks,
-            carried_over: false,
         };
         bearing.iter().map(loaded).collect()
     }

@@ -10,7 +10,7 @@ pub(crate) struct Readings {
     seen: Vec<Reading>,
 }
 
-/// One contact over the interval, identified by part and place.
+/// One contact over the interval.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading {
     /// As it was last seen.
@@ -21,8 +21,6 @@ pub(crate) struct Reading {
     pub friction_force: f64,
     /// [m/s] When last seen.
     pub surface_speed: f64,
-    /// Step of the interval in which it was last seen: two contacts of one step are two.
-    step: u32,
 }
 
 impl Readings {
@@ -30,37 +28,19 @@ impl Readings {
     pub(crate) fn add(&mut self, loaded: &[LoadedContact]) {
         self.steps += 1;
         for l in loaded.iter().filter(|l| l.normal_force > 0.0) {
-            let place = |c: &Contact| {
-                (
-                    c.part,
-                    if c.edge >= 0 {
-                        (c.edge, 0)
-                    } else {
-                        (-1, c.facet)
-                    },
-                )
-            };
-            let step = self.steps;
-            let mut same = self
-                .seen
-                .iter_mut()
-                .filter(|r| r.step != step && place(&r.contact) == place(&l.contact));
-            // A face can bear on a facet at both its ends: those are two contacts.
-            let known = same.find(|r| (r.contact.point - l.contact.point).length() < SAME_PLACE);
-            match known {
+            let mut seen = self.seen.iter_mut();
+            match seen.find(|r| r.contact.number == l.contact.number) {
                 Some(reading) => {
                     reading.contact = l.contact;
                     reading.normal_force += l.normal_force;
                     reading.friction_force += l.friction_force;
                     reading.surface_speed = l.surface_speed;
-                    reading.step = step;
                 }
                 None => self.seen.push(Reading {
                     contact: l.contact,
                     normal_force: l.normal_force,
                     friction_force: l.friction_force,
                     surface_speed: l.surface_speed,
-                    step,
                 }),
             }
         }
@@ -82,6 +62,3 @@ impl Readings {
         })
     }
 }
-
-/// [m] A contact moves less than this from step to step.
-const SAME_PLACE: f64 = 5e-3;

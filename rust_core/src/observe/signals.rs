@@ -3,6 +3,8 @@
 //! A state that rattles has no forces of an instant that balance, but its means over a time in
 //! which it gets nowhere do.
 
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::Reading;
@@ -12,10 +14,6 @@ use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Profile;
 
-/// [m] A contact that moves less than this from step to step is one contact.
-const SAME_PLACE: f64 = 5e-3;
-/// Normals whose cosine is larger are one direction: within 10 degrees.
-const SAME_DIRECTION: f64 = 0.985;
 /// [m] Surfaces closer than this could bear, though they do not.
 const TOUCHES: f64 = 1e-6;
 
@@ -115,6 +113,7 @@ impl Signals {
                 && (0.0..1e15).contains(&block.steps)
                 && numbers.iter().all(|number| number.is_finite())
                 && block.contacts.iter().all(|c| c.fits(model, lanes))
+                && block.numbers_differ()
         })
     }
 
@@ -141,6 +140,12 @@ impl Signals {
 }
 
 impl Block {
+    fn numbers_differ(&self) -> bool {
+        let mut seen = HashSet::new();
+        let mut numbers = self.contacts.iter().map(|c| c.last.number);
+        numbers.all(|number| seen.insert(number))
+    }
+
     fn add(
         &mut self,
         now: &Reading,
@@ -170,9 +175,11 @@ impl Block {
         }
     }
 
-    /// Adds a contact to the one that it goes on from, if it is there.
+    /// Adds a contact to what was summed of it.
     fn gather(&mut self, new: &Summed) {
-        match self.contacts.iter_mut().find(|c| c.is_same(new)) {
+        let number = new.last.number;
+        let mut known = self.contacts.iter_mut();
+        match known.find(|c| c.last.number == number) {
             Some(known) => known.absorb(new),
             None => self.contacts.push(*new),
         }
@@ -230,15 +237,6 @@ impl Summed {
             weight,
             loaded: f64::from(u8::from(l.normal_force > 0.0)),
         }
-    }
-
-    fn is_same(&self, other: &Self) -> bool {
-        let (a, b) = (&self.last, &other.last);
-        a.part == b.part
-            && a.edge == b.edge
-            && (a.edge >= 0 || a.facet == b.facet)
-            && (a.point - b.point).length() < SAME_PLACE
-            && a.normal.dot(b.normal) > SAME_DIRECTION
     }
 
     fn absorb(&mut self, later: &Self) {

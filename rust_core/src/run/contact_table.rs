@@ -11,6 +11,7 @@ use crate::observe::Readings;
 #[allow(missing_docs)] // the columns are described in docs/conventions.md
 pub struct ContactTable {
     pub time: Vec<f64>,
+    pub contact: Vec<i64>,
     pub lane: Vec<i64>,
     pub body: Vec<i64>,
     pub body_kind: Vec<i64>,
@@ -39,7 +40,7 @@ impl Simulation {
 
 impl ContactTable {
     /// Every column.
-    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 5]) {
+    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 6]) {
         let numbers = [
             &mut self.time,
             &mut self.x,
@@ -52,6 +53,7 @@ impl ContactTable {
             &mut self.penetration,
         ];
         let codes = [
+            &mut self.contact,
             &mut self.lane,
             &mut self.body,
             &mut self.body_kind,
@@ -79,6 +81,7 @@ impl ContactTable {
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
         for r in readings.drain() {
             self.time.push(simulation.time());
+            self.contact.push(r.contact.number as i64);
             self.lane.push(simulation.side(r.contact.part) as i64);
             self.body.push(r.contact.part as i64);
             self.body_kind

@@ -55,7 +55,7 @@ pub(crate) struct Columns {
 
 impl Columns {
     /// Bytes of a row of the contact table.
-    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
+    pub(crate) const BYTES_A_CONTACT: u64 = 15 * 8;
 
     pub(crate) fn of(model: &Model) -> Self {
         Self {

@@ -126,7 +126,9 @@ impl Simulation {
         self.state.running_after(half, model, &mut self.then);
         self.contact
             .find(middle, &self.then, prediction, &mut self.contacts);
-        self.dents.forgive(&mut self.contacts);
+        self.dynamics.recognise(&mut self.contacts);
+        let last = self.dynamics.loaded().iter().map(|l| &l.contact);
+        self.dents.forgive(&mut self.contacts, &last);
     }
 
     /// Contacts of this very instant.

@@ -3,6 +3,8 @@
 //!
 //! A hull meets the ground in two ways only: an arc, or a corner, bears on a face, or a corner of the
 //! ground on the hull.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 mod near;
 mod sector;

@@ -1,4 +1,6 @@
 //! Which stretches of finely cut ground may come near a hull.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::super::lane::Stretch;
 use super::{Arc, HullContact};

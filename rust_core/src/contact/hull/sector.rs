@@ -1,4 +1,6 @@
 //! Ranges of directions, without an angle in the step.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use std::f64::consts::{PI, TAU};
 

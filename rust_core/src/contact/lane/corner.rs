@@ -1,4 +1,6 @@
 //! Where two faces of the ground meet: an arc, of radius 0 where the corner is sharp.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::{On, ROUNDING, Touch};
 use crate::geometry::{Vector, cross, left_of};

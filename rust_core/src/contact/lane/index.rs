@@ -4,6 +4,8 @@
 //! A table of x leads to the pieces under a place. Where these are many, a hierarchy over them knows
 //! how high each stretch reaches and which way it faces: a piece of flat ground bears what is right
 //! above it, whatever is near.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use std::ops::{Range, RangeInclusive};
 

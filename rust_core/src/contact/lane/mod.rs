@@ -2,6 +2,8 @@
 //!
 //! A sharp corner is a rounded one of radius 0, so that everything bears either on a face or on the
 //! disc of a corner, and rounded edges are true arcs.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 mod corner;
 mod index;

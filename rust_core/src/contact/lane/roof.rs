@@ -1,5 +1,7 @@
 //! Lines above finely cut ground. What lies between two corners that bear on one straight run of a part,
 //! and no higher than the line through both, does not bear.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use super::{Corner, Touch};
 use crate::geometry::{Vector, left_of};

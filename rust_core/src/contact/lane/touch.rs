@@ -1,4 +1,6 @@
 //! A face of a lane, and where something touches it or a corner.
+//!
+//! The equations: docs/physics.md, "Contacts".
 
 use crate::contact::Contact;
 use crate::geometry::Vector;
@@ -49,13 +51,16 @@ pub(in crate::contact) enum On {
 impl Touch {
     /// The same as a contact of a part.
     pub(in crate::contact) fn contact(&self, part: usize) -> Contact {
+        let point = self.place + self.normal * (0.5 * self.distance);
         Contact {
             part,
             facet: self.facet,
             edge: self.edge,
-            point: self.place + self.normal * (0.5 * self.distance),
+            point,
             normal: self.normal,
             distance: self.distance,
+            number: 0,
+            began: point,
         }
     }
 }

@@ -1,4 +1,6 @@
 //! Contacts of shoes as the solver sees them: with the ground, and with what they run on.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use super::RestMemory;
 use super::rest::{Bearing, Rest};

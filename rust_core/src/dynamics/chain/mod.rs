@@ -1,4 +1,6 @@
 //! A chain of shoes on guide or wheels of the chassis: pins, places where shoes rest on them, drive.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 mod contacts;
 mod pin;

@@ -1,4 +1,6 @@
 //! A pin between two shoes: two directions in which neither moves over the other.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use nalgebra::Matrix2x3;
 use serde::{Deserialize, Serialize};

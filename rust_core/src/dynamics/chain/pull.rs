@@ -4,6 +4,8 @@
 //! chassis. What it holds then is the rate at which the shoes of the arc go round, and
 //! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
 //! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use serde::{Deserialize, Serialize};
 

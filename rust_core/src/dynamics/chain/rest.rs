@@ -1,4 +1,6 @@
 //! A place where a shoe of a chain bears on what it runs on.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use crate::geometry::{Pose, Vector};
 use crate::robot::ChainOfShoes;

@@ -1,4 +1,6 @@
 //! Where the shoes of a chain bear on what they run on: the guide, or wheels and teeth.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use super::Chain;
 use super::rest::{Bearing, Rest, Stand};

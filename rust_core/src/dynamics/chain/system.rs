@@ -3,6 +3,8 @@
 //! Each shoe has three rows and meets its two neighbours and the chassis only, so the elimination goes
 //! once round the chain. The last shoe closes it: like the chassis, the drive and the idler it is carried
 //! along as a border.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 

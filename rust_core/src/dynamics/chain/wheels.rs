@@ -1,4 +1,6 @@
 //! Where a chain bears on wheels: the drum of the sprocket, its teeth, idler, road wheels, rollers.
+//!
+//! The equations: docs/physics.md, "Chains".
 
 use super::Chain;
 use super::rest::{Bearing, Rest, Stand};

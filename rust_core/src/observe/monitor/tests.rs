@@ -54,6 +54,8 @@ fn on_facet(facet: usize, normal_force: f64) -> LoadedContact {
             point: Vector::ZERO,
             normal: Vector::Y,
             distance: 0.0,
+            number: 0,
+            began: Vector::ZERO,
         },
         normal_force,
         friction_force: 0.0,
@@ -61,7 +63,6 @@ fn on_facet(facet: usize, normal_force: f64) -> LoadedContact {
         normal_guess: 0.0,
         friction_guess: 0.0,
         grip: Grip::Open,
-        carried_over: false,
     }
 }
 

@@ -128,7 +128,8 @@ impl Simulation {
         branch.set_point = self.set_point;
         branch.dynamics.outer_force = self.dynamics.outer_force;
         branch.monitor.seen = Seen::from(branch.time());
-        let contacts = branch.contacts_now();
+        let mut contacts = branch.contacts_now();
+        branch.dynamics.take_over(&mut contacts);
         branch.dents = Dents::of(&contacts);
         branch
     }

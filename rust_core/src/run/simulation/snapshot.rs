@@ -132,7 +132,7 @@ impl Simulation {
             && moment.driver.fits(&self.scenario.drive)
             && moment.state.fits(model)
             && self.dynamics.fits(&moment.impulses, lanes)
-            && moment.dents.fits(model.parts.len())
+            && moment.dents.fits(moment.impulses.contacts())
             && moment.seen.fits(time, model, lanes)
     }
 }

@@ -95,6 +95,28 @@ fn a_simulation_goes_on_from_its_snapshot_with_the_same_bits() {
 }
 
 #[test]
+fn the_number_is_the_same_after_a_snapshot() {
+    let numbers = |mut simulation: Simulation| {
+        let mut look = || {
+            simulation.step().expect("the state stays finite");
+            let loaded = simulation.loaded().iter();
+            loaded.map(|l| l.contact.number).collect::<Vec<u64>>()
+        };
+        (0..300).map(|_| look()).collect::<Vec<_>>()
+    };
+    // Its wheels come down on the post and off it, as one and as the next.
+    let mut whole = on_wheels();
+    for _ in 0..300 {
+        whole.step().expect("the state stays finite");
+    }
+    let copy = Simulation::from_snapshot(&whole.snapshot()).expect("it was just made");
+    let all = numbers(whole);
+    let given = all.iter().flatten().max();
+    assert!(given > all[0].iter().max(), "none comes: {all:?}");
+    assert_eq!(numbers(copy), all);
+}
+
+#[test]
 fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     type Forget = fn(&mut Simulation, Simulation);
     let all: [(&str, Forget); 9] = [

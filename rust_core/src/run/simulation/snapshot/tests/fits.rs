@@ -34,15 +34,17 @@ impl Genuine {
     }
 }
 
-/// A contact of a part that no robot here has.
+/// A contact that no robot here has.
 fn of_nobody() -> Contact {
     Contact {
-        part: 999,
+        part: 0,
         facet: 0,
         edge: -1,
         point: Vector::ZERO,
         normal: Vector::Y,
         distance: -0.001,
+        number: 999,
+        began: Vector::ZERO,
     }
 }
 

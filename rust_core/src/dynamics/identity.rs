@@ -1,0 +1,168 @@
+//! Which contact is which: each has one number for as long as it lasts, and all who ask go by it.
+//!
+//! A contact goes on from the one of the last step that lies nearest, and keeps its number. One that opened
+//! wider than contacts are looked for, and closes again at the same place, is the same one, though its forces
+//! are gone: else each of the contacts of a robot that rattles would be many.
+//!
+//! The equations: docs/physics.md, "Contacts".
+
+#[cfg(test)]
+mod tests;
+
+use serde::{Deserialize, Serialize};
+
+use super::LoadedContact;
+use crate::contact::Contact;
+use crate::robot::Model;
+use crate::terrain::Profile;
+
+/// [m] A contact goes on from one that it has moved less than this from.
+const SAME_PLACE: f64 = 5e-3;
+/// Normals whose cosine is larger are of one contact: it turns by less than 26 degrees from step to step.
+const SAME_NORMAL: f64 = 0.9;
+/// [s] For so long a contact that has opened is remembered: the default window of a stop, over which its
+/// forces are averaged.
+const REMEMBERED: f64 = 1.0;
+/// So many of them are remembered at most. Runs have some ten of them, those of 24 gear wheels up to 240; more
+/// there are only where all moves so fast that no contact is at the place of another.
+const MOST_LOST: usize = 256;
+/// Numbers that a run comes nowhere near, and that leave room for more.
+const MOST_GIVEN: u64 = 1 << 60;
+
+/// What is remembered of contacts besides the last step's.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Identity {
+    /// The last number that was given; the first is 1.
+    given: u64,
+    /// Contacts that have opened, those of long ago first.
+    lost: Vec<Lost>,
+    /// Which of the last step's are taken: of use within a step alone.
+    #[serde(skip)]
+    taken: Vec<bool>,
+}
+
+/// A contact that has opened.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Lost {
+    /// As it was last.
+    contact: Contact,
+    /// [s] Since then.
+    age: f64,
+}
+
+impl Identity {
+    /// Numbers the contacts of a step that comes a time `dt` [s] after the `last` one; both are in order of
+    /// part and x.
+    pub(super) fn recognise(&mut self, last: &[LoadedContact], contacts: &mut [Contact], dt: f64) {
+        for lost in &mut self.lost {
+            lost.age += dt;
+        }
+        self.lost.retain(|lost| lost.age < REMEMBERED);
+        self.taken.clear();
+        self.taken.resize(last.len(), false);
+        let mut from = 0;
+        for contact in contacts {
+            if let Some(known) = self.take_nearest(last, &mut from, contact) {
+                (contact.number, contact.began) = (known.number, known.began);
+            } else {
+                contact.number = self.find_again(contact).unwrap_or_else(|| {
+                    self.given += 1;
+                    self.given
+                });
+            }
+        }
+        let opened = last.iter().zip(&self.taken).filter(|(_, taken)| !**taken);
+        self.lost.extend(opened.map(|(l, _)| Lost {
+            contact: l.contact,
+            age: 0.0,
+        }));
+        let too_many = self.lost.len().saturating_sub(MOST_LOST);
+        self.lost.drain(..too_many);
+    }
+
+    /// The nearest contact of the last step, if near enough; each is taken once. Those before
+    /// `from` lie too far left for all that come.
+    fn take_nearest(
+        &mut self,
+        last: &[LoadedContact],
+        from: &mut usize,
+        contact: &Contact,
+    ) -> Option<Contact> {
+        let place = (contact.part, contact.point.x);
+        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + SAME_PLACE) < place;
+        while last.get(*from).is_some_and(behind) {
+            *from += 1;
+        }
+        let within = (*from..last.len()).take_while(|i| {
+            let known = &last[*i].contact;
+            (known.part, known.point.x - SAME_PLACE) <= place
+        });
+        let free = within.filter(|i| !self.taken[*i]);
+        let nearest = nearest(free.map(|i| (i, last[i].contact)), contact)?;
+        self.taken[nearest] = true;
+        Some(last[nearest].contact)
+    }
+
+    /// The number of the nearest contact that has opened, if near enough; it is lost no more.
+    fn find_again(&mut self, contact: &Contact) -> Option<u64> {
+        let lost = self.lost.iter().map(|lost| lost.contact).enumerate();
+        let of_part = lost.filter(|(_, lost)| lost.part == contact.part);
+        let both_ends = of_part.flat_map(|(i, lost)| {
+            let closed = Contact {
+                point: lost.began,
+                ..lost
+            };
+            [(i, lost), (i, closed)]
+        });
+        let nearest = nearest(both_ends, contact)?;
+        Some(self.lost.remove(nearest).contact.number)
+    }
+
+    /// Whether these can be the contacts of the last step: no two of all that are known share a number.
+    pub(super) fn fits(&self, last: &[LoadedContact], model: &Model, lanes: &[Profile]) -> bool {
+        let fits =
+            |lost: &Lost| lost.contact.fits(model, lanes) && (0.0..REMEMBERED).contains(&lost.age);
+        let last = last.iter().map(|l| l.contact.number);
+        let lost = self.lost.iter().map(|lost| lost.contact.number);
+        let mut numbers: Vec<u64> = last.chain(lost).collect();
+        numbers.sort_unstable();
+        self.given <= MOST_GIVEN
+            && self.lost.len() <= MOST_LOST
+            && self.lost.iter().all(fits)
+            && numbers
+                .iter()
+                .all(|number| (1..=self.given).contains(number))
+            && numbers.windows(2).all(|pair| pair[0] < pair[1])
+    }
+}
+
+/// The nearest of the contacts of the same part, if it is at the same place.
+fn nearest(known: impl Iterator<Item = (usize, Contact)>, contact: &Contact) -> Option<usize> {
+    let alike = known.filter(|(_, c)| c.normal.dot(contact.normal) > SAME_NORMAL);
+    alike
+        .map(|(i, c)| (i, (c.point - contact.point).length()))
+        .filter(|(_, apart)| *apart < SAME_PLACE)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(i, _)| i)
+}
+
+/// The last step's contacts, to be asked for by their numbers.
+pub(super) struct Numbered<'a> {
+    contacts: &'a [LoadedContact],
+    /// Where the next one is likely to be: contacts come in the same order as in the last step.
+    next: usize,
+}
+
+impl<'a> Numbered<'a> {
+    pub(super) fn new(contacts: &'a [LoadedContact]) -> Self {
+        Self { contacts, next: 0 }
+    }
+
+    /// The contact of a number, if the last step had it.
+    pub(super) fn get(&mut self, number: u64) -> Option<LoadedContact> {
+        let mut all = (self.next..self.contacts.len()).chain(0..self.next);
+        let found = all.find(|i| self.contacts[*i].contact.number == number)?;
+        self.next = found + 1;
+        Some(self.contacts[found])
+    }
+}

@@ -1,0 +1,29 @@
+"""The equations are in docs/physics.md: every file that computes with them names its section."""
+
+import re
+
+import pytest
+
+from tests.walls.houses import files_of
+from tests.walls.rooms import ROOT, House
+
+TEXT = (ROOT / "docs/physics.md").read_text(encoding="utf-8")
+SECTIONS = re.findall(r"^#+ (.+)$", TEXT, re.MULTILINE)
+FILES = [
+    file for file in files_of(House.read("core")) if file.startswith(("contact/", "dynamics/"))
+]
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_a_file_of_the_physics_names_its_section(file: str) -> None:
+    text = (ROOT / "rust_core/src" / file).read_text(encoding="utf-8")
+    comment = "\n".join(line for line in text.splitlines() if line.startswith("//!"))
+    named = re.findall(r'docs/physics\.md, "([^"]+)"', comment)
+    assert named, 'its first comment must name its section, as in: docs/physics.md, "Levers"'
+    assert [name for name in named if name not in SECTIONS] == []
+
+
+def test_every_section_of_the_physics_has_files() -> None:
+    texts = [(ROOT / "rust_core/src" / file).read_text(encoding="utf-8") for file in FILES]
+    assert len(FILES) > 30
+    assert sum(f'"{section}"' in text for text in texts for section in SECTIONS) >= len(FILES)
