@@ -38,12 +38,12 @@ pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
 pub use robot::{
-    BodyKind, ChainOfShoes, ChassisBody, Flipper, Model, Mount, Part, Shape, Sprocket, Tensioner,
-    WheelBody,
+    Body, BodyKind, ChainOfShoes, ChassisBody, Circuit, Flipper, Model, Mount, Part, Shape,
+    Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    ContactTable, Metrics, Progress, Record, Run, Simulation, Trace, branch, caught, check_text,
-    counterfactual, simulate, simulate_many,
+    ContactTable, Metrics, Poses, Progress, Record, Run, Simulation, Trace, branch, caught,
+    check_text, counterfactual, poses, simulate, simulate_many,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Doubt, Drive,

@@ -26,6 +26,25 @@ impl Running {
         }
     }
 
+    /// All of a robot again: how far its drives have run [m], frames of its shoes in that of the chassis, how far
+    /// its flippers are turned over the chassis [rad], counter-clockwise. Steps and samples of a run come here.
+    pub(crate) fn set(
+        &mut self,
+        model: &Model,
+        drives: impl Iterator<Item = f64>,
+        shoes: impl Iterator<Item = Pose>,
+        turns: impl Iterator<Item = f64>,
+    ) {
+        self.drives.clear();
+        self.drives.extend(drives);
+        self.shoes.clear();
+        self.shoes.extend(shoes);
+        let flippers = model.flippers.iter().zip(turns);
+        let mounted = flippers.map(|(arm, turn)| arm.mounted(turn, model.drive_radius));
+        self.flippers.clear();
+        self.flippers.extend(mounted);
+    }
+
     /// Frame of a mount on a robot whose chassis frame is `pose`.
     pub(crate) fn mounted(&self, mount: Mount, pose: Pose) -> Pose {
         match mount {

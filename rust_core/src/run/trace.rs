@@ -72,6 +72,11 @@ impl Columns {
         }
     }
 
+    /// Numbers of drives, shoes and ends with flippers.
+    pub(crate) fn moving(self) -> (usize, usize, usize) {
+        (self.drives, self.shoes, self.flippers)
+    }
+
     /// Bytes of a sample without its contacts.
     pub(crate) fn bytes(self) -> u64 {
         let entries: usize = Trace::default()
