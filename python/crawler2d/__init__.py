@@ -13,6 +13,7 @@ Units are SI, angles radians, x forward, y up.
 from crawler2d import robots, terrains
 from crawler2d._core import build_info
 from crawler2d.batch import simulate, simulate_many
+from crawler2d.bodies import BodyKind, Lane
 from crawler2d.compare import compare
 from crawler2d.diagnosis import Diagnosis, Mechanism
 from crawler2d.draws import scaled, uniform, uniform_int
@@ -51,6 +52,7 @@ from crawler2d.track import (
 __all__ = [
     "BatchInterrupted",
     "BeltTrack",
+    "BodyKind",
     "CircumferentialWheels",
     "Climb",
     "Crawler2dError",
@@ -64,6 +66,7 @@ __all__ = [
     "Hold",
     "HybridWheels",
     "InternalError",
+    "Lane",
     "LimitError",
     "LineOfWheels",
     "Mechanism",

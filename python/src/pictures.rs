@@ -48,6 +48,11 @@ fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Boun
     let lane = |body: &Body| ground.lanes[body.lane].side as i64;
     columns.set_item("lane", codes(&lane).into_pyarray(py))?;
     columns.set_item("carrier", carriers)?;
+    let shoe = |body: &Body| body.mount.shoe().and_then(|shoe| i64::try_from(shoe).ok());
+    columns.set_item(
+        "shoe",
+        codes(&|body| shoe(body).unwrap_or(-1)).into_pyarray(py),
+    )?;
     let radii: Vec<f64> = found.iter().map(radius).collect();
     columns.set_item("radius", radii.into_pyarray(py))?;
     let outlines = PyList::empty(py);

@@ -13,7 +13,7 @@ const ARC_POINTS: usize = 12;
 /// [rad] Turn between two points of a belt.
 const BELT_TURN: f64 = 0.05;
 /// Poses along a belt: between two of them a grouser is off by less than 0.1 mm.
-const WAYPOINTS: u32 = 720;
+const WAYPOINTS: u32 = 360;
 
 /// A body with its outline.
 #[derive(Clone, Debug)]
