@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz mutants soak tools
+.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz map mutants soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -26,7 +26,7 @@ help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 14
 
 study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
-	$(BIN)/python -m crawler2d.experiments $(ARGS)
+	$(BIN)/python -m crawler2d.studies $(ARGS)
 
 test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 	$(CARGO) test --release
@@ -37,13 +37,14 @@ test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs in a real browser
 	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
 
-check: $(VENV)/.built ## format, lint, types, stubs and documentation, nothing changed
+check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, nothing changed
 	cargo fmt --all --check
 	$(CARGO) clippy --release --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --release --no-deps
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/python -m pytest -q --noconftest tests/walls
 	$(BIN)/python -m mypy.stubtest crawler2d._core
 
 bench: | tools ## benchmarks
@@ -63,7 +64,10 @@ format: $(VENV)/.dependencies ## format all code
 build: $(VENV)/.built ## the compiled core, in place
 
 fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other ones with CRAWLER2D_FUZZ_SEED=...
-	$(BIN)/python -m pytest -m soak tests/test_fuzz_ways_in.py tests/test_fuzz_runs.py
+	$(BIN)/python -m pytest -m soak tests/fuzz
+
+map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
+	$(BIN)/python -m tests.walls.map
 
 soak: $(VENV)/.built ## the long tests, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored

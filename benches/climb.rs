@@ -10,7 +10,7 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 const STEPS: u64 = 200;
 
 fn simulation(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(&scene.scenario()).expect("a valid scene");
+    let mut simulation = Simulation::new(&scene.checked());
     while simulation.time() < scene.in_the_climb() {
         simulation.step().expect("a finite state");
     }
@@ -53,16 +53,16 @@ fn steps(criterion: &mut Criterion) {
 fn runs(criterion: &mut Criterion) {
     for scene in &SCENES {
         let scenario = scene.scenario();
-        let run = simulate(&scenario, Record::default()).expect("a valid scene");
+        let run = simulate(&scene.checked(), Record::default()).expect("a valid scene");
         let steps = (run.metrics.time / scenario.solver.time_step).round() as u64;
         let mut group = criterion.benchmark_group(format!("{}/run", scene.name));
         group.sample_size(10);
         group.throughput(Throughput::Elements(steps));
         group.bench_function("crawler2d", |bencher| {
-            bencher.iter(|| simulate(black_box(&scenario), Record::default()));
+            bencher.iter(|| simulate(black_box(&scene.checked()), Record::default()));
         });
         group.bench_function("crawler2d, summary", |bencher| {
-            bencher.iter(|| simulate(black_box(&scenario), Record::summary()));
+            bencher.iter(|| simulate(black_box(&scene.checked()), Record::summary()));
         });
         if scene.engine().is_some() {
             group.bench_function("bare engine", |bencher| {

@@ -24,11 +24,11 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 
 TESTS = {
-    "statistics": ["tests/test_statistics.py", "tests/test_statistics_scipy.py"],
-    "draws": ["tests/test_draws.py"],
-    "rates": ["tests/test_rates.py"],
+    "statistics": ["tests/sweeps/test_statistics.py", "tests/sweeps/test_statistics_scipy.py"],
+    "draws": ["tests/sweeps/test_draws.py"],
+    "rates": ["tests/sweeps/test_rates.py"],
 }
-"""Of each module of the package."""
+"""Of each module of the sweeps that is tried."""
 
 EQUIVALENT = [
     ("if excess > 0.0", "excess > 0.0 -> excess >= 0.0", "of 0 the correction leaves 0"),
@@ -195,7 +195,7 @@ def main(names: list[str]) -> int:
         shutil.copytree(ROOT / "python/crawler2d", package / "crawler2d", ignore=ignored)
         for name in names or TESTS:
             begin = time.monotonic()
-            source = package / "crawler2d" / f"{name}.py"
+            source = package / "crawler2d/sweeps" / f"{name}.py"
             text = source.read_text(encoding="utf-8")
             if is_noticed(package, TESTS[name]):
                 raise SystemExit(f"the tests of {name} fail without a mutant")

@@ -25,7 +25,7 @@ from benches.peers.errors import PATH, judge
 from benches.peers.motion import Motion
 from benches.peers.scenes import Draw, Scene
 from benches.peers.timing import progress
-from crawler2d.statistics import wilson
+from crawler2d.sweeps.statistics import wilson
 
 COST_SPAN = 2.5
 """[s] Simulated time of the first measure of cost: the way to the obstacle and on to it."""

@@ -10,10 +10,11 @@ from benches.peers import chain_robot
 from benches.peers.chain_robot import ChainRobot
 from benches.peers.engine import Setting
 from benches.peers.motion import Array
-from crawler2d.robot import Drivetrain, Robot, TrackOutline
-from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
-from crawler2d.terrain import Points
-from crawler2d.track import SegmentalTrack
+from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
+from crawler2d.parameters.terrain import Points
+from crawler2d.parameters.track import SegmentalTrack
 
 # [s] No run is as long: nothing ends it.
 _NEVER = 1000.0
@@ -33,7 +34,7 @@ def scenario(
     profile : ndarray, shape (n, 2)
         [m] The ground from left to right; the robot stands before its second point.
     setting : Setting
-        Time step, substeps and iterations.
+        Time step and substeps.
     duration, shift : float
         [s], [m]
     """
@@ -49,9 +50,7 @@ def scenario(
             approach=float(profile[1, 0]) - robot.axle_distance / 2.0 - robot.radius + shift
         ),
         duration=duration,
-        solver=Solver(
-            time_step=setting.time_step, substeps=setting.substeps, iterations=setting.iterations
-        ),
+        solver=Solver(time_step=setting.time_step, substeps=setting.substeps),
         criteria=SeizureCriteria(stop_window=_NEVER),
     )
 

@@ -30,15 +30,16 @@ from benches.peers.engine import Setting
 from benches.peers.errors import JOINT_GAP
 from benches.peers.motion import Array
 from benches.peers.timing import interleaved, progress
-from crawler2d.scenario import Drive, Scenario, Solver
-from crawler2d.terrain import Points, Terrain
-from crawler2d.track import GrouserBeltTrack, SegmentalTrack, Track
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, Solver
+from crawler2d.parameters.terrain import Points, Terrain
+from crawler2d.parameters.track import GrouserBeltTrack, SegmentalTrack, Track
 
 TERRAINS = ("flat", "step", "field")
 SETTINGS = {
     "pymunk, defaults": Setting(1e-3, iterations=10, tuned=False),
     "pymunk, tuned": Setting(1e-3, iterations=10),
-    "crawler2d": Setting(Solver().time_step, Solver().substeps, Solver().iterations),
+    "crawler2d": Setting(Solver().time_step, Solver().substeps),
 }
 """What stands side by side; all at steps of 1 ms."""
 GRID = [

@@ -19,7 +19,8 @@ from benches.peers.engine import Setting
 from benches.peers.motion import Array, Motion
 from benches.peers.scenes import Scene
 from crawler2d.errors import SimulationDiverged
-from crawler2d.scenario import Scenario, Solver
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Solver
 
 _SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
 # [s] No run is as long.
@@ -31,7 +32,7 @@ class Crawler2D:
 
     name = "crawler2d"
     version = c2d.__version__
-    defaults = Setting(Solver().time_step, Solver().substeps, Solver().iterations, tuned=False)
+    defaults = Setting(Solver().time_step, Solver().substeps, tuned=False)
     grid: Sequence[Setting] = [
         Setting(dt * 1e-3, substeps=substeps, iterations=iterations)
         for dt in (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
@@ -77,7 +78,9 @@ def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:
     base = as_it_is(scene.name)
     draw = scene.draw
     solver = Solver(
-        time_step=setting.time_step, substeps=setting.substeps, iterations=setting.iterations
+        time_step=setting.time_step,
+        substeps=setting.substeps,
+        iterations=setting.iterations or None,
     )
     return base.replace(
         {

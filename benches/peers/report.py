@@ -35,7 +35,7 @@ def _head(result: dict[str, Any]) -> str:
 What `make bench-peers` measures: a robot of 20 kg with 0.6 m between its end axles drives at 0.4
 m/s against a step of 0.15 m, or over 20 blocks up to 0.15 m high, on a line of 5 wheels (`lwa5`)
 or on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The scenes are files in
-no engine's own terms, in `benches/peers/scenes`; `tests/test_peer_scenes.py` checks that
+no engine's own terms, in `benches/peers/scenes`; `tests/benches/test_peer_scenes.py` checks that
 crawler2d's own form of them describes the same robots and grounds.
 
 {machine.sentence(result["machine"], result["wall"])}

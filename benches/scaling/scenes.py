@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crawler2d as c2d
-from crawler2d.scenario import Scenario
-from crawler2d.terrain import Lane
-from crawler2d.track import Track, Wheel
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Lane
+from crawler2d.parameters.track import Track, Wheel
 
 WHEELS = (3, 6, 12, 24, 48, 96)
 GROUSERS = (6, 12, 24, 48)

@@ -12,7 +12,7 @@ import crawler2d as c2d
 from benches.peers import workers
 from benches.peers.timing import interleaved
 from benches.scaling import scenes
-from crawler2d.scenario import Scenario
+from crawler2d.parameters.scenario import Scenario
 
 # [m] From world to world: no two do the same.
 _APPROACH = 5e-4

@@ -1,6 +1,6 @@
 //! The scenes that the benchmarks time, from scenario files that tests and benchmarks share.
 
-use crawler2d_core::{Scenario, TorqueSharing};
+use crawler2d_core::{Checked, Scenario, TorqueSharing};
 
 #[path = "../../rust_core/tests/facts/engine_world.rs"]
 mod engine_world;
@@ -50,6 +50,14 @@ impl Scene {
     /// If the shared file is not valid.
     pub fn scenario(&self) -> Scenario {
         Scenario::from_json(self.text).expect("the shared scenario is valid")
+    }
+
+    /// The same as it comes out of the door.
+    ///
+    /// # Panics
+    /// As [`Self::scenario`].
+    pub fn checked(&self) -> Checked {
+        Checked::from_json(self.text).expect("the shared scenario is valid")
     }
 
     /// The same in the bare engine, with as many steps and its own default of 4 substeps; none without

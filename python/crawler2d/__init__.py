@@ -10,15 +10,8 @@ Units are SI, angles radians, x forward, y up.
 'cleared'
 """
 
-from crawler2d import robots, terrains
 from crawler2d._core import build_info
-from crawler2d.batch import simulate, simulate_many
-from crawler2d.bodies import BodyKind, Lane
-from crawler2d.compare import compare
-from crawler2d.diagnosis import Diagnosis, Mechanism
-from crawler2d.draws import scaled, uniform, uniform_int
 from crawler2d.errors import (
-    BatchInterrupted,
     Crawler2dError,
     InternalError,
     LimitError,
@@ -27,17 +20,12 @@ from crawler2d.errors import (
     ScenarioWarning,
     SimulationDiverged,
 )
-from crawler2d.flippers import Flippers
-from crawler2d.gaits import Climb, Hold
-from crawler2d.outcome import Outcome
-from crawler2d.rates import rate
-from crawler2d.robot import Drivetrain, Robot, TrackOutline
-from crawler2d.run import Run
-from crawler2d.scenario import Drive, Scenario, SeizureCriteria, Solver, Start
-from crawler2d.simulation import Simulation
-from crawler2d.statistics import newcombe, newcombe_paired, wilson
-from crawler2d.sweep import sweep
-from crawler2d.track import (
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.parameters.gaits import Climb, Hold
+from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
+from crawler2d.parameters.track import (
     BeltTrack,
     CircumferentialWheels,
     ForceTrack,
@@ -48,6 +36,20 @@ from crawler2d.track import (
     RoundWheel,
     SegmentalTrack,
 )
+from crawler2d.presets import robots, terrains
+from crawler2d.results.bodies import BodyKind, Lane
+from crawler2d.results.diagnosis import Diagnosis
+from crawler2d.results.findings import Mechanism
+from crawler2d.results.outcome import Outcome
+from crawler2d.runs.batch import simulate, simulate_many
+from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.runs.run import Run
+from crawler2d.runs.simulation import Simulation
+from crawler2d.sweeps.compare import compare
+from crawler2d.sweeps.draws import scaled, uniform, uniform_int
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
+from crawler2d.sweeps.sweep import sweep
 
 __all__ = [
     "BatchInterrupted",

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, final
 
 __all__ = [
+    "Passed",
     "Simulation",
     "branch",
     "build_info",
@@ -18,6 +19,12 @@ __all__ = [
     "validate",
     "wheels",
 ]
+
+@final
+class Passed:
+    def __new__(cls, text: str, like: Passed | None = None) -> Passed: ...
+    @property
+    def identity(self) -> str: ...
 
 @final
 class Simulation:
@@ -54,7 +61,7 @@ def simulate(
     text: str, sample_interval: float, record: str, counterfactual: bool
 ) -> dict[str, Any]: ...
 def simulate_many(
-    texts: list[str],
+    scenarios: list[Passed],
     threads: int,
     sample_interval: float,
     record: str,

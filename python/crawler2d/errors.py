@@ -1,22 +1,15 @@
 """What can go wrong, as exceptions.
 
-Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`: an interrupt must
-not be swallowed by ``except Exception``. A `ScenarioWarning` stops nothing. All of them survive
-pickling with their attributes.
+Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`, which holds runs
+and lies with them: an interrupt must not be swallowed by ``except Exception``. A `ScenarioWarning`
+stops nothing. All of them survive pickling with their attributes.
 """
 
 from __future__ import annotations
 
 import reprlib
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from crawler2d.run import Run
 
 __all__ = [
-    "BatchInterrupted",
     "Crawler2dError",
     "InternalError",
     "LimitError",
@@ -182,24 +175,3 @@ class LimitError(Crawler2dError, ValueError):
 
 class InternalError(Crawler2dError, RuntimeError):
     """A fault of crawler2d itself, or of the process that it runs in, not of the scenario."""
-
-
-class BatchInterrupted(KeyboardInterrupt):
-    """Ctrl-C ended a batch early.
-
-    Parameters
-    ----------
-    runs : sequence of Run
-        One a scenario, in order. Where a run was not finished, its `error` is a `RunUnfinished`.
-    """
-
-    runs: list[Run]
-
-    def __init__(self, runs: Sequence[Run]) -> None:
-        super().__init__(list(runs))
-        self.runs = list(runs)
-
-    def __str__(self) -> str:
-        """Say how far the batch came."""
-        finished = sum(not isinstance(run.error, RunUnfinished) for run in self.runs)
-        return f"interrupted after {finished} of {len(self.runs)} runs; .runs keeps them"

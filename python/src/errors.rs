@@ -64,12 +64,15 @@ pub(crate) fn argument(path: &str, value: &str, rule: &str) -> PyErr {
 }
 
 /// Warns of doubts at the line of the caller's own code; of each field once, whatever a batch has there.
-pub(crate) fn warn(py: Python<'_>, doubts: impl IntoIterator<Item = Doubt>) -> PyResult<()> {
+pub(crate) fn warn<'a>(
+    py: Python<'_>,
+    doubts: impl IntoIterator<Item = &'a Doubt>,
+) -> PyResult<()> {
     let mut seen = HashSet::new();
     for doubt in doubts {
-        if seen.insert(doubt.path.clone()) {
+        if seen.insert(&doubt.path) {
             let warn = py.import("crawler2d._doubts")?.getattr("warn")?;
-            warn.call1((doubt.path, doubt.value, doubt.reason))?;
+            warn.call1((&doubt.path, doubt.value, &doubt.reason))?;
         }
     }
     Ok(())

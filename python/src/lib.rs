@@ -3,6 +3,7 @@
 mod beside;
 mod convert;
 mod diagnosis;
+mod door;
 mod errors;
 mod pictures;
 mod stepwise;
@@ -13,9 +14,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     use std::sync::Mutex;
-    use std::time::{Duration, Instant};
 
-    use crawler2d_core::{Cancel, Doubt, Error, Ground, Model, Progress, Record, Run, Scenario};
+    use crawler2d_core::{Cancel, Checked, Error, Progress, Record, Run};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -29,35 +29,35 @@ mod _core {
     #[pymodule_export]
     use crate::stepwise::Simulation;
 
+    #[pymodule_export]
+    use crate::door::Passed;
+
     /// Checks a scenario and returns its canonical JSON.
     #[pyfunction]
     fn canonical(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
-        built(py, text, |text| Ok(Scenario::from_json(text)?.to_json()))
+        let checked = built(py, text, Checked::from_json)?;
+        Ok(checked.scenario().to_json())
     }
 
     /// Checks a scenario, and warns of what is unlikely to be meant.
     #[pyfunction]
     fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
-        let (_, doubts) = built(py, text, Scenario::examined)?;
-        errors::warn(py, doubts)
+        let checked = built(py, text, Checked::from_json)?;
+        errors::warn(py, checked.doubts())
     }
 
     /// SHA-256 of the canonical JSON.
     #[pyfunction]
     fn identity(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
-        built(py, text, |text| Ok(Scenario::from_json(text)?.identity()))
+        let checked = built(py, text, Checked::from_json)?;
+        Ok(checked.scenario().identity())
     }
 
     /// Ground and robot of a scenario as arrays for drawing.
     #[pyfunction]
     fn geometry(py: Python<'_>, text: PyBackedStr) -> PyResult<Bound<'_, PyDict>> {
-        let (scenario, model, ground) = beside(py, &Cancel::default(), move || {
-            let scenario = Scenario::from_json(&text)?;
-            let ground = Ground::new(&scenario.terrain, scenario.robot.gauge)?;
-            let model = Model::on(&scenario.robot, &ground)?;
-            Ok((scenario, model, ground))
-        })?;
-        pictures::of(py, &scenario, &model, &ground)
+        let checked = built(py, text, Checked::from_json)?;
+        pictures::of(py, &checked)
     }
 
     /// Where the bodies of a robot were at every sample of a run, from columns of its trace.
@@ -68,10 +68,11 @@ mod _core {
         columns: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let trace = convert::moved(columns)?;
+        let checked = built(py, text, Checked::from_json)?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let found = beside(py, &cancel, move || {
-            crawler2d_core::poses(&Scenario::from_json(&text)?, &trace, &asked)
+            crawler2d_core::poses(&checked, &trace, &asked)
         })?;
         pictures::poses(py, found)
     }
@@ -85,8 +86,8 @@ mod _core {
     /// The wheels of a scenario's robot.
     #[pyfunction]
     fn wheels<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {
-        let model = errors::guarded(|| Ok(Model::new(&Scenario::from_json(text)?.robot)?))?;
-        convert::wheels(py, &model)
+        let checked = errors::guarded(|| Checked::from_json(text))?;
+        convert::wheels(py, checked.model())
     }
 
     /// One run.
@@ -99,7 +100,8 @@ mod _core {
         counterfactual: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, counterfactual)?;
-        let (results, interrupted) = run_all(py, &[text], 1, record, None)?;
+        let checked = built(py, text, Checked::from_json)?;
+        let (results, interrupted) = run_all(py, vec![checked], 1, record, None)?;
         if let Some(signal) = interrupted {
             return Err(signal);
         }
@@ -114,7 +116,7 @@ mod _core {
     #[pyfunction]
     fn simulate_many<'py>(
         py: Python<'py>,
-        texts: Vec<PyBackedStr>,
+        scenarios: Vec<PyRef<'py, Passed>>,
         threads: usize,
         sample_interval: f64,
         record: &str,
@@ -122,7 +124,11 @@ mod _core {
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyList>, bool)> {
         let record = convert::record(sample_interval, record, counterfactual)?;
-        let (results, interrupted) = run_all(py, &texts, threads, record, progress)?;
+        let scenarios = scenarios
+            .iter()
+            .map(|passed| passed.checked.clone())
+            .collect();
+        let (results, interrupted) = run_all(py, scenarios, threads, record, progress)?;
         let list = PyList::empty(py);
         for result in results {
             let converted = match result {
@@ -158,7 +164,8 @@ mod _core {
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let run = beside(py, &cancel, move || {
-            let (scenario, variant) = (Scenario::from_json(&text)?, Scenario::from_json(&variant)?);
+            let scenario = Checked::from_json(&text)?;
+            let variant = Checked::from_json_like(&variant, Some(&scenario))?;
             crawler2d_core::branch(&scenario, at, &variant, record, &asked)
         })?;
         convert::run(py, run)
@@ -175,7 +182,7 @@ mod _core {
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let found = beside(py, &cancel, move || {
-            crawler2d_core::counterfactual(&Scenario::from_json(&text)?, at, grousers, &asked)
+            crawler2d_core::counterfactual(&Checked::from_json(&text)?, at, grousers, &asked)
         })?;
         diagnosis::counterfactual(py, &found)
     }
@@ -188,18 +195,17 @@ mod _core {
 
     type Results = Vec<Option<Result<Run, Error>>>;
 
-    /// Reads all scenarios, then runs them detached from the interpreter.
+    /// Warns of what is doubtful, then runs all detached from the interpreter.
     ///
     /// The second item is what interrupted the batch: a signal, or an exception of the callback.
     fn run_all(
         py: Python<'_>,
-        texts: &[PyBackedStr],
+        scenarios: Vec<Checked>,
         threads: usize,
         record: Record,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(Results, Option<PyErr>)> {
-        let (scenarios, doubts): (Vec<_>, Vec<_>) = read_all(py, texts)?.into_iter().unzip();
-        errors::warn(py, doubts.into_iter().flatten())?;
+        errors::warn(py, scenarios.iter().flat_map(Checked::doubts))?;
         let progress = progress.map(Bound::unbind);
         let total = scenarios.len();
         let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);
@@ -229,20 +235,5 @@ mod _core {
             })
         })?;
         Ok((results, interrupted.into_inner().unwrap_or_default()))
-    }
-
-    /// Reads scenarios with what is doubtful in them, and looks for Ctrl-C now and then.
-    fn read_all(py: Python<'_>, texts: &[PyBackedStr]) -> PyResult<Vec<(Scenario, Vec<Doubt>)>> {
-        const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
-
-        let mut looked = Instant::now();
-        let read = |text: &PyBackedStr| {
-            if looked.elapsed() > BETWEEN_LOOKS {
-                py.check_signals()?;
-                looked = Instant::now();
-            }
-            built(py, text.clone_ref(py), Scenario::examined)
-        };
-        texts.iter().map(read).collect()
     }
 }

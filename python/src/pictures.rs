@@ -1,6 +1,6 @@
 //! What pictures need of ground and robot, as arrays.
 
-use crawler2d_core::{Body, Ground, Model, Mount, Part, Poses, Scenario, Shape, Vector};
+use crawler2d_core::{Body, Checked, Ground, Model, Mount, Part, Poses, Shape, Vector};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -8,12 +8,8 @@ use pyo3::types::{PyDict, PyList};
 use crate::convert::{edges, rows};
 
 /// Ground, bodies of the robot, and what carries the track that is in front in a side view: of two the right one.
-pub(crate) fn of<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    model: &Model,
-    ground: &Ground,
-) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+    let (model, ground) = (checked.model(), checked.ground());
     let lanes = PyList::empty(py);
     for lane in &ground.lanes {
         lanes.append((lane.side as i64, points(py, &lane.points)))?;
@@ -25,7 +21,7 @@ pub(crate) fn of<'py>(
     let result = PyDict::new(py);
     result.set_item("lanes", lanes)?;
     result.set_item("edges", edges(py, &ground.edges())?)?;
-    result.set_item("goal", ground.goal_of(scenario))?;
+    result.set_item("goal", ground.goal_of(checked.scenario()))?;
     result.set_item("bodies", bodies(py, model, ground)?)?;
     result.set_item("carriers", carriers)?;
     result.set_item("drive_radius", model.drive_radius)?;

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{Cancel, End, Error, Scenario};
+use crawler2d_core::{Cancel, Checked, End, Error};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::beside::beside;
+use crate::beside::{beside, built};
 use crate::{convert, diagnosis, errors};
 
 /// One simulation under way; a lock lets any thread use it, one at a time.
@@ -21,6 +21,11 @@ pub(crate) struct Simulation {
     is_slow: AtomicBool,
 }
 
+/// Between two looks for Ctrl-C.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+/// A step that takes longer is one that Ctrl-C must not wait for.
+const SLOW: Duration = Duration::from_millis(20);
+
 /// None once a step failed: its state is not to be trusted.
 type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 
@@ -28,11 +33,12 @@ type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, text: PyBackedStr) -> PyResult<Self> {
-        let (simulation, doubts) = beside(py, &Cancel::default(), move || {
-            let (scenario, doubts) = Scenario::examined(&text)?;
-            Ok((crawler2d_core::Simulation::new(&scenario)?, doubts))
+        let (simulation, doubts) = built(py, text, |text| {
+            let checked = Checked::from_json(text)?;
+            let simulation = crawler2d_core::Simulation::new(&checked);
+            Ok((simulation, checked.doubts().to_vec()))
         })?;
-        errors::warn(py, doubts)?;
+        errors::warn(py, &doubts)?;
         Ok(Self::of(simulation))
     }
 
@@ -83,17 +89,23 @@ impl Simulation {
         }
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
         let asked = cancel.clone();
-        beside(py, &cancel, move || {
+        let slowest = beside(py, &cancel, move || {
             call(&inner, |simulation| {
+                let mut slowest = Duration::ZERO;
                 for _ in 0..left {
+                    let begin = Instant::now();
                     simulation.step()?;
+                    slowest = slowest.max(begin.elapsed());
                     if asked.is_asked() {
                         break;
                     }
                 }
-                Ok(())
+                Ok(slowest)
             })
-        })
+        })?;
+        // Other work on the machine may have made it look slow.
+        self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
+        Ok(())
     }
 
     /// Gives the drivetrain a new command, turns the flippers, or pushes the robot.
@@ -174,8 +186,6 @@ impl Simulation {
         simulation: &mut crawler2d_core::Simulation,
         most: u64,
     ) -> Result<u64, Error> {
-        const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
-
         let begin = Instant::now();
         let mut taken = 0;
         while taken < most && begin.elapsed() < BETWEEN_LOOKS {
@@ -183,7 +193,7 @@ impl Simulation {
             taken += 1;
         }
         self.is_slow
-            .store(begin.elapsed() > 2 * BETWEEN_LOOKS, Ordering::Relaxed);
+            .store(begin.elapsed() > BETWEEN_LOOKS + SLOW, Ordering::Relaxed);
         Ok(taken)
     }
 

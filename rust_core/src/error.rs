@@ -1,5 +1,7 @@
 //! What can go wrong beside a scenario that breaks a rule: a run that cannot go on, a request beyond its memory.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use thiserror::Error;
 
 use crate::scenario::ScenarioError;
@@ -60,10 +62,40 @@ pub enum Error {
     Interrupted,
 }
 
+/// Turns a panic into an error: it is a fault of the program, and takes no more than its own run.
+///
+/// # Errors
+/// Those of the call, and [`Error::Internal`] with the text of a panic.
+pub fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        let text = text.unwrap_or("unknown panic");
+        Err(Error::Internal(format!(
+            "the core failed: {text}; please report this with the scenario"
+        )))
+    })
+}
+
 fn mebibytes(bytes: u64) -> u64 {
     bytes.div_ceil(1 << 20)
 }
 
 fn gibibytes(bytes: u64) -> f64 {
     bytes as f64 / (1_u64 << 30) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_with_its_text() {
+        let failed: Result<(), Error> = caught(|| panic!("wheel {} came off", 3));
+        let Err(Error::Internal(message)) = failed else {
+            panic!("{failed:?}")
+        };
+        assert!(message.contains("wheel 3 came off"), "{message}");
+        assert!(caught(|| Ok(1)).is_ok_and(|one| one == 1));
+    }
 }

@@ -4,10 +4,10 @@
 //! over and at what cost. A [`Scenario`] goes in, a [`Run`] comes out:
 //!
 //! ```no_run
-//! use crawler2d_core::{Record, Scenario, simulate};
+//! use crawler2d_core::{Checked, Record, simulate};
 //!
 //! let text = std::fs::read_to_string("scenario.json").unwrap();
-//! let scenario = Scenario::from_json(&text).unwrap();
+//! let scenario = Checked::from_json(&text).unwrap();
 //! let run = simulate(&scenario, Record::default()).unwrap();
 //! println!("{} after {} s", run.outcome, run.metrics.time);
 //! ```
@@ -27,13 +27,14 @@ mod robot;
 mod run;
 mod scenario;
 mod terrain;
+mod version;
 
 pub use contact::Intrusion;
 pub use diagnosis::{
     Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
 };
 pub use dynamics::ChainReading;
-pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError};
+pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
@@ -42,8 +43,8 @@ pub use robot::{
     Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    ContactTable, Metrics, Poses, Progress, Record, Run, Simulation, Trace, branch, caught,
-    check_text, counterfactual, poses, simulate, simulate_many,
+    Checked, ContactTable, Metrics, Poses, Progress, Record, Run, Simulation, Trace, branch,
+    counterfactual, poses, simulate, simulate_many,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Doubt, Drive,
@@ -53,9 +54,4 @@ pub use scenario::{
     TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
-
-/// The engine that finds the contacts, with its exact version.
-pub const ENGINE: &str = "rapier2d-f64 0.36.1";
-
-/// Names the sources that this core was built from.
-pub const BUILD_ID: &str = env!("CRAWLER2D_BUILD_ID");
+pub use version::{BUILD_ID, ENGINE};

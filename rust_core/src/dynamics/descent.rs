@@ -15,13 +15,16 @@ use super::state::{State, Twist};
 const STEPS: u32 = 30;
 /// [m/s] A change that is smaller is rounding: at a kink the potential falls no further.
 const ROUNDING: f64 = 1e-14;
-/// What is left at most of a limit of friction beyond Coulomb's law where no limits agree: so the end comes.
+/// What is left at most of a limit of friction beyond Coulomb's law where no limits agree, ...
 const SHRINKING: f64 = 0.9;
+/// ... and how often limits shrink at most: by then nothing is left of any.
+const SHRINKINGS: u32 = 400;
 
 impl Dynamics {
     /// Goes down to the minimum for the limits that the normal impulses give; whether it gives the same
     /// limits.
     pub(super) fn descend(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.effort.descents += 1;
         self.freeze_limits();
         let off = self.go_down(state, phase);
         self.obey_coulombs_law();
@@ -43,7 +46,11 @@ impl Dynamics {
         }
         if !self.model.is_one_body() || self.energy_of_contacts(state) > 0.0 {
             self.give_way(state, phase);
-            while self.limit_motors(state, phase) {
+            // Each time one more motor is at its limit.
+            for _ in 0..self.motors.len() + self.flippers.len() {
+                if !self.limit_motors(state, phase) {
+                    break;
+                }
                 self.set_actions(state, phase);
                 self.give_way(state, phase);
             }
@@ -54,7 +61,7 @@ impl Dynamics {
     /// slide under less than its law allows, but gains nothing.
     fn give_way(&mut self, state: &mut State, phase: &Phase) {
         self.freeze_limits();
-        loop {
+        for _ in 0..SHRINKINGS {
             self.go_down(state, phase);
             let mut fits = true;
             for row in &mut self.rows {

@@ -28,6 +28,7 @@ impl Dynamics {
     pub(super) fn solve_at_once(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
         for _ in 0..AT_ONCE {
+            self.effort.rounds += 1;
             self.assemble(phase);
             let Some((velocity, turn)) = self.solve_system() else {
                 return false;

@@ -13,6 +13,7 @@ mod change;
 mod damper;
 mod descent;
 mod direct;
+mod effort;
 mod flippers;
 mod grip;
 mod impulses;
@@ -41,6 +42,7 @@ use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
 
 pub use chains::ChainReading;
+pub(crate) use effort::Effort;
 pub(crate) use grip::Grip;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
@@ -88,6 +90,8 @@ pub(crate) struct Dynamics {
     shoes_a_chain: usize,
     phase: Phase,
     loaded: Vec<LoadedContact>,
+    /// What the last step took.
+    effort: Effort,
     /// [N] Push of the surroundings at the centre of mass.
     pub outer_force: Vector,
 }
@@ -119,6 +123,7 @@ impl Dynamics {
             solver,
             rows: Vec::new(),
             loaded: Vec::new(),
+            effort: Effort::default(),
             outer_force: Vector::ZERO,
         }
     }
@@ -126,6 +131,11 @@ impl Dynamics {
     /// The contacts of the last step with their forces.
     pub(crate) fn loaded(&self) -> &[LoadedContact] {
         &self.loaded
+    }
+
+    /// What the last step took.
+    pub(crate) fn effort(&self) -> Effort {
+        self.effort
     }
 
     pub(crate) fn model(&self) -> &Model {
@@ -143,6 +153,7 @@ impl Dynamics {
         step: u64,
     ) -> Result<(), SimulationError> {
         let dt = self.solver.time_step;
+        self.effort = Effort::default();
         self.prepare(state, contacts);
         for drive in &mut state.drives {
             (drive.force, drive.traction) = (0.0, 0.0);

@@ -12,6 +12,8 @@ use crate::robot::Model;
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
 pub(super) const AGREEMENT: f64 = 1e-7;
+/// Rounds of a search at most, unless the scenario says otherwise: a robot without arms takes one as a rule.
+const ITERATIONS: u32 = 30;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
 
@@ -88,15 +90,17 @@ impl Softness {
 impl Dynamics {
     /// Finds the impulses that all constraints agree on.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
+        self.effort.solves += 1;
         self.set_actions(state, phase);
         let agreed = if self.chains.is_empty() {
             // What they agree on with limits of friction is a better guess of what grips and what slides.
-            (0..self.solver.iterations)
+            (0..self.solver.iterations.unwrap_or(ITERATIONS))
                 .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
         } else {
             self.solve_in_steps(state, phase) || self.descend(state, phase)
         };
         if !agreed {
+            self.effort.unresolved += 1;
             self.end_search(state, phase);
         }
         if self.model.is_one_body() {

@@ -138,7 +138,7 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
             let (mut dynamics, mut state) = setup(|s| {
                 s.robot.drivetrain.max_torque = 0.0;
                 s.gravity = 0.0;
-                s.solver.iterations = iterations;
+                s.solver.iterations = Some(iterations);
             });
             state.velocity = Vector::new(draw(-1.0, 1.0), draw(-1.0, 1.0));
             state.angular_velocity = draw(-3.0, 3.0);

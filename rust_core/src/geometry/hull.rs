@@ -33,7 +33,8 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     });
     let (mut disc, mut from, mut turned) = (first, down, 0.0);
     let mut arcs: Vec<Arc> = Vec::new();
-    loop {
+    // Fewer than two arcs a disc make a hull: more would be rounding that goes round and round.
+    for _ in 0..2 * discs.len() {
         let distance = |i: usize| (discs[i].center - discs[disc].center).length();
         let next = (0..discs.len())
             .filter_map(|other| Some((other, turn_to(&discs[disc], &discs[other], from)?)))
@@ -53,7 +54,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
             // Round: what is left belongs to the first arc, which began half-way.
             arcs[0].from += left;
             arcs[0].sweep += left;
-            return arcs;
+            break;
         }
         arcs.push(Arc {
             disc,
@@ -61,10 +62,11 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
             sweep: turn.min(left),
         });
         if turn > left - SAME_TURN {
-            return arcs;
+            break;
         }
         (disc, from, turned) = (to, from - turn, turned + turn);
     }
+    arcs
 }
 
 /// [rad] How far the outward direction turns clockwise on `disc` until `other` reaches as far out.

@@ -3,12 +3,14 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use super::{Event, IntrusionWatch, Outcome, Reading, Shaking, Signals, Stance, bearing};
 use crate::contact::TrackEnvelope;
-use crate::dynamics::{ChainReading, DriveState, LoadedContact};
+use crate::dynamics::{ChainReading, DriveState, Effort, LoadedContact};
 use crate::geometry::Pose;
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
@@ -20,7 +22,7 @@ const LOOK: f64 = 0.01;
 /// Watches one run.
 pub(crate) struct Monitor {
     criteria: SeizureCriteria,
-    ground: Ground,
+    ground: Arc<Ground>,
     goal: f64,
     /// [m] A metre below the whole ground.
     floor: f64,
@@ -73,6 +75,8 @@ pub(crate) struct Seen {
     pub max_guide_penetration: f64,
     /// [m] Farthest that a chain and its sprocket have run apart so far.
     pub max_sprocket_slip: f64,
+    /// What the solves took so far.
+    pub effort: Effort,
 }
 
 impl Seen {
@@ -99,6 +103,7 @@ impl Seen {
             max_pin_gap: 0.0,
             max_guide_penetration: 0.0,
             max_sprocket_slip: 0.0,
+            effort: Effort::default(),
         }
     }
 }
@@ -143,11 +148,11 @@ struct Anchor {
 }
 
 impl Monitor {
-    pub(crate) fn new(scenario: &Scenario, ground: &Ground, model: &Model) -> Self {
+    pub(crate) fn new(scenario: &Scenario, ground: &Arc<Ground>, model: &Model) -> Self {
         let outline = &scenario.robot.outline;
         Self {
             criteria: scenario.criteria.clone(),
-            ground: ground.clone(),
+            ground: Arc::clone(ground),
             goal: ground.goal_of(scenario),
             floor: ground.lowest() - 1.0,
             half_length: 0.5 * outline.axle_distance,
@@ -209,6 +214,11 @@ impl Monitor {
                 self.watch_stationary(now, window, loaded);
             }
         }
+    }
+
+    /// Takes in what the solves of the same step took.
+    pub(crate) fn observe_effort(&mut self, effort: Effort) {
+        self.seen.effort = self.seen.effort.plus(effort);
     }
 
     /// Takes in what the chains did in the same step.

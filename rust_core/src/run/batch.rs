@@ -1,17 +1,15 @@
 //! Many scenarios, one world a thread, results in the order given.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::Record;
 use super::needs::{self, STACK};
 use super::simulate::{Run, simulate_within};
-use crate::error::{Error, LimitError};
+use super::{Checked, Record};
+use crate::error::{Error, LimitError, caught};
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
-use crate::scenario::Scenario;
 
 /// Whether a batch goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +25,7 @@ type Slot = Option<Result<Run, Error>>;
 
 /// What the threads of a batch share.
 struct Work {
-    scenarios: Arc<[Scenario]>,
+    scenarios: Arc<[Checked]>,
     record: Record,
     budget: Budget,
     next: AtomicUsize,
@@ -48,7 +46,7 @@ struct Work {
 /// # Errors
 /// The batch needs more memory than it may have; nothing has been run.
 pub fn simulate_many(
-    scenarios: impl Into<Arc<[Scenario]>>,
+    scenarios: impl Into<Arc<[Checked]>>,
     threads: usize,
     record: Record,
     mut watch: impl FnMut(usize) -> Progress,
@@ -122,35 +120,5 @@ impl Work {
                 self.done.fetch_add(1, Ordering::Release);
             }
         }
-    }
-}
-
-/// Turns a panic into an error: it is a fault of the program, and takes no more than its own run.
-///
-/// # Errors
-/// Those of the call, and [`Error::Internal`] with the text of a panic.
-pub fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
-        let text = panic.downcast_ref::<String>().map(String::as_str);
-        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-        let text = text.unwrap_or("unknown panic");
-        Err(Error::Internal(format!(
-            "the core failed: {text}; please report this with the scenario"
-        )))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_is_an_error_with_its_text() {
-        let failed: Result<(), Error> = caught(|| panic!("wheel {} came off", 3));
-        let Err(Error::Internal(message)) = failed else {
-            panic!("{failed:?}")
-        };
-        assert!(message.contains("wheel 3 came off"), "{message}");
-        assert!(caught(|| Ok(1)).is_ok_and(|one| one == 1));
     }
 }

@@ -55,6 +55,14 @@ pub struct Metrics {
     pub max_guide_penetration: f64,
     /// [m] Farthest that a chain has run ahead of its sprocket or stayed behind; 0 without a sprocket.
     pub max_sprocket_slip: f64,
+    /// Searches for the forces that all contacts, motors and pins agree on.
+    pub solves: f64,
+    /// Linear systems solved in them; as many as there are solves where every first guess fits.
+    pub solve_rounds: f64,
+    /// Descents, where guesses could not be mended.
+    pub descents: f64,
+    /// Solves that ended without agreement: their friction was cut until it added no energy.
+    pub unresolved_solves: f64,
 }
 
 impl Metrics {
@@ -92,11 +100,15 @@ impl Metrics {
             max_pin_gap: seen.max_pin_gap,
             max_guide_penetration: seen.max_guide_penetration,
             max_sprocket_slip: seen.max_sprocket_slip,
+            solves: seen.effort.solves as f64,
+            solve_rounds: seen.effort.rounds as f64,
+            descents: seen.effort.descents as f64,
+            unresolved_solves: seen.effort.unresolved as f64,
         }
     }
 
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 24] {
+    pub fn entries(&self) -> [(&'static str, f64); 28] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -122,6 +134,10 @@ impl Metrics {
             ("max_pin_gap", self.max_pin_gap),
             ("max_guide_penetration", self.max_guide_penetration),
             ("max_sprocket_slip", self.max_sprocket_slip),
+            ("solves", self.solves),
+            ("solve_rounds", self.solve_rounds),
+            ("descents", self.descents),
+            ("unresolved_solves", self.unresolved_solves),
         ]
     }
 }

@@ -1,7 +1,7 @@
 //! Runs: a scenario is checked and built, simulated step by step or to its end, alone or with many others.
 
 mod batch;
-mod check;
+mod checked;
 mod metrics;
 mod needs;
 mod poses;
@@ -9,8 +9,8 @@ mod simulate;
 mod simulation;
 mod trace;
 
-pub use batch::{Progress, caught, simulate_many};
-pub use check::check_text;
+pub use batch::{Progress, simulate_many};
+pub use checked::Checked;
 pub use metrics::Metrics;
 pub use poses::{Poses, poses};
 pub use simulate::{Run, branch, counterfactual, simulate};

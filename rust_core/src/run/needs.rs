@@ -1,10 +1,11 @@
 //! How many bytes runs need, from what they will record and build.
 
+use super::Checked;
 use super::trace::{Columns, Record};
 use crate::error::LimitError;
 use crate::limits::memory::{self, Budget};
 use crate::robot::Model;
-use crate::scenario::{Robot, Scenario, Terrain};
+use crate::scenario::Terrain;
 
 /// Bytes of the stack of a thread.
 pub(crate) const STACK: usize = 2 << 20;
@@ -33,26 +34,20 @@ pub(crate) fn ask_for_ground(terrain: &Terrain) -> Result<(), LimitError> {
 /// # Errors
 /// It is more than the batch may have; the message says what takes less.
 pub(crate) fn of_batch(
-    scenarios: &[Scenario],
+    scenarios: &[Checked],
     record: Record,
     threads: usize,
 ) -> Result<Budget, LimitError> {
-    let corners = scenarios.iter().map(|scenario| corners(&scenario.terrain));
+    let terrain_of = |checked: &Checked| corners(&checked.scenario().terrain);
+    let corners = scenarios.iter().map(terrain_of);
     let largest = corners.clone().max().unwrap_or(0);
     let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
     let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
     let kept = built + given_back.sum::<u64>();
     let mut recorded = 0;
     if record.history {
-        let mut last: Option<(&Robot, u64)> = None;
-        for scenario in scenarios {
-            // Most batches repeat a robot.
-            let of_sample = match last {
-                Some((robot, bytes)) if *robot == scenario.robot => bytes,
-                _ => bytes_of_sample(&scenario.robot),
-            };
-            last = Some((&scenario.robot, of_sample));
-            recorded += record.samples(scenario) * of_sample;
+        for checked in scenarios {
+            recorded += record.samples(checked.scenario()) * bytes_of_sample(checked.model());
         }
     }
     let budget = Budget::new()?;
@@ -61,7 +56,7 @@ pub(crate) fn of_batch(
     Ok(budget)
 }
 
-fn described(scenarios: &[Scenario], record: Record) -> String {
+fn described(scenarios: &[Checked], record: Record) -> String {
     let runs = match scenarios.len() {
         1 => "a run".to_owned(),
         n => format!("a batch of {n} runs"),
@@ -77,13 +72,10 @@ fn described(scenarios: &[Scenario], record: Record) -> String {
 }
 
 /// Bytes of a sample as the robot stands: half of its parts touch.
-fn bytes_of_sample(robot: &Robot) -> u64 {
-    // A robot that cannot be built records nothing.
-    Model::new(robot).map_or(0, |model| {
-        let columns = Columns::of(&model);
-        let touching = (columns.parts / 2).max(2);
-        columns.bytes() + touching as u64 * Columns::BYTES_A_CONTACT
-    })
+fn bytes_of_sample(model: &Model) -> u64 {
+    let columns = Columns::of(model);
+    let touching = (columns.parts / 2).max(2);
+    columns.bytes() + touching as u64 * Columns::BYTES_A_CONTACT
 }
 
 /// Corners of a ground at most, all its lanes together: facets of rounded edges are corners, too.

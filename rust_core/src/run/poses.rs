@@ -1,14 +1,13 @@
 //! Where every body of a robot was, at every sample of a run: what pictures draw, from the trace.
 
-use super::Trace;
 use super::trace::Columns;
+use super::{Checked, Trace};
 use crate::error::Error;
 use crate::geometry::{Pose, Vector};
 use crate::limits::Cancel;
 use crate::limits::memory::ask;
 use crate::robot::{Body, Model, Mount, Running};
-use crate::scenario::{Scenario, ScenarioError};
-use crate::terrain::Ground;
+use crate::scenario::ScenarioError;
 
 /// Places at every sample of a run; angles count full turns.
 #[derive(Clone, Debug, Default)]
@@ -72,12 +71,11 @@ impl Sample<'_> {
 ///
 /// # Errors
 /// Columns that are not those of the scenario; more samples than fit in the memory; the caller's wish.
-pub fn poses(scenario: &Scenario, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
-    let ground = Ground::new(&scenario.terrain, scenario.robot.gauge)?;
-    let model = Model::on(&scenario.robot, &ground)?;
+pub fn poses(checked: &Checked, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
+    let model = checked.model();
     let bodies = model.outlines();
     let samples = trace.chassis_angle.len();
-    let columns = Columns::of(&model);
+    let columns = Columns::of(model);
     columns.check(trace)?;
     let numbers = samples * (4 * bodies.len() + 3 * model.flippers.len() + 2);
     ask("the poses of a run", 8 * numbers as u64)?;
@@ -100,8 +98,8 @@ pub fn poses(scenario: &Scenario, trace: &Trace, cancel: &Cancel) -> Result<Pose
             shoes: &shoes[i * shoe_count..][..shoe_count],
             flippers: &trace.flipper_angles[i * found.flippers..][..found.flippers],
         };
-        sample.set(&model, &mut running);
-        found.add(&model, &bodies, &sample, &running);
+        sample.set(model, &mut running);
+        found.add(model, &bodies, &sample, &running);
     }
     Ok(found)
 }

@@ -3,13 +3,12 @@
 use std::time::Instant;
 
 use super::trace::{ContactTable, Record, Recorder, Trace};
-use super::{Metrics, Simulation, needs};
+use super::{Checked, Metrics, Simulation, needs};
 use crate::diagnosis::{Counterfactual, Diagnosis};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
-use crate::scenario::Scenario;
 use crate::terrain::Edge;
 
 /// What came out of a run.
@@ -42,46 +41,40 @@ pub struct Run {
 /// Simulates a scenario to its end.
 ///
 /// # Errors
-/// [`Error::Scenario`] and [`Error::Limit`] before anything runs, [`Error::Simulation`] if the state became
-/// non-finite, [`Error::Limit`] if more was recorded than memory holds.
-pub fn simulate(scenario: &Scenario, record: Record) -> Result<Run, Error> {
-    let budget = needs::of_batch(std::slice::from_ref(scenario), record, 1)?;
-    simulate_within(scenario, record, (&budget, &Cancel::default()))
+/// [`Error::Limit`] before anything runs or if more was recorded than memory holds, [`Error::Simulation`] if the
+/// state became non-finite.
+pub fn simulate(checked: &Checked, record: Record) -> Result<Run, Error> {
+    let budget = needs::of_batch(std::slice::from_ref(checked), record, 1)?;
+    simulate_within(checked, record, (&budget, &Cancel::default()))
 }
 
 /// The same within a budget of memory, ending early with [`Error::Interrupted`] once asked to.
 pub(crate) fn simulate_within(
-    scenario: &Scenario,
+    checked: &Checked,
     record: Record,
     limits: Limits,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
-    let mut simulation = Simulation::new(scenario)?;
-    advance(
-        &mut simulation,
-        scenario.step_count(),
-        record,
-        limits,
-        begin,
-    )
+    let last = checked.scenario().step_count();
+    advance(&mut Simulation::new(checked), last, record, limits, begin)
 }
 
 /// Simulates `scenario` up to the time `at` [s], then goes on as `variant`, for its whole duration.
 ///
 /// # Errors
-/// As [`simulate`], for both, and [`Error::Interrupted`] once `cancel` is asked.
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
-    scenario: &Scenario,
+    scenario: &Checked,
     at: f64,
-    variant: &Scenario,
+    variant: &Checked,
     record: Record,
     cancel: &Cancel,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
     let budget = needs::of_batch(std::slice::from_ref(variant), record, 1)?;
     let trunk = replay(scenario, at, cancel)?;
-    let mut simulation = trunk.branch(variant)?;
-    let last = simulation.steps() + variant.step_count();
+    let mut simulation = trunk.branch(variant);
+    let last = simulation.steps() + variant.scenario().step_count();
     advance(&mut simulation, last, record, (&budget, cancel), begin)
 }
 
@@ -91,7 +84,7 @@ pub fn branch(
 /// As [`simulate`], [`Error::Scenario`] if the track has no grousers and the belt is to have some, and
 /// [`Error::Interrupted`] once `cancel` is asked.
 pub fn counterfactual(
-    scenario: &Scenario,
+    scenario: &Checked,
     at: f64,
     grousers: bool,
     cancel: &Cancel,
@@ -105,8 +98,8 @@ pub fn counterfactual(
 }
 
 /// The simulation of a scenario at a time [s].
-fn replay(scenario: &Scenario, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
-    let mut simulation = Simulation::new(scenario)?;
+fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
+    let mut simulation = Simulation::new(scenario);
     let steps = (at / simulation.time_step()).round() as u64;
     while simulation.steps() < steps {
         simulation.step()?;

@@ -9,7 +9,10 @@ mod snapshot;
 mod tests;
 mod whole;
 
+use std::sync::Arc;
+
 use self::gait::Driver;
+use super::Checked;
 use super::trace::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Diagnosis, Scene};
@@ -24,7 +27,7 @@ use crate::terrain::{Ground, Side};
 /// A simulation under way: what was built from the scenario, and the state.
 pub struct Simulation {
     scenario: Scenario,
-    ground: Ground,
+    ground: Arc<Ground>,
     contact: ContactFinder,
     dynamics: Dynamics,
     monitor: Monitor,
@@ -43,15 +46,10 @@ pub struct Simulation {
 
 impl Simulation {
     /// Places the robot before the first edge, at rest.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] with the first broken rule.
-    pub fn new(scenario: &Scenario) -> Result<Self, Error> {
-        scenario.validate()?;
-        Self::on_ground(
-            scenario,
-            Ground::new(&scenario.terrain, scenario.robot.gauge)?,
-        )
+    pub fn new(checked: &Checked) -> Self {
+        let ground = Arc::clone(checked.ground());
+        let model = checked.model().clone();
+        Self::at_rest(checked.scenario(), ground, model, checked.position())
     }
 
     /// The same on a ground of the caller's own in place of the scenario's.
@@ -61,17 +59,17 @@ impl Simulation {
     pub fn on_ground(scenario: &Scenario, ground: Ground) -> Result<Self, Error> {
         let model = Model::on(&scenario.robot, &ground)?;
         let position = start_position(scenario, &model, &ground)?;
-        let state = State::at_rest(
-            &model,
-            position,
-            scenario.start.angle,
-            scenario.start.track_phase,
-        );
-        Ok(Self::of(scenario, ground, model, state))
+        Ok(Self::at_rest(scenario, Arc::new(ground), model, position))
+    }
+
+    fn at_rest(scenario: &Scenario, ground: Arc<Ground>, model: Model, position: Vector) -> Self {
+        let start = &scenario.start;
+        let state = State::at_rest(&model, position, start.angle, start.track_phase);
+        Self::of(scenario, ground, model, state)
     }
 
     /// A robot in a state on a ground.
-    pub(crate) fn of(scenario: &Scenario, ground: Ground, model: Model, state: State) -> Self {
+    fn of(scenario: &Scenario, ground: Arc<Ground>, model: Model, state: State) -> Self {
         let method = scenario.solver.contact;
         let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
         let reach = model.reach();
@@ -167,6 +165,7 @@ impl Simulation {
         if !model.chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
+        self.monitor.observe_effort(self.dynamics.effort());
         let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
         let drives = self.state.drives.iter().copied().zip(speeds);
         self.monitor.observe(

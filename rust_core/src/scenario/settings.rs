@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::ScenarioError;
 use super::fields::{Fields, Range};
+use super::{Robot, ScenarioError, Track};
 
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,9 +35,9 @@ pub struct Solver {
     pub time_step: f64,
     /// Substeps of a step.
     pub substeps: u32,
-    /// Most rounds in search of what all constraints of half a substep agree on; one as a rule, with chains
-    /// three. Chains never take more than 16.
-    pub iterations: u32,
+    /// Most rounds in search of what all constraints of half a substep agree on, each with guesses and a
+    /// descent; none takes the solver's own. A chain of shoes has one round of its own kind, and so none to limit.
+    pub iterations: Option<u32>,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,
     /// Damping ratio of the contact softness.
@@ -117,7 +117,7 @@ impl Solver {
             )?,
             time_step: f.number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
             substeps: f.integer("substeps", 1, 64)?,
-            iterations: f.integer("iterations", 1, 1000)?,
+            iterations: f.optional_integer("iterations", 1, 1000)?,
             contact_frequency: f.number("contact_frequency", Range::between(1.0, 1e5, "Hz"))?,
             contact_damping_ratio: f
                 .number("contact_damping_ratio", Range::above(0.0, 100.0, ""))?,
@@ -126,6 +126,20 @@ impl Solver {
         };
         f.finish()?;
         Ok(solver)
+    }
+}
+
+impl Solver {
+    /// Whether it suits a robot.
+    pub(crate) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
+        let is_chain = matches!(robot.track, Track::Segmental(_));
+        match self.iterations {
+            Some(given) if is_chain => {
+                let rule = "must not be given with a chain of shoes, whose solves have one round of at most 16 steps";
+                Err(ScenarioError::new("solver.iterations", given, rule))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

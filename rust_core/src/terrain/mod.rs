@@ -155,6 +155,11 @@ impl Ground {
         edges.copied().collect()
     }
 
+    /// Whether the lanes of another lie under the same of a robot's parts.
+    pub(crate) fn has_lanes_of(&self, other: &Self) -> bool {
+        (self.tracks, self.lanes.len()) == (other.tracks, other.lanes.len())
+    }
+
     /// Lane under the belly.
     pub fn middle(&self) -> usize {
         self.lanes.len() - 1

@@ -1,7 +1,7 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, Ends, Flippers, ForceSupport,
+    BeltTrack, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Flippers, ForceSupport,
     ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
     Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation, Terrain, Track, Wheel,
     simulate,
@@ -14,6 +14,11 @@ pub(crate) const G: f64 = 9.81;
 pub(crate) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
     Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+/// A scenario as it comes out of the door.
+pub(crate) fn checked(scenario: &Scenario) -> Checked {
+    Checked::new(scenario).expect("the scenario is valid")
 }
 
 /// The same on a track.
@@ -244,16 +249,16 @@ pub(crate) fn slope(angle: f64, friction: f64) -> Terrain {
 }
 
 pub(crate) fn run(scenario: &Scenario) -> Run {
-    simulate(scenario, Record::default()).expect("the scenario runs")
+    simulate(&checked(scenario), Record::default()).expect("the scenario runs")
 }
 
 pub(crate) fn summary(scenario: &Scenario) -> Run {
-    simulate(scenario, Record::summary()).expect("the scenario runs")
+    simulate(&checked(scenario), Record::summary()).expect("the scenario runs")
 }
 
 /// Advances a fresh simulation and hands it over.
 pub(crate) fn after(scenario: &Scenario, duration: f64) -> Simulation {
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&checked(scenario));
     advance(&mut simulation, duration);
     simulation
 }
@@ -321,7 +326,7 @@ pub(crate) fn contact_sums(simulation: &Simulation, x: f64, y: f64) -> (f64, f64
 pub(crate) fn equal_lanes_off(scenario: &Scenario) -> (f64, f64) {
     let ground = equal_lanes(&scenario.terrain);
     let mut apart = Simulation::on_ground(scenario, ground).expect("it fits");
-    let mut lumped = Simulation::new(scenario).expect("it fits");
+    let mut lumped = Simulation::new(&checked(scenario));
     let (mut pose, mut speed) = (0.0_f64, 0.0_f64);
     for _ in 0..500 {
         apart.step().expect("finite");

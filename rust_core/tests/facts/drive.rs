@@ -200,7 +200,7 @@ fn no_robot_pulls_harder_than_its_grip_or_its_motors() {
                 of_motors
             };
             let push = 1.1 * of_motors.min(of_grip);
-            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            let mut simulation = Simulation::new(&checked(&scenario));
             simulation.set_push(-push).expect("a push");
             let (mut farthest, mut hardest) = (0.0_f64, 0.0_f64);
             let start = simulation.reading().position.x;

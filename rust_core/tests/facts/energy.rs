@@ -44,7 +44,7 @@ pub(crate) struct Account {
 /// Follows a run for a time [s]. The work of a step is that of its mean efforts at the mean of the speeds
 /// before and after: of a blow that is all.
 pub(crate) fn follow(scenario: &Scenario, duration: f64) -> Account {
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&checked(scenario));
     let on_wheels = matches!(
         scenario.robot.track,
         Track::Segmental(SegmentalTrack {

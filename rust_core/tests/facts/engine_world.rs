@@ -3,7 +3,7 @@
 //! The engine shares nothing with this project's equations of motion but the contact geometry: its
 //! wheels are bodies on revolute joints, each with its own velocity motor.
 
-use crawler2d_core::{Ground, Model, Scenario, Shape, Simulation};
+use crawler2d_core::{Checked, Ground, Model, Scenario, Shape, Simulation};
 use rapier2d_f64::prelude::*;
 
 /// A robot on wheels with motors of their own, in the engine.
@@ -35,7 +35,7 @@ impl EngineWorld {
         let model = Model::new(robot).expect("the scenario is valid");
         let ground =
             Ground::new(&scenario.terrain, scenario.robot.gauge).expect("the scenario is valid");
-        let start = Simulation::new(scenario).expect("the scenario is valid");
+        let start = Simulation::new(&Checked::new(scenario).expect("the scenario is valid"));
         let start = start.reading().position;
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -scenario.gravity);

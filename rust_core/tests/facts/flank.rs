@@ -23,7 +23,7 @@ fn rails() -> Terrain {
 /// [N] The pull of a run: a push against the way grows by 15 N/s until the robot has lost 20 mm; the
 /// pull is the push where it had come farthest.
 fn pull(scenario: &Scenario) -> f64 {
-    let mut simulation = Simulation::new(scenario).expect("it fits");
+    let mut simulation = Simulation::new(&checked(scenario));
     advance(&mut simulation, 2.0);
     let (mut farthest, mut at, mut push) = (f64::NEG_INFINITY, 0.0, 0.0);
     loop {

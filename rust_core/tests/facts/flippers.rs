@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use crawler2d_core::{
-    Drive, End, Ends, Error, Gait, Hold, Outcome, Record, Scenario, Simulation, Track, Wheel,
-    simulate,
+    Checked, Drive, End, Ends, Error, Gait, Hold, Outcome, Record, Scenario, Simulation, Track,
+    Wheel, simulate,
 };
 
 use crate::common::*;
@@ -89,7 +89,7 @@ fn a_schedule_is_followed_at_the_limit_of_the_rate() {
     };
     scenario.duration = 3.0;
     scenario.robot.drivetrain.max_acceleration = 4.0;
-    let run = simulate(&scenario, Record::default()).expect("it runs");
+    let run = simulate(&checked(&scenario), Record::default()).expect("it runs");
     let at = |time: f64| (time / 0.01).round() as usize;
     for (time, angle) in [
         (0.5, 0.0),
@@ -113,7 +113,7 @@ fn arms_held_level_do_not_lag_behind_a_chassis_that_turns() {
     let mut scenario = with_flippers(Ends::Both, belt());
     scenario.terrain = step(0.3, 0.9);
     scenario.drive.gait = Some(climb());
-    let mut simulation = Simulation::new(&scenario).expect("it is valid");
+    let mut simulation = Simulation::new(&checked(&scenario));
     let mut lags = Vec::new();
     for _ in 0..6000 {
         simulation.step().expect("it runs");
@@ -214,7 +214,7 @@ fn arms_at_the_rear_climb_what_those_at_the_front_cannot() {
         flippers(&mut scenario).angle = 0.8;
         scenario.terrain = step(height, 0.9);
         scenario.drive.gait = Some(climb());
-        simulate(&scenario, Record::summary())
+        simulate(&checked(&scenario), Record::summary())
             .expect("it runs")
             .outcome
     };
@@ -260,7 +260,7 @@ fn a_gait_without_flippers_moves_nothing() {
 #[test]
 fn arms_and_shoes_that_leave_no_chassis_are_refused() {
     let mut scenario = with_flippers(Ends::Both, belt());
-    let path = |scenario: &Scenario| match Simulation::new(scenario).map(|_| ()) {
+    let path = |scenario: &Scenario| match Checked::new(scenario).map(|_| ()) {
         Err(Error::Scenario(error)) => error.path,
         other => panic!("{other:?}"),
     };

@@ -126,7 +126,7 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
             let mut scenario = scenario.clone();
             scenario.terrain = step_at(x);
             scenario.start.approach = 1.0;
-            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            let mut simulation = Simulation::new(&checked(&scenario));
             let mut path = Vec::new();
             // At 0.2 m/s^2 up to 0.4 m/s, three seconds end 0.2 m before the edge.
             for _ in 0..3000 {

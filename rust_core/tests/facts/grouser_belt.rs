@@ -87,7 +87,7 @@ fn a_push_is_held_by_the_force_of_the_motors() {
     let force = 2.0 * 1.0 / 0.052;
     scenario.terrain = slope(0.0, 0.9);
     for (share, forwards) in [(0.99, true), (1.01, false)] {
-        let mut simulation = Simulation::new(&scenario).expect("it fits");
+        let mut simulation = Simulation::new(&checked(&scenario));
         simulation.set_push(-share * force).expect("a push");
         let start = simulation.reading().position.x;
         advance(&mut simulation, 0.3);
@@ -142,7 +142,7 @@ fn a_flank_against_a_rail_pulls_with_all_the_motors_have() {
     };
     let force = 2.0 * 2.0 / 0.052;
     for (share, holds) in [(0.97, true), (1.05, false)] {
-        let mut simulation = Simulation::new(&scenario).expect("it fits");
+        let mut simulation = Simulation::new(&checked(&scenario));
         for _ in 0..2000 {
             simulation.step().expect("finite");
         }

@@ -90,7 +90,7 @@ fn the_higher_lane_bears_all_of_the_weight() {
     let mut scenario = engineer();
     scenario.terrain = lanes(level(0.0, 0.9), level(0.02, 0.9));
     scenario.drive.speed = 0.0;
-    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    let mut simulation = Simulation::new(&checked(&scenario));
     for _ in 0..1000 {
         simulation.step().expect("finite");
     }
@@ -113,7 +113,7 @@ fn each_lane_has_its_own_friction() {
     scenario.drive.speed = 0.0;
     scenario.start.approach = 0.0;
     scenario.start.angle = angle;
-    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    let mut simulation = Simulation::new(&checked(&scenario));
     for _ in 0..1000 {
         simulation.step().expect("finite");
     }
@@ -140,7 +140,7 @@ fn each_track_has_half_of_the_force() {
     for (friction, motors) in [(0.9, 2.0), (0.0, 1.0)] {
         scenario.terrain = lanes(level(0.0, 0.9), level(0.0, friction));
         for (share, forwards) in [(0.95, true), (1.05, false)] {
-            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            let mut simulation = Simulation::new(&checked(&scenario));
             simulation
                 .set_push(-share * motors * force)
                 .expect("a push");

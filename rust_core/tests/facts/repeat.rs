@@ -1,6 +1,8 @@
 //! The same scenario gives the same bits, wherever and whenever it runs.
 
-use crawler2d_core::{Error, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many};
+use crawler2d_core::{
+    Checked, Error, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many,
+};
 
 use crate::common::*;
 
@@ -72,8 +74,8 @@ fn fingerprints(results: Vec<Option<Result<Run, Error>>>) -> Vec<u64> {
 
 #[test]
 fn threads_and_order_do_not_change_a_bit() {
-    let scenarios = batch();
-    let go = |scenarios: &[Scenario], threads| {
+    let scenarios: Vec<Checked> = batch().iter().map(checked).collect();
+    let go = |scenarios: &[Checked], threads| {
         let results = simulate_many(scenarios, threads, Record::default(), |_| {
             Progress::Continue
         });
@@ -86,7 +88,7 @@ fn threads_and_order_do_not_change_a_bit() {
     for threads in [1, 2, 3, 8] {
         assert_eq!(go(&scenarios, threads), alone);
     }
-    let reversed: Vec<Scenario> = scenarios.iter().rev().cloned().collect();
+    let reversed: Vec<Checked> = scenarios.iter().rev().cloned().collect();
     let mut back = go(&reversed, 2);
     back.reverse();
     assert_eq!(back, alone);
@@ -156,7 +158,7 @@ fn every_build_finds_the_same_values() {
 
 #[test]
 fn cancelled_batch_keeps_what_is_finished() {
-    let scenarios = vec![batch()[0].clone(); 40];
+    let scenarios = vec![checked(&batch()[0]); 40];
     let results = simulate_many(scenarios, 2, Record::summary(), |done| {
         if done >= 3 {
             Progress::Stop

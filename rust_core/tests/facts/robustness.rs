@@ -3,7 +3,7 @@
 use std::panic::catch_unwind;
 
 use crawler2d_core::{
-    Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Terrain, simulate,
+    Checked, Error, Ground, MAX_POINTS, Profile, Record, Scenario, Simulation, Terrain, simulate,
 };
 use serde_json::{Value, json};
 
@@ -26,7 +26,7 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
     let mut deepest = 0.0_f64;
     for case in 0..cases(300) {
         let scenario = drawn(&mut draw);
-        let run = simulate(&scenario, Record::default())
+        let run = simulate(&checked(&scenario), Record::default())
             .unwrap_or_else(|e| panic!("seed {seed} case {case}: {e}\n{}", scenario.to_json()));
         for (name, value) in run.metrics.entries() {
             assert!(
@@ -146,7 +146,7 @@ fn nested_json_is_refused_before_the_stack_runs_out() {
     assert!(Scenario::from_json(&text).is_err());
 }
 
-fn with_points(points: Vec<[f64; 2]>) -> Result<Simulation, Error> {
+fn with_points(points: Vec<[f64; 2]>) -> Result<Checked, Error> {
     let mut scenario = engineer();
     scenario.terrain = Terrain::Points {
         points,
@@ -154,10 +154,10 @@ fn with_points(points: Vec<[f64; 2]>) -> Result<Simulation, Error> {
         edge_radius: 0.0,
         friction: 0.9,
     };
-    Simulation::new(&scenario)
+    Checked::new(&scenario)
 }
 
-fn rule(result: Result<Simulation, Error>) -> String {
+fn rule(result: Result<Checked, Error>) -> String {
     match result {
         Err(Error::Scenario(e)) => e.to_string(),
         Err(e) => panic!("{e}"),
@@ -209,7 +209,7 @@ fn order_duplicates_and_collinear_points_do_not_matter() {
     ];
     messy.reverse();
     let profile =
-        |s: Result<Simulation, Error>| s.map(|s| s.ground().lanes[0].clone()).expect("accepted");
+        |s: Result<Checked, Error>| s.map(|s| s.ground().lanes[0].clone()).expect("accepted");
     let (a, b) = (profile(with_points(clean)), profile(with_points(messy)));
     assert_eq!(a.points, b.points);
     assert_eq!((a.merged, b.merged), (0, 4));
@@ -221,7 +221,7 @@ fn hundred_thousand_points_build_and_run() {
         .map(|i| [1e-3 * f64::from(i), 1e-3 * libm::sin(0.01 * f64::from(i))])
         .collect();
     assert!(points.len() <= MAX_POINTS);
-    let mut simulation = with_points(points).expect("accepted");
+    let mut simulation = Simulation::new(&with_points(points).expect("accepted"));
     advance(&mut simulation, 0.05);
     assert!(simulation.reading().position.x.is_finite());
 }

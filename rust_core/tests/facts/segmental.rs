@@ -148,7 +148,7 @@ fn a_push_is_held_by_the_force_of_the_motors() {
         for phase in 0..phases {
             let pitch = 1.056 / f64::from(count);
             scenario.start.track_phase = pitch * f64::from(phase) / f64::from(phases);
-            let mut simulation = Simulation::new(&scenario).expect("it fits");
+            let mut simulation = Simulation::new(&checked(&scenario));
             simulation.set_speed(0.0).expect("it can stand");
             simulation.set_push(-push).expect("a push");
             advance(&mut simulation, 1.0);
@@ -227,7 +227,7 @@ fn outcome_of(
     scenario.start.track_phase = draw.between(0.0, 0.05);
     scenario.drive.speed = trial.commands[0];
     scenario.duration = duration;
-    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    let mut simulation = Simulation::new(&checked(&scenario));
     let steps = (duration / simulation.time_step()) as usize;
     let a_second = (1.0 / simulation.time_step()) as usize;
     let mut worst = ChainReading::default();
@@ -344,7 +344,7 @@ fn a_chain_runs_as_far_as_its_sprocket_turns() {
 fn teeth_hold_a_push() {
     let mut scenario = toothed(22);
     scenario.terrain = slope(0.0, 0.9);
-    let mut simulation = Simulation::new(&scenario).expect("it fits");
+    let mut simulation = Simulation::new(&checked(&scenario));
     simulation.set_speed(0.0).expect("it can stand");
     simulation.set_push(-60.0).expect("a push");
     advance(&mut simulation, 1.0);
@@ -383,7 +383,7 @@ fn a_chain_takes_over_a_moving_belt_without_a_jerk() {
     let mut belted = scenario.clone();
     belted.robot.track = belt();
     let belt = after(&belted, 4.0);
-    let mut chain = belt.branch(&scenario).expect("it fits");
+    let mut chain = belt.branch(&checked(&scenario));
     let start = chain.reading();
     assert!((start.velocity.x / 0.4 - 1.0).abs() < 1e-3);
     let (mut slowest, mut fastest, mut run) = (f64::INFINITY, 0.0_f64, 0.0);

@@ -1,6 +1,6 @@
 //! A snapshot holds everything that the future depends on.
 
-use crawler2d_core::{Error, Simulation};
+use crawler2d_core::{Checked, Error, Simulation};
 
 use crate::common::*;
 use crate::drawn::drawn;
@@ -11,9 +11,10 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
     let mut draw = Draw(seed);
     let (mut runs, mut largest) = (0, 0);
     while runs < 200 {
-        let Ok(mut whole) = Simulation::new(&drawn(&mut draw)) else {
+        let Ok(checked) = Checked::new(&drawn(&mut draw)) else {
             continue;
         };
+        let mut whole = Simulation::new(&checked);
         runs += 1;
         advance(&mut whole, draw.between(0.0, 1.0));
         if draw.unit() < 0.2 {

@@ -7,7 +7,7 @@ use crawler2d_core::{
 use crate::common::*;
 
 fn ends_in_a_stop(scenario: &Scenario) -> Simulation {
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&checked(scenario));
     while !simulation.is_over() && simulation.steps() < scenario.step_count() {
         simulation.step().expect("the state stays finite");
     }
@@ -165,7 +165,7 @@ fn belts_and_skids_are_never_seized() {
 
 /// Runs to a stop and says why.
 fn why(scenario: &Scenario) -> (Run, crawler2d_core::Diagnosis) {
-    let run = simulate(scenario, crawler2d_core::Record::summary()).unwrap();
+    let run = simulate(&checked(scenario), crawler2d_core::Record::summary()).unwrap();
     let diagnosis = run
         .diagnosis
         .clone()
@@ -294,7 +294,7 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
 /// [m] How far the robot moves under a push that grows to `force` in 5 s and stays for a second; all
 /// at once it would carry the robot past where it could hold.
 fn moves_under(stopped: &Simulation, force: f64) -> f64 {
-    let mut pushed = stopped.branch(stopped.scenario()).unwrap();
+    let mut pushed = stopped.branch(&checked(stopped.scenario()));
     let start = pushed.reading().position;
     let mut farthest: f64 = 0.0;
     for i in 0..6000 {

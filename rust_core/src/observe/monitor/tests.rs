@@ -79,6 +79,7 @@ struct Watched {
 impl Watched {
     fn new(scenario: &Scenario) -> Self {
         let ground = Ground::new(&scenario.terrain, scenario.robot.gauge).expect("a ground");
+        let ground = Arc::new(ground);
         let model = Model::on(&scenario.robot, &ground).expect("it can be built");
         Self {
             monitor: Monitor::new(scenario, &ground, &model),

@@ -1,5 +1,7 @@
 //! The same instant with something changed: another track, friction, command, or a closed belt.
 
+use std::sync::Arc;
+
 use super::Simulation;
 use crate::contact::Dents;
 use crate::diagnosis::Counterfactual;
@@ -8,6 +10,7 @@ use crate::error::Error;
 use crate::limits::Cancel;
 use crate::observe::Seen;
 use crate::robot::Model;
+use crate::run::Checked;
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::Ground;
 
@@ -17,13 +20,9 @@ impl Simulation {
     /// What has not changed goes on as it was, with the same bits. Another robot or track takes the
     /// pose and the speeds over; ground that is inside it is let out without a push. Outcome,
     /// stops and progress are counted from here.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] with the first broken rule of the variant.
-    pub fn branch(&self, variant: &Scenario) -> Result<Self, Error> {
-        variant.validate()?;
-        let ground = Ground::new(&variant.terrain, variant.robot.gauge)?;
-        let model = Model::on(&variant.robot, &ground)?;
+    pub fn branch(&self, variant: &Checked) -> Self {
+        let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
+        let variant = variant.scenario();
         let mut branch = self.with(variant, ground, model);
         branch.command = variant.drive.speed;
         if variant.robot == self.scenario.robot {
@@ -31,7 +30,7 @@ impl Simulation {
             branch.dynamics.start_from(self.dynamics.impulses());
             branch.dents = self.dents.clone();
         }
-        Ok(branch)
+        branch
     }
 
     /// What a closed belt of the same envelope, force and friction does in this pose.
@@ -62,7 +61,7 @@ impl Simulation {
             return Err(error.into());
         }
         let closed = model.closed(Some(outline))?;
-        Ok(self.with(&self.scenario, self.ground.clone(), closed))
+        Ok(self.with(&self.scenario, Arc::clone(&self.ground), closed))
     }
 
     fn try_belt(&self, mut belt: Self, cancel: &Cancel) -> Result<Counterfactual, Error> {
@@ -92,11 +91,11 @@ impl Simulation {
     /// [`Error::Scenario`] if there is no such belt.
     pub fn with_closed_belt(&self) -> Result<Self, Error> {
         let model = self.dynamics.model().closed(None)?;
-        Ok(self.with(&self.scenario, self.ground.clone(), model))
+        Ok(self.with(&self.scenario, Arc::clone(&self.ground), model))
     }
 
     /// Another model in this pose, its drives at the mean speed of these.
-    fn with(&self, scenario: &Scenario, ground: Ground, model: Model) -> Self {
+    fn with(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
         let now = self.reading();
         let center =
             now.position + self.state.pose(self.dynamics.model()).rotation * model.center_of_mass;

@@ -8,12 +8,13 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use super::gait::Driver;
-use crate::BUILD_ID;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
 use crate::observe::Seen;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::run::Checked;
+use crate::scenario::ScenarioError;
+use crate::version::BUILD_ID;
 
 /// First bytes of every snapshot; the number is the version of the layout around the state.
 const MAGIC: &[u8] = b"crawler2d snapshot 1\n";
@@ -92,8 +93,7 @@ impl Simulation {
             return Err(refused(&format!("one of build {}", image.build), &rule));
         }
         let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
-        let scenario = Scenario::from_json(&moment.scenario)?;
-        let mut simulation = Self::new(&scenario)?;
+        let mut simulation = Self::new(&Checked::from_json(&moment.scenario)?);
         if !simulation.fits(&moment) {
             let rule = "must hold what its own robot and ground can have come to";
             return Err(refused("contents of another", rule));

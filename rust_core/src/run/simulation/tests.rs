@@ -19,7 +19,7 @@ fn run_until(simulation: &mut Simulation, time: f64) {
 
 /// A second after it has stopped.
 fn stopped(scenario: &Scenario) -> Simulation {
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&Checked::new(scenario).expect("the scenario is valid"));
     while simulation.monitor.stop_since().is_none() {
         assert!(simulation.time() < scenario.duration, "it has not stopped");
         simulation.step().expect("the state stays finite");
@@ -103,7 +103,7 @@ fn an_end_counts_before_a_stop() {
     let mut scenario = skids();
     scenario.goal = Some(-2.0);
     scenario.criteria.clear_time = 2.5;
-    let mut simulation = Simulation::new(&scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
     assert_eq!(simulation.outcome_now(), Outcome::TimedOut);
     run_until(&mut simulation, 2.0);
     assert_eq!(simulation.outcome_now(), Outcome::Stalled);
@@ -131,7 +131,8 @@ fn a_chain_that_comes_off_as_the_robot_tips_over_has_come_off() {
     scenario.criteria.tip_over_angle = 1e-9;
     scenario.start.angle = 1e-3;
     let tips = |off: bool| {
-        let mut simulation = Simulation::new(&scenario).expect("the scenario is valid");
+        let mut simulation =
+            Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
         if off {
             // A shoe high above the robot.
             simulation.state.shoes[0].center.y += 0.5;

@@ -5,6 +5,7 @@ use crawler2d_core::{Ground, Reading, Scenario, Simulation};
 use super::motion::{Judge, Settings};
 use super::scenes::Scene;
 use super::statistics::{difference, fisher, median, wilson};
+use crate::common::checked;
 
 /// How one run went.
 struct Verdict {
@@ -53,7 +54,7 @@ fn by_core(scenario: &Scenario) -> Verdict {
 /// Where the core's run ends: past the goal, at the end of its time or in a stop.
 fn end_by_core(scenario: &Scenario) -> Reading {
     let goal = goal(scenario);
-    let mut simulation = Simulation::new(scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&checked(scenario));
     loop {
         let reading = simulation.reading();
         let is_last = simulation.is_over() || simulation.steps() >= scenario.step_count();

@@ -7,6 +7,7 @@ use super::ground::Lane;
 use super::law::{Bristles, Motion};
 use super::robot::{Form, Part, Robot};
 use super::{Turn, cross, right_of};
+use crate::common::checked;
 
 /// How finely the judge looks.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +70,7 @@ impl Judge {
             Ground::new(&scenario.terrain, scenario.robot.gauge).expect("the ground can be built");
         let ground = Lane::new(&ground);
         let robot = Robot::new(scenario, ground.friction);
-        let start = Simulation::new(scenario).expect("the scenario is valid");
+        let start = Simulation::new(&checked(scenario));
         let start = start.reading();
         let center = start.position + Turn::by(start.chassis_angle).of(robot.center_of_mass);
         let mut judge = Self {

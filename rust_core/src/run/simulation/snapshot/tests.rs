@@ -4,6 +4,7 @@ mod fits;
 
 use super::*;
 use crate::geometry::Vector;
+use crate::scenario::Scenario;
 use crate::scenario::{BeltTrack, End, Ends, Flippers, LineOfWheels, Terrain, Track, Wheel};
 
 /// The Engineer with arms at its front on three wheels before a post, and an instant later.
@@ -32,7 +33,7 @@ fn on_wheels() -> Simulation {
         edge_radius: 0.0,
         friction: 0.9,
     };
-    let mut simulation = Simulation::new(&scenario).expect("the scenario is valid");
+    let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
     // The post is now in the gap between the middle wheel and the front one.
     let x = simulation.reading().position.x;
     simulation.state.center.x -= x + 0.085;
@@ -45,7 +46,7 @@ fn busy() -> Simulation {
     let wheels = on_wheels();
     let mut variant = wheels.scenario().clone();
     variant.robot.track = Track::Belt(BeltTrack {});
-    let mut belt = wheels.branch(&variant).expect("the variant is valid");
+    let mut belt = wheels.branch(&Checked::new(&variant).expect("the variant is valid"));
     // Backwards, so that at once it makes a difference.
     belt.set_speed(-0.3).expect("within the drivetrain's");
     belt.set_push(20.0).expect("within the limits");
@@ -118,7 +119,7 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     let expected = future(whole);
     for (what, forget) in all {
         let mut copy = Simulation::from_snapshot(&snapshot).expect("it was just made");
-        let fresh = Simulation::new(copy.scenario()).expect("the scenario is valid");
+        let fresh = Simulation::new(&Checked::new(copy.scenario()).expect("the scenario is valid"));
         forget(&mut copy, fresh);
         assert!(copy.snapshot() != snapshot, "no {what} in it");
         assert!(future(copy) != expected, "without its {what}");

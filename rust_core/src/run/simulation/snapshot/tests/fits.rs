@@ -63,7 +63,7 @@ const SPOILS: [(&str, Spoil); 13] = [
     ("impulses of a robot without flippers", |m| {
         let mut scenario = Scenario::from_json(&m.scenario).expect("it was just made");
         scenario.robot.flippers = None;
-        let other = Simulation::new(&scenario).expect("the scenario is valid");
+        let other = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
         m.impulses = other.dynamics.impulses();
     }),
     ("dents", |m| m.dents = Dents::of(&[of_nobody()])),

@@ -1,0 +1,1 @@
+"""What everything else stands on: arrays, tables, units, optional packages."""

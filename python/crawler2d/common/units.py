@@ -1,0 +1,87 @@
+"""Units of what a sweep can vary and of what a run measures."""
+
+from __future__ import annotations
+
+__all__ = ["FIELDS", "METRICS", "unit_of"]
+
+_FIELDS_BY_UNIT = {
+    "m": (
+        "approach axle_distance barrier_height barrier_thickness base_thickness belly"
+        " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
+        " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
+        " plate_thickness points post prediction_distance"
+        " radius rear_radius rise root_radius run stationary_distance thickness tip_radius"
+        " tip_thickness track_phase wheel_radius width"
+    ),
+    "s": "clear_time duration escape_time stop_window time_step",
+    "rad": (
+        "angle barrier_yaw clear_angle edge_angle level_angle push_angle reach_angle sweep_angle"
+        " tip_over_angle yaw"
+    ),
+    "rad/s": "rate_limit",
+    "kg": "mass track_mass",
+    "kg m^2": "moment_of_inertia",
+    "m/s": "max_push_speed max_speed speed",
+    "m/s^2": "gravity max_acceleration max_deceleration",
+    "N": "pre_tension",
+    "N/m": "tensioner_stiffness",
+    "N s/m": "tensioner_damping",
+    "N m": "max_torque",
+    "Hz": "contact_frequency",
+    "1": (
+        "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
+        " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
+        " return_roller_count road_wheel_count shoe_count skid_friction"
+        " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
+        " wheel_count"
+    ),
+}
+
+FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in names.split()}
+"""Unit of every number of a scenario, by the name of its field."""
+
+_FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
+
+_COLUMNS = {"drive.schedule": ("s", "m/s"), "drive.gait.schedule": ("s", "rad")}
+"""Units of rows whose numbers have not all the same."""
+
+
+def unit_of(path: str) -> str | None:
+    """Look up the unit of the field or the element at a path; None if it is no number."""
+    field, *indices = path.replace("]", "").split("[")
+    if field in _COLUMNS:
+        return _COLUMNS[field][int(indices[1])] if len(indices) == 2 else None
+    return _FIELDS_BY_PLACE.get(field, FIELDS.get(field.rpartition(".")[2]))
+
+
+METRICS = {
+    "time": "s",
+    "time_to_clear": "s",
+    "final_x": "m",
+    "final_y": "m",
+    "final_angle": "rad",
+    "distance": "m",
+    "track_distance": "m",
+    "path_length": "m",
+    "max_angle": "rad",
+    "min_angle": "rad",
+    "max_penetration": "m",
+    "drive_work": "J",
+    "stopped_time": "s",
+    "time_to_free": "s",
+    "progress": "1",
+    "vertical_acceleration": "m/s^2",
+    "angular_velocity": "rad/s",
+    "intrusion_depth": "m",
+    "intrusion_root_depth": "m",
+    "intrusion_force": "N",
+    "max_track_tension": "N",
+    "max_pin_gap": "m",
+    "max_guide_penetration": "m",
+    "max_sprocket_slip": "m",
+    "solves": "1",
+    "solve_rounds": "1",
+    "descents": "1",
+    "unresolved_solves": "1",
+}
+"""Unit of every metric of a run."""

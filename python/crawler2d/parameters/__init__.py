@@ -1,0 +1,1 @@
+"""What is simulated, as frozen dataclasses: robot, track, terrain, command and settings."""

@@ -1,0 +1,55 @@
+"""The form of a scenario: its fields, their defaults and its JSON, whatever robot and ground."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import KW_ONLY, dataclass
+
+from crawler2d.parameters.plain import Parameters, to_plain
+from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
+
+__all__ = ["Form"]
+
+
+@dataclass(frozen=True, slots=True)
+class Form(Parameters):
+    """A scenario to those whom it imports: a robot that asks the core about itself fills it in.
+
+    Parameters
+    ----------
+    robot, terrain, drive, start, goal, gravity, duration, solver, criteria, schema
+        See `Scenario`.
+    """
+
+    robot: Parameters
+    terrain: Parameters
+    _: KW_ONLY
+    drive: Drive = Drive()
+    start: Start = Start()
+    goal: float | None = None
+    gravity: float = 9.81
+    duration: float = 15.0
+    solver: Solver = Solver()
+    criteria: SeizureCriteria = SeizureCriteria()
+    schema: int = 1
+
+    def to_json(self, *, indent: int | None = None) -> str:
+        """Write the scenario as JSON, every field present, no bit lost.
+
+        Parameters
+        ----------
+        indent : int, optional
+            Spaces a level; None writes one line.
+
+        Returns
+        -------
+        str
+            The text. It is not validated: see `validate`.
+
+        Raises
+        ------
+        ScenarioError
+            If a field holds what JSON cannot.
+        """
+        separators = (",", ":") if indent is None else (",", ": ")
+        return json.dumps(to_plain(self), allow_nan=False, indent=indent, separators=separators)

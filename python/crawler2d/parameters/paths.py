@@ -1,0 +1,103 @@
+"""Dotted paths of fields and their elements: how they are read, and a variant is made."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import reprlib
+from typing import Any, TypeVar
+
+from crawler2d.common.arrays import frozen_rows, real_number
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.plain import Parameters, alternatives, field_hints
+
+P = TypeVar("P", bound=Parameters)
+
+# A name and the indices behind it, each written in one way only.
+_PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
+
+
+def replace_path(parameters: P, path: str, value: Any) -> P:
+    """Copy a parameter object with the field or the element at a path replaced.
+
+    Raises
+    ------
+    ScenarioError
+        If a part of the path is no field there; the message lists the fields and the nearest name.
+        If an index is out of range; the message has the length.
+    """
+    if not isinstance(path, str):
+        raise ScenarioError("path", path, "must be a text")
+    copy: P = _replaced(parameters, _steps(path), value, path)
+    return copy
+
+
+def read_path(parameters: Parameters, path: str) -> Any:
+    """Return what is at a path; errors are those of `replace_path`."""
+    node: Any = parameters
+    steps = _steps(path)
+    for depth in range(len(steps)):
+        node = _held(node, steps[: depth + 1], None, path)
+    return node
+
+
+def is_whole(parameters: Parameters, path: str) -> bool:
+    """Whether the field at a path takes whole numbers alone."""
+    parent, _, name = path.rpartition(".")
+    holder = read_path(parameters, parent) if parent else parameters
+    kinds = alternatives(field_hints(type(holder)).get(name))
+    return int in kinds and float not in kinds
+
+
+def _steps(path: str) -> list[str | int]:
+    """Split ``terrain.points[3]`` into ``terrain``, ``points`` and 3."""
+    steps: list[str | int] = []
+    for part in path.split("."):
+        match = _PART.fullmatch(part)
+        name, indices = match.groups() if match else (part, "")
+        steps += [name, *map(int, re.findall(r"-?[0-9]+", indices))]
+    return steps
+
+
+def _replaced(node: Any, steps: list[str | int], value: Any, path: str, depth: int = 0) -> Any:
+    held = _held(node, steps[: depth + 1], value, path)
+    step, is_last = steps[depth], depth + 1 == len(steps)
+    if not is_last:
+        value = _replaced(held, steps, value, path, depth + 1)
+    if isinstance(step, str):
+        return dataclasses.replace(node, **{step: value})
+    if is_last and isinstance(held, tuple):
+        value = frozen_rows(value, path, rows=False, columns=len(held))
+    elif is_last:
+        value = real_number(value, path)
+    return (*node[:step], value, *node[step + 1 :])
+
+
+def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
+    """Return what the last of some steps names in the object that those before it lead to."""
+    *before, step = steps
+    place = "".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in before).removeprefix(".")
+    if isinstance(step, str):
+        if not isinstance(node, Parameters):
+            rule = f"must name a field, but {place} = {reprlib.repr(node)} has none"
+            raise ScenarioError(path, value, rule)
+        if step not in field_hints(type(node)):
+            raise ScenarioError(path, value, _rule(type(node), step))
+        return getattr(node, step)
+    if not isinstance(node, tuple):
+        rule = f"must name a field, but {place} = {reprlib.repr(node)} has no elements"
+        raise ScenarioError(path, value, rule)
+    if not 0 <= step < len(node):
+        rule = f"must name an element, but {place} has {len(node)}, counted from 0"
+        raise ScenarioError(path, value, rule)
+    return node[step]
+
+
+def _rule(cls: type[Parameters], name: str) -> str:
+    import difflib  # noqa: PLC0415 - only a failure needs it
+
+    fields = list(field_hints(cls))
+    nearest = difflib.get_close_matches(name, fields, n=1)
+    hint = f" (did you mean {nearest[0]}?)" if nearest else ""
+    listed = ", ".join(fields) if fields else "it has none"
+    return f"must name a field of {cls.__name__}: {listed}{hint}"

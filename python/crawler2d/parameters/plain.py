@@ -1,0 +1,151 @@
+"""Parameter objects and plain data: what a frozen dataclass may hold, and its way to JSON and back.
+
+Non-finite numbers do not exist in JSON; they cross as the texts "NaN", "Infinity" and "-Infinity",
+so that the validator, which knows the rules, can name the field.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import sys
+import types
+import typing
+from typing import Any, ClassVar, TypeVar
+
+from crawler2d.common.arrays import frozen_rows, frozen_scalar
+from crawler2d.errors import ScenarioError
+
+P = TypeVar("P", bound="Parameters")
+
+ROWS = {
+    tuple[float, float]: (None, 2),
+    tuple[tuple[float, float], ...]: ("n", 2),
+    tuple[tuple[float, float, float], ...]: ("n", 3),
+}
+"""Number of rows and columns of the fields that hold arrays; None is one row without brackets."""
+
+_RULES = {float: "must be a number", int: "must be a whole number", str: "must be a text"}
+
+
+class Parameters:
+    """Base of the parameter dataclasses: fields are normalised once, when the object is made.
+
+    NumPy scalars become Python numbers, whole numbers become floats where the field is a float, and
+    arrays of points become tuples, so that objects compare, hash and print the same whatever they
+    were made from, and no later change of an input array can reach them.
+    """
+
+    __slots__ = ()
+
+    kind: ClassVar[str] = ""
+    """Tag of the variant in JSON; empty for classes without variants."""
+    place: ClassVar[str] = ""
+    """Where objects of this class sit in a scenario, for messages."""
+
+    def __post_init__(self) -> None:
+        """Replace every field by its plain Python form."""
+        for name, hint in field_hints(type(self)).items():
+            value = getattr(self, name)
+            shape = shape_of_rows(hint)
+            if shape is not None:
+                rows, columns = shape
+                path = f"{self.place}.{name}"
+                value = frozen_rows(value, path, rows=rows is not None, columns=columns)
+            else:
+                value = frozen_scalar(value, whole=float not in alternatives(hint))
+            object.__setattr__(self, name, value)
+
+
+_HINTS: dict[type[Parameters], dict[str, Any]] = {}
+
+
+def field_hints(cls: type[Parameters]) -> dict[str, Any]:
+    """Resolve the annotations of the fields, in order; each class once."""
+    if cls not in _HINTS:
+        hints = typing.get_type_hints(cls)
+        _HINTS[cls] = {f.name: hints[f.name] for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    return _HINTS[cls]
+
+
+@functools.cache
+def alternatives(hint: Any) -> tuple[Any, ...]:
+    """Split a union into its members; anything else is its own only member."""
+    if typing.get_origin(hint) in (typing.Union, types.UnionType):
+        return typing.get_args(hint)
+    return (hint,)
+
+
+@functools.cache
+def shape_of_rows(hint: Any) -> tuple[str | None, int] | None:
+    """Look up rows and columns of a field that holds an array; None for any other field."""
+    return next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
+
+
+@functools.cache
+def nested_classes(hint: Any) -> tuple[type[Parameters], ...]:
+    """List the parameter classes that a field may hold."""
+    return tuple(a for a in alternatives(hint) if isinstance(a, type) and issubclass(a, Parameters))
+
+
+def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
+    """Turn a parameter object into dicts, lists, numbers and texts, every field present.
+
+    Raises
+    ------
+    ScenarioError
+        If a field holds what JSON cannot.
+    """
+    cls = type(parameters)
+    plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
+    for name, hint in field_hints(cls).items():
+        inner = f"{path}.{name}" if path else name
+        plain[name] = _plain_field(getattr(parameters, name), hint, inner)
+    return plain
+
+
+def _plain_field(value: Any, hint: Any, path: str) -> Any:
+    classes = nested_classes(hint)
+    if classes and not (value is None and type(None) in alternatives(hint)):
+        if not isinstance(value, classes):
+            names = " or ".join(cls.__name__ for cls in classes)
+            raise ScenarioError(path, value, f"must be a {names}")
+        return to_plain(value, path)
+    if isinstance(value, tuple) and shape_of_rows(hint) is not None:  # from frozen_rows: numbers
+        rows = [[_plain_number(x) for x in v] if isinstance(v, tuple) else v for v in value]
+        return [row if isinstance(row, list) else _plain_number(row) for row in rows]
+    if isinstance(value, str):
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            raise ScenarioError(path, ascii(value), "must be valid Unicode") from None
+        return value
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, (int, float)) and str not in alternatives(hint):  # "Infinity" is a name
+        return _plain_number(value)
+    rule = next((_RULES[a] for a in alternatives(hint) if a in _RULES), "must be a text or None")
+    raise ScenarioError(path, value, rule)
+
+
+def _plain_number(value: float) -> float | str:
+    """Name a non-finite number; a whole number beyond every float counts as infinite."""
+    if -sys.float_info.max <= value <= sys.float_info.max:
+        return value
+    if value != value:  # noqa: PLR0124 - the definition of NaN
+        return "NaN"
+    return "Infinity" if value > 0 else "-Infinity"
+
+
+def from_plain(cls: type[P], plain: dict[str, Any]) -> P:
+    """Rebuild a parameter object from plain data that has been validated."""
+    hints = field_hints(cls)
+    return cls(**{name: _rebuilt(plain[name], hint) for name, hint in hints.items()})
+
+
+def _rebuilt(value: Any, hint: Any) -> Any:
+    if not isinstance(value, dict):
+        return value
+    classes = nested_classes(hint)
+    kind = value.get("kind", "")
+    return from_plain(next(cls for cls in classes if cls.kind == kind), value)

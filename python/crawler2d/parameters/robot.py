@@ -1,0 +1,357 @@
+"""The robot as it is built: masses, outline, belly and drivetrain, with the model of its track."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import ClassVar, Literal
+
+from crawler2d import _core
+from crawler2d.common.arrays import real_number
+from crawler2d.common.table import Table
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.parameters.form import Form
+from crawler2d.parameters.plain import Parameters
+from crawler2d.parameters.settings import Drive, Solver
+from crawler2d.parameters.terrain import Points
+from crawler2d.parameters.track import BeltTrack, Track
+
+__all__ = ["Drivetrain", "Robot", "TrackOutline"]
+
+# Grouser height, pitch and thickness as shares of the radius: the Servosila Engineer's.
+_GROUSER_HEIGHT = 0.012 / 0.064
+_GROUSER_PITCH = 0.048 / 0.064
+_GROUSER_THICKNESS = 0.006 / 0.048
+
+# A drivetrain that holds its robot on this slope with this margin climbs what its geometry allows.
+_HOLDING_SLOPE = math.radians(45.0)
+_HOLDING_MARGIN = 1.6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackOutline(Parameters):
+    """Side view of the track: two arcs about the end axles and their outer tangents.
+
+    Parameters
+    ----------
+    axle_distance : float
+        [m] Distance of the end axles.
+    front_radius, rear_radius : float
+        [m] Radius of each end, to the grouser tips.
+    grouser_height : float
+        [m] Height of the grousers above the belt; 0 for a smooth belt.
+    grouser_pitch : float
+        [m] Distance of the grousers along the belt.
+    grouser_thickness : float
+        [m] Extent of a grouser along the belt, below the pitch.
+    """
+
+    place: ClassVar[str] = "robot.outline"
+
+    axle_distance: float
+    front_radius: float
+    rear_radius: float
+    grouser_height: float
+    grouser_pitch: float
+    grouser_thickness: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drivetrain(Parameters):
+    """What drives the tracks, and within which limits.
+
+    Parameters
+    ----------
+    max_speed : float
+        [m/s] Largest track speed.
+    max_acceleration, max_deceleration : float
+        [m/s^2] Largest rates at which the commanded speed grows and falls in magnitude.
+    max_torque : float
+        [N m] Largest torque of one sprocket, acting at the belt radius; the robot has two.
+    torque_sharing : {"track", "wheel"}
+        "track": one motor a track, all its wheels keep one speed and the sum of their traction is
+        limited. "wheel": each of the N wheels of a line has its own servo and an Nth of the torque.
+    """
+
+    place: ClassVar[str] = "robot.drivetrain"
+
+    max_speed: float
+    max_acceleration: float
+    max_deceleration: float
+    max_torque: float
+    torque_sharing: Literal["track", "wheel"] = "track"
+
+
+@dataclass(frozen=True, slots=True)
+class Robot(Parameters):
+    """A tracked robot; `track` says how its track is modelled, all else what is built.
+
+    Whatever the model, the total mass, the centre of mass and the moment of inertia are these.
+
+    Parameters
+    ----------
+    name : str
+        Name for tables and plots.
+    mass : float
+        [kg] Of the whole robot, both tracks and all flippers included.
+    center_of_mass : array_like, shape (2,)
+        [m] In the chassis frame: origin midway between the end axles, x forward, y up.
+    moment_of_inertia : float
+        [kg m^2] Of the whole robot about its centre of mass, flippers at angle 0.
+    track_mass : float
+        [kg] Of both tracks together, all of it moving at track speed.
+    outline : TrackOutline
+        Side view of the track.
+    gauge : float
+        [m] Lateral distance of the tracks.
+    drivetrain : Drivetrain
+        Motors and limits.
+    belly : array_like, shape (n, 2), optional
+        [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
+    flippers : Flippers, optional
+        Pivoting arms; None: none. The field alone changes no mass: see `with_flippers` and
+        `without_flippers`.
+    track : Track
+        The model of the track.
+    """
+
+    place: ClassVar[str] = "robot"
+
+    name: str
+    _: KW_ONLY
+    mass: float
+    center_of_mass: tuple[float, float]
+    moment_of_inertia: float
+    track_mass: float
+    outline: TrackOutline
+    belly: tuple[tuple[float, float], ...] | None = None
+    flippers: Flippers | None = None
+    gauge: float
+    drivetrain: Drivetrain
+    track: Track = BeltTrack()
+
+    def with_track(self, track: Track) -> Robot:
+        """Take the same robot with another model of its track.
+
+        Parameters
+        ----------
+        track : Track
+            The model.
+
+        Returns
+        -------
+        Robot
+            A copy; nothing else changes.
+        """
+        return replace(self, track=track)
+
+    def with_flippers(self, flippers: Flippers) -> Robot:
+        """Mount arms: mass, centre of mass and moment of inertia count them from then on.
+
+        Parameters
+        ----------
+        flippers : Flippers
+            The arms, in place of those that the robot may have.
+
+        Returns
+        -------
+        Robot
+            A copy with the arms; they count as rods at angle 0, evenly spread from pivot to tip.
+
+        Raises
+        ------
+        ScenarioError
+            If the figures of the arms cannot be counted.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> bare = c2d.robots.engineer(flippers=None)
+        >>> arms = c2d.Flippers(
+        ...     length=0.34, root_radius=0.064, tip_radius=0.037, mass=0.775, torque_limit=30.0
+        ... )
+        >>> bare.mass, bare.with_flippers(arms).mass
+        (21.2, 22.75)
+        """
+        return replace(_plus_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
+
+    def without_flippers(self) -> Robot:
+        """Take the arms off, with their mass: the robot as its builder would have it without them.
+
+        Setting `flippers` to None leaves mass, centre of mass and moment of inertia as they are:
+        the chassis then weighs what the arms weighed, and where the whole robot had it.
+
+        Returns
+        -------
+        Robot
+            A copy without arms, less what they count as in `with_flippers`.
+
+        Raises
+        ------
+        ScenarioError
+            If the arms leave no chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.absolem()
+        >>> round(robot.mass, 2), round(robot.without_flippers().mass, 2)
+        (38.7, 35.7)
+        """
+        if self.flippers is None:
+            return self
+        return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
+
+    def wheels(self) -> Table:
+        """List every wheel of the track model, of both sides and of the flippers.
+
+        Returns
+        -------
+        Table
+            One row a wheel, first those of the left side, of each side first those of the chassis,
+            in the order of eq. (1); empty for belts, skids and chains of shoes. Columns: `side`
+            ("left", "right"), `carrier` ("chassis", "front flipper", "rear flipper"), `body` (as in
+            the contacts where both tracks meet the same ground, one number for the wheels of both
+            sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at their `angle`),
+            `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true outline),
+            `moment_of_inertia` [kg m^2] (this wheel's share of what circulates: the wheels of the
+            chassis have `track_mass` together, those of a flipper a tenth of its mass) and `mass`
+            [kg] (of the uniform wheel of this outline that has this moment of inertia).
+
+        Raises
+        ------
+        ScenarioError
+            If the robot breaks a rule.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3)).wheels()
+        >>> wheels["side"].tolist()
+        ['left', 'left', 'left', 'right', 'right', 'right']
+        >>> wheels["x"][:3].tolist(), wheels["mass"][:3].tolist()
+        ([-0.1825, 0.0, 0.1825], [0.8, 0.8, 0.8])
+        """
+        ground = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
+        # At rest and in the shortest steps, the robot alone decides what is refused.
+        drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
+        alone = Form(self, ground, drive=drive, solver=solver)
+        return Table(_core.wheels(alone.to_json()))
+
+    @staticmethod
+    def simple(
+        mass: float,
+        *,
+        axle_distance: float,
+        radius: float,
+        name: str = "simple",
+        max_speed: float = 1.0,
+        track: Track | None = None,
+    ) -> Robot:
+        """Make a robot of three figures; stated rules fill the others.
+
+        Parameters
+        ----------
+        mass : float
+            [kg] Of the whole robot.
+        axle_distance : float
+            [m] Distance of the end axles.
+        radius : float
+            [m] Radius of both ends of the track, to the grouser tips.
+        name : str
+            Name for tables and plots.
+        max_speed : float
+            [m/s] Largest track speed.
+        track : Track, optional
+            The model of the track; None is `Robot`'s default.
+
+        Returns
+        -------
+        Robot
+            Change single figures with `dataclasses.replace`.
+
+        Raises
+        ------
+        ScenarioError
+            If `mass`, `axle_distance` or `radius` is no number above 0.
+
+        Notes
+        -----
+        - centre of mass: midway between the axles, at axle height;
+        - moment of inertia: a uniform rectangle that bounds the outline;
+        - track mass: a tenth of the mass;
+        - grousers: the proportions of the Servosila Engineer, height 3/16 of the radius, pitch near
+          3/4 of the radius so that a whole number fits on the belt, thickness 1/8 of the pitch;
+        - belly: none; gauge: half the axle distance;
+        - acceleration: 1 m/s^2, deceleration 4 m/s^2;
+        - torque: 1.6 times what holds the robot on a slope of 45 degrees under 9.81 m/s^2.
+
+        Examples
+        --------
+        >>> robot = Robot.simple(20.0, axle_distance=0.4, radius=0.06)
+        >>> round(robot.moment_of_inertia, 4)
+        0.4747
+        """
+        mass = _size(mass, "mass")
+        axle_distance = _size(axle_distance, "axle_distance")
+        radius = _size(radius, "radius")
+        belt_radius = radius * (1.0 - _GROUSER_HEIGHT)
+        perimeter = 2.0 * axle_distance + 2.0 * math.pi * belt_radius
+        pitch = perimeter / max(3, round(perimeter / (_GROUSER_PITCH * radius)))
+        length, height = axle_distance + 2.0 * radius, 2.0 * radius
+        holding_force = mass * 9.81 * math.sin(_HOLDING_SLOPE)
+        robot = Robot(
+            name,
+            mass=mass,
+            center_of_mass=(0.0, 0.0),
+            moment_of_inertia=mass / 12.0 * (length**2 + height**2),
+            track_mass=0.1 * mass,
+            outline=TrackOutline(
+                axle_distance=axle_distance,
+                front_radius=radius,
+                rear_radius=radius,
+                grouser_height=_GROUSER_HEIGHT * radius,
+                grouser_pitch=pitch,
+                grouser_thickness=_GROUSER_THICKNESS * pitch,
+            ),
+            gauge=0.5 * axle_distance,
+            drivetrain=Drivetrain(
+                max_speed=max_speed,
+                max_acceleration=1.0,
+                max_deceleration=4.0,
+                max_torque=_HOLDING_MARGIN * holding_force * belt_radius / 2.0,
+            ),
+        )
+        return robot if track is None else robot.with_track(track)
+
+
+def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
+    """Count the masses of arms, as rods at angle 0, to those of a robot: +1 adds, -1 takes out."""
+    length = real_number(flippers.length, "robot.flippers.length")
+    pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
+    reach = 0.5 * robot.outline.axle_distance + 0.5 * length
+    places = {"front": (reach,), "rear": (-reach,), "both": (reach, -reach)}
+    if flippers.ends not in places:
+        rule = f"must be one of {', '.join(places)}"
+        raise ScenarioError("robot.flippers.ends", flippers.ends, rule)
+    ends = places[flippers.ends]
+    mass = robot.mass + pair * len(ends)
+    if not mass > 0.0:
+        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave a chassis")
+    x, y = robot.center_of_mass
+    center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
+    inertia = robot.moment_of_inertia
+    inertia += robot.mass * ((x - center[0]) ** 2 + (y - center[1]) ** 2)
+    for place in ends:
+        inertia += pair * length**2 / 12.0
+        inertia += pair * ((place - center[0]) ** 2 + center[1] ** 2)
+    return replace(robot, mass=mass, center_of_mass=center, moment_of_inertia=inertia)
+
+
+def _size(value: float, name: str) -> float:
+    """Refuse what the rules of `Robot.simple` cannot be computed with; validation is stricter."""
+    number = real_number(value, name)
+    if not 1e-9 <= number <= 1e9:
+        raise ScenarioError(name, value, "must be > 0")
+    return number

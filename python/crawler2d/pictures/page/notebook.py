@@ -1,0 +1,51 @@
+"""A run in a notebook: its page in a frame, or its figures."""
+
+from __future__ import annotations
+
+import html
+from typing import TYPE_CHECKING
+
+from crawler2d.pictures.page.replay import replay_page
+from crawler2d.pictures.page.words import all_figures, escaped, heading, sentence
+
+if TYPE_CHECKING:
+    from crawler2d.results.record import Record
+
+__all__ = ["embedded"]
+
+# [px] Header, picture, controls and strip; the figures below are scrolled to.
+_FRAME_HEIGHT = 820
+
+
+def embedded(run: Record) -> str:
+    """Show a run in a notebook: the page in a frame, or its figures; never an exception.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    try:
+        page = replay_page(run)
+    except Exception:  # what a notebook shows must not fail, whatever the run holds
+        return _summary(run)
+    # Scripts alone: the page can reach neither the notebook nor the network.
+    return (
+        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
+        f'title="{escaped(heading(run))}" '
+        f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
+    )
+
+
+def _summary(run: Record) -> str:
+    rows = "".join(
+        f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>"
+        for name, value in all_figures(run)
+    )
+    table = f"<table><tbody>{rows}</tbody></table>" if rows else ""
+    try:
+        why = sentence(run)
+    except Exception:
+        why = ""
+    note = f"<p>{escaped(why)}</p>" if why else ""
+    return f"<div><p><strong>{escaped(heading(run))}</strong></p>{note}{table}</div>"

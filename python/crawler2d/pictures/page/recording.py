@@ -1,0 +1,156 @@
+"""From a run to what its page draws: plain data, compact and fit for JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.pictures.page.drawn import drawn
+from crawler2d.pictures.page.packed import packed
+from crawler2d.pictures.shapes import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.parameters.robot import Robot
+    from crawler2d.results.record import Record
+
+__all__ = ["MOST_FRAMES", "recording"]
+
+MOST_FRAMES = 3000
+"""Samples that a page holds at most, give or take the last; longer runs are thinned."""
+
+# Finer than a pixel at any sensible zoom, wide enough for 16 bits in a usual run.
+_LENGTH, _ANGLE, _TIME = 1e-5, 1e-4, 1e-4
+_SPEED = 1e-4
+# The same for arrows, as a share of the usual size, which is drawn some 100 pixels long.
+_ARROW = 1e-2
+# Impacts last one sample; arrows as long as theirs would leave all others unreadable.
+_USUAL = 98.0
+
+
+def recording(run: Record, time: float | None = None) -> dict[str, Any]:
+    """Collect what the page of a run draws.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    time : float, optional
+        [s] Instant to open at; None takes the end where the run stopped, else the beginning.
+
+    Returns
+    -------
+    dict
+        Plain data without non-finite numbers; arrays as of `packed`.
+    """
+    count = run.time.size
+    every = max(1, math.ceil(count / MOST_FRAMES))
+    kept = np.unique(np.append(np.arange(0, count, every), count - 1))
+    if time is None:
+        stops = run.events["end"][run.events["kind"] == "stop"]
+        time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
+    scene = Scene(run)
+    return {
+        "samples": count,
+        "every": every,
+        "first": int(np.abs(run.time[kept] - time).argmin()),
+        "extent": [_number(value) for value in scene.extent()],
+        "frames": _frames(run, kept),
+        "contacts": _contacts(run, kept),
+        "events": _events(run, scene),
+        "ground": _ground(scene),
+        "robot": {**drawn(run, scene, kept), "length": _length(run.scenario.robot)},
+    }
+
+
+def _frames(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
+    return {
+        "count": int(kept.size),
+        "time": packed(run.time[kept], _TIME),
+        "x": packed(run.position[kept, 0], _LENGTH),
+        "y": packed(run.position[kept, 1], _LENGTH),
+        "angle": packed(run.chassis_angle[kept], _ANGLE),
+        "speed": packed(run.track_speed[kept], _SPEED),
+        "commanded": packed(run.commanded_speed[kept], _SPEED),
+    }
+
+
+def _contacts(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
+    """Contacts of the kept samples, as many a frame as `counts` says."""
+    table = run.contacts
+    frames = np.searchsorted(run.time, table["time"])
+    rows = np.flatnonzero(np.isin(frames, kept))
+    normal, friction = table["normal_force"][rows], table["friction_force"][rows]
+    forces = np.hypot(normal, friction)
+    weight = run.scenario.robot.mass * run.scenario.gravity
+    speeds = table["surface_speed"][rows]
+    force, speed = weight, abs(run.scenario.drive.speed)
+    if rows.size:
+        force = max(force, float(np.percentile(forces, _USUAL)))
+        speed = max(speed, float(np.percentile(np.abs(speeds), _USUAL)))
+    counts = np.bincount(frames[rows], minlength=run.time.size)
+    return {
+        "counts": packed(counts[kept], 1.0),
+        "x": packed(table["x"][rows], _LENGTH),
+        "y": packed(table["y"][rows], _LENGTH),
+        "normal": packed(np.arctan2(table["normal_y"], table["normal_x"])[rows], _ANGLE),
+        "normal_force": packed(normal, _ARROW * force),
+        "friction_force": packed(friction, _ARROW * force),
+        "surface_speed": packed(speeds, _ARROW * speed),
+        "usual_force": force,
+        "usual_speed": speed,
+    }
+
+
+def _events(run: Record, scene: Scene) -> list[dict[str, Any]]:
+    events = run.events
+    return [
+        {
+            "kind": str(events["kind"][row]),
+            "start": _number(events["start"][row]),
+            "end": _number(events["end"][row]),
+            "edge": int(events["edge"][row]),
+            "bodies": [int(body) for body in events["bodies"][row]],
+            "carrier": next((scene.carrier_of(body) for body in events["bodies"][row]), 0),
+        }
+        for row in range(len(events))
+    ]
+
+
+def _ground(scene: Scene) -> dict[str, Any]:
+    """Lanes from the farthest from the viewer, with their edges."""
+    return {
+        "lanes": [_lane(*lane, scene.edges) for lane in scene.lanes],
+        "goal": _number(scene.goal),
+    }
+
+
+def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dict[str, Any]:
+    on_lane = edges["lane"] == lane
+    # Rounded edges are marked where they are on the ground, not where they would be sharp.
+    corners = [
+        int(np.hypot(profile[:, 0] - x, profile[:, 1] - y).argmin())
+        for x, y in zip(edges["x"][on_lane], edges["y"][on_lane], strict=True)
+    ]
+    return {
+        "profile": packed(profile, _LENGTH / 100.0),
+        "corners": corners,
+        "convex": [bool(angle > 0.0) for angle in edges["angle"][on_lane]],
+    }
+
+
+def _length(robot: Robot) -> float:
+    """[m] Of what is seen at once: the track with one flipper stretched out."""
+    outline, flippers = robot.outline, robot.flippers
+    beyond = 0.0 if flippers is None else flippers.length + flippers.tip_radius
+    radius = max(outline.front_radius, outline.rear_radius)
+    track = outline.axle_distance + outline.front_radius + outline.rear_radius
+    return track + max(0.0, beyond - radius)
+
+
+def _number(value: float) -> float | None:
+    """Take a number as JSON has it: the others are none."""
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,89 @@
+"""From a run to one HTML page that needs nothing else: no network, no other file."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+from importlib.resources import files
+from string import Template
+from typing import TYPE_CHECKING
+
+from crawler2d import _core
+from crawler2d.pictures.page.recording import recording
+from crawler2d.pictures.page.words import all_figures, escaped, figures, heading, sentence, verdicts
+
+if TYPE_CHECKING:
+    from crawler2d.results.record import Record
+
+__all__ = ["replay_page"]
+
+# One script, in the order in which its parts use each other.
+_SCRIPTS = (
+    "data.js",
+    "camera.js",
+    "marks.js",
+    "carrier.js",
+    "robot.js",
+    "lane.js",
+    "scene.js",
+    "strip.js",
+    "pointer.js",
+    "replay.js",
+)
+
+# As \u escapes they mean the same in JSON, and nothing in HTML.
+_MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
+
+
+def replay_page(run: Record, time: float | None = None) -> str:
+    """Write the page of a run; see `Run.to_html`."""
+    data = recording(run, time)
+    style = _read("replay.css")
+    script = '"use strict";\n(() => {\n' + "\n".join(map(_read, _SCRIPTS)) + "})();\n"
+    title = heading(run)
+    subject, _, ending = title.rpartition(": ")
+    outcome, *mechanism = verdicts(run)
+    why = sentence(run)
+    # One pass: what a robot's name holds is text, even where it looks like a placeholder.
+    return Template(_read("page.html")).substitute(
+        title=escaped(title),
+        subject=escaped(subject),
+        ending=escaped(ending.replace("_", " ")),
+        outcome_class=html.escape(outcome.replace(" ", "-")),
+        mechanism="".join(f'<li class="mechanism">{escaped(name)}</li>' for name in mechanism),
+        sentence=f'<p class="sentence">{escaped(why)}</p>' if why else "",
+        thinned=_thinned(data["every"], data["samples"]),
+        figures=_listed(figures(run)),
+        all_figures=_listed(all_figures(run)),
+        version=escaped(str(_core.build_info()["version"])),
+        identity=run.scenario.identity[:16],
+        style=style,
+        style_hash=_hash(style),
+        script=script,
+        script_hash=_hash(script),
+        data=json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP),
+    )
+
+
+def _read(name: str) -> str:
+    return (files("crawler2d.pictures.page") / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    """Name the only script, or style, that the page's policy lets run."""
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+def _thinned(every: int, samples: int) -> str:
+    if every == 1:
+        return ""
+    text = f"A long run: one sample in {every} of its {samples} is shown."
+    return f'<p class="thinned">{text}</p>'
+
+
+def _listed(rows: list[tuple[str, str]]) -> str:
+    return "".join(
+        f"<div><dt>{escaped(name)}</dt><dd>{escaped(value)}</dd></div>" for name, value in rows
+    )

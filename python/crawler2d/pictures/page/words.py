@@ -1,0 +1,73 @@
+"""What a page says of a run in words and figures."""
+
+from __future__ import annotations
+
+import html
+import math
+from typing import TYPE_CHECKING
+
+from crawler2d.common.units import METRICS
+
+if TYPE_CHECKING:
+    from crawler2d.results.record import Record
+
+__all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdicts"]
+
+# metric, what a reader calls it, units a metric unit, unit, digits after the point
+_FIGURES = (
+    ("time", "simulated time", 1.0, "s", 2),
+    ("time_to_clear", "cleared after", 1.0, "s", 2),
+    ("distance", "distance", 1.0, "m", 3),
+    ("track_distance", "track has run", 1.0, "m", 3),
+    ("max_angle", "largest angle, nose up", math.degrees(1.0), "°", 1),
+    ("min_angle", "largest angle, nose down", -math.degrees(1.0), "°", 1),
+    ("drive_work", "work of the motors", 1.0, "J", 1),
+    ("stopped_time", "spent in stops", 1.0, "s", 2),
+    ("intrusion_depth", "edge inside the track at the end", 1e3, "mm", 1),
+    ("intrusion_force", "force on that edge", 1.0, "N", 0),
+)
+# Shown only where it happened.
+_RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
+
+
+def escaped(text: str) -> str:
+    """Make any text harmless in HTML, and fit for UTF-8."""
+    return html.escape(text.encode("utf-8", "replace").decode())
+
+
+def heading(run: Record) -> str:
+    """Say what ran and how it ended; see `Run.title`."""
+    try:
+        return run.title
+    except Exception:  # a scenario that was refused may hold anything
+        return "run"
+
+
+def sentence(run: Record) -> str:
+    """Say why the run stopped, or why there is no result; empty if there is nothing to say."""
+    if run.error is not None:
+        return str(run.error)
+    return "" if run.diagnosis is None else str(run.diagnosis)
+
+
+def verdicts(run: Record) -> list[str]:
+    """Name outcome and mechanism, in that order, as far as they are known."""
+    known = [run.outcome, run.mechanism]
+    return [str(value).replace("_", " ") for value in known if value is not None]
+
+
+def figures(run: Record) -> list[tuple[str, str]]:
+    """Choose the figures that a reader asks for first: name, and value with unit."""
+    chosen = []
+    for name, label, scale, unit, digits in _FIGURES:
+        value = run.metrics.get(name, 0.0)
+        shown = f"{scale * value:z.{digits}f}"
+        if name in _RARE and (not math.isfinite(value) or float(shown) == 0.0):
+            continue
+        chosen.append((label, f"{shown}{'' if unit == '°' else ' '}{unit}"))
+    return chosen
+
+
+def all_figures(run: Record) -> list[tuple[str, str]]:
+    """Every metric by its own name, in its own unit."""
+    return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]

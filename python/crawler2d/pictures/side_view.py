@@ -1,0 +1,239 @@
+"""The side view of a run: ground, robot, what bears and what is inside the track."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from crawler2d.common.extras import extra
+from crawler2d.pictures.shapes import SLIVER, Scene, closed, inset, placed
+from crawler2d.results.bodies import BodyKind
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from crawler2d.results.record import Record
+
+__all__ = ["side_view"]
+
+# Okabe and Ito's palette: told apart by colour-blind readers.
+_BLACK, _BLUE, _RED, _GREEN = "#222222", "#0072B2", "#D55E00", "#009E73"
+_GROUND, _PURPLE, _GUIDE = "#D9D2C5", "#A3327B", "#AAAAAA"
+
+# A contact force as large as the weight is drawn as long as this share of the axle distance, and a
+# larger one of a robot that wedges itself in no longer.
+_FORCE_LENGTH = 0.6
+# The same of a surface that passes the ground at the commanded speed, or of the fastest beyond it.
+_SPEED_LENGTH = 0.22
+# They lie so far inside the ground, as a share of the axle distance, where they hide nothing.
+_BELOW = 0.03
+# Shorter arrows, as a share of the longest one there can be, would be mere dots.
+_SHORTEST = 0.02
+
+
+def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
+    """Draw ground, robot at some instants, path of the chassis origin, and what holds the robot.
+
+    At the last of the instants the contacts are drawn, with their forces on the robot and the
+    speeds of its surface over the ground, the taut belts round its wheels, and the ground and the
+    edges inside those belts.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    times : ndarray, shape (k,)
+        [s] When to draw the robot; the nearest samples are taken.
+    ax : Axes
+        Where to draw.
+    """
+    scene = Scene(run)
+    samples = np.unique([np.abs(run.time - t).argmin() for t in times])
+    left, right, bottom, top = scene.extent()
+    _draw_ground(scene.lanes, bottom, ax)
+    for sample in samples:
+        last = sample == samples[-1]
+        _draw_robot(scene, int(sample), ax, alpha=1.0 if last else 0.3)
+    ax.plot(
+        run.position[:, 0],
+        run.position[:, 1],
+        color=_BLUE,
+        linewidth=1.2,
+        label="path of the chassis origin",
+        zorder=3,
+    )
+    shown = int(samples[-1])
+    _draw_contacts(run, shown, ax)
+    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
+    _draw_envelopes(scene, shown, ax, depth=depth)
+    _draw_intrusions(run, scene, shown, ax)
+    if left < scene.goal < right:
+        ax.axvline(scene.goal, color=_GREEN, linestyle=":", label="goal for the rear end")
+    ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    # A raised flipper may be behind the rear end, in the corner that is else free.
+    corner: Literal["best", "upper left"] = "best" if len(scene.carriers) > 1 else "upper left"
+    ax.legend(loc=corner, fontsize="small", framealpha=0.9)
+
+
+def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax: Axes) -> None:
+    """Draw the lanes; of two, the left one shows through behind the right one."""
+    for lane, (x, y) in ((lane, profile.T) for lane, profile in lanes):
+        far = lane == lanes[0][0] and len(lanes) > 1
+        alpha = 1.0 if len(lanes) == 1 else 0.6
+        ax.fill_between(x, y, bottom - 1.0, color=_GROUND, alpha=alpha, linewidth=0.0, zorder=0)
+        ax.plot(
+            x,
+            y,
+            color=_BLACK,
+            linestyle="--" if far else "-",
+            linewidth=0.8 if far else 1.2,
+            label="left lane" if far else None,
+            zorder=1,
+        )
+
+
+def _draw_robot(scene: Scene, sample: int, ax: Axes, *, alpha: float) -> None:
+    """Draw the bodies of each carrier, shoes last; those that meet nothing are left out."""
+    shoes = []
+    bodies = np.concatenate([carrier.bodies for carrier in scene.carriers])
+    # The wheels lie before the belly.
+    for body in sorted(bodies, key=lambda body: scene.kinds[body] != BodyKind.BELLY):
+        line, kind = scene.outline(body, sample), scene.kinds[body]
+        if scene.is_shoe(body):
+            shoes.append(line)
+        elif kind == BodyKind.BELLY:
+            ax.fill(*line.T, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
+            ax.plot(*line.T, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
+        elif scene.bodies["body"][body] >= 0:
+            # What shoes run on is no more than a hint behind them, but for the sprocket.
+            is_hint = kind.is_in_chain and kind != BodyKind.SPROCKET
+            color = _GUIDE if is_hint else _BLACK
+            ax.plot(*line.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
+    if shoes:
+        # A chain has hundreds of pieces in all poses, and one artist a pose is fast.
+        collections = extra("matplotlib.collections", "plot")
+        ax.add_collection(
+            collections.PolyCollection(
+                shoes,
+                facecolor=(_BLACK, 0.5 * alpha),
+                edgecolor=(_BLACK, alpha),
+                linewidth=0.6,
+                zorder=2,
+            )
+        )
+    center = scene.center_of_mass[sample]
+    ax.plot(*center[:, None], marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
+
+
+def _draw_contacts(run: Record, sample: int, ax: Axes) -> None:
+    """Arrows of the forces on the robot and of the speeds of its surface, at one sample."""
+    contacts = run.contacts
+    now = contacts["time"] == run.time[sample]
+    if not now.any():
+        return
+    robot = run.scenario.robot
+    places = np.column_stack([contacts["x"], contacts["y"]])[now]
+    normal = np.column_stack([contacts["normal_x"], contacts["normal_y"]])[now]
+    tangent = np.column_stack([normal[:, 1], -normal[:, 0]])
+    speed = contacts["surface_speed"][now, None] * tangent
+    below = places - _BELOW * robot.outline.axle_distance * normal
+    usual, length = abs(run.scenario.drive.speed), _SPEED_LENGTH * robot.outline.axle_distance
+    label = "surface over the ground, longest {:.2f} m/s"
+    _draw_arrows(ax, below, speed, (usual, length), color=_BLUE, label=label)
+    force = contacts["normal_force"][now, None] * normal
+    force = force + contacts["friction_force"][now, None] * tangent
+    usual = robot.mass * run.scenario.gravity
+    length = _FORCE_LENGTH * robot.outline.axle_distance
+    label = "contact forces, longest {:.0f} N"
+    _draw_arrows(ax, places, force, (usual, length), color=_RED, label=label)
+
+
+def _draw_arrows(
+    ax: Axes,
+    places: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    scale: tuple[float, float],
+    *,
+    color: str,
+    label: str,
+) -> None:
+    """Arrows with their tails at some places.
+
+    The scale is a usual size and the length [m] that it is drawn at, or the largest if beyond it.
+    """
+    usual, length = scale
+    sizes = np.hypot(*vectors.T)
+    most = max(usual, float(sizes.max()))
+    drawn = sizes > _SHORTEST * most
+    if not drawn.any():
+        return
+    ax.quiver(
+        *places[drawn].T,
+        *(length / most * vectors[drawn]).T,
+        color=color,
+        angles="xy",
+        scale_units="xy",
+        scale=1.0,
+        width=0.004,
+        label=label.format(sizes.max()),
+        zorder=4,
+    )
+
+
+def _draw_envelopes(scene: Scene, sample: int, ax: Axes, *, depth: float) -> None:
+    """Draw the taut belts round the wheels, and fill what of the ground is inside them."""
+    patches = extra("matplotlib.patches", "plot")
+    label: str | None = "taut belt round the wheels"
+    for carrier in scene.carriers:
+        if carrier.closed:
+            continue
+        pose = carrier.poses[sample]
+        ax.plot(
+            *placed(closed(carrier.envelope), pose).T,
+            color=_PURPLE,
+            linestyle="--",
+            linewidth=0.9,
+            label=label,
+            zorder=2.5,
+        )
+        label = None  # once is enough
+        inner = placed(inset(carrier.envelope, depth), pose)
+        for _, profile in scene.lanes:
+            x, y = profile.T
+            below = float(inner[:, 1].min()) - 1.0
+            soil = ax.fill_between(x, y, below, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6)
+            soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
+
+
+def _draw_intrusions(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
+    """Mark the edges that are inside the track at one sample."""
+    events, time = run.events, run.time[sample]
+    inside = events["kind"] == "intrusion"
+    inside &= (events["start"] <= time) & (time <= events["end"])
+    rows = np.flatnonzero(inside)
+    if not rows.size:
+        return
+    ids, lanes = run.edges["id"], run.edges["lane"]
+    edges = [
+        np.flatnonzero((ids == events["edge"][row]) & (lanes == events["lane"][row]))[0]
+        for row in rows
+    ]
+    most_loaded = rows[events["force"][rows].argmax()]
+    depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
+    label = f"edge inside the track: {1e3 * depth:.1f} mm"
+    # Of those in a chain it is between two shoes.
+    if one != other and not scene.kinds[one].is_in_chain:
+        label += f" between wheels {one} and {other}"
+    ax.plot(
+        run.edges["x"][edges],
+        run.edges["y"][edges],
+        linestyle="none",
+        marker="D",
+        markersize=6,
+        markerfacecolor="white",
+        markeredgecolor=_PURPLE,
+        label=label,
+        zorder=5,
+    )

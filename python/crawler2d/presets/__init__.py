@@ -1,0 +1,1 @@
+"""Robots of the literature and terrains of every kind, ready made."""

@@ -1,0 +1,125 @@
+"""The BlueBotics Absolem, as its team modelled it for the SubT challenge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import LineOfWheels, Track
+from crawler2d.presets.robots.finish import finished
+
+__all__ = ["absolem"]
+
+
+def absolem(
+    *,
+    flippers: Flippers | Literal["built"] | None = "built",
+    track: Track | Literal["public"] | None = None,
+) -> Robot:
+    """Make the BlueBotics Absolem, a 39 kg tracked robot with four flippers.
+
+    Parameters
+    ----------
+    flippers : Flippers, "built" or None
+        "built" takes its own, None leaves them and their mass off.
+    track : Track or "public", optional
+        The model of the track; None is `Robot`'s default, "public" that of the public simulation
+        model: eight wheels a track that overlap, five a flipper. Its makers tell of ground that
+        gets stuck between two of them and stops the robot where tracks would go on.
+
+    Returns
+    -------
+    Robot
+        The preset.
+
+    Raises
+    ------
+    ScenarioError
+        If `flippers` or `track` is another word.
+
+    Notes
+    -----
+    ==================  ====================================  ====================================
+    figure              value                                 source
+    ==================  ====================================  ====================================
+    axle distance       0.5 m                                 absolem.sdf:1273, 1672
+    radius              0.089 m                               absolem.sdf:1291
+    gauge               0.397 m                               absolem.sdf:1273
+    mass                35.6983 kg without flippers           absolem.sdf: all its links but those
+                                                              of the flippers, sensors included
+    centre of mass      (-0.03139, 0.10286) m, the same       the same
+    moment of inertia   1.5354 kg m^2, the same               the same
+    flippers            0.33 m long                           absolem.sdf:988, 1216
+                        0.089 to 0.029 m                      absolem.sdf:1006, 1234
+                        0.75 kg each                          absolem.sdf:991, five times
+                        at most 0.785398 rad/s, 20 N m each   absolem.sdf:968, 967
+                        0.8 rad up at the start               estimate: clear of the obstacle; the
+                                                              file has them 0.19 rad down
+    belly               0.559 m long, 30 to 169 mm above the  absolem.sdf:18, 21, 34, 37: hull and
+                        axles                                 its bow
+    max. speed          0.4 m/s                               absolem_specifications.md:51
+    max. acceleration   1.4 m/s^2                             the same, from odometry
+    max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
+    max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
+    mass, grousers
+    public wheels       8 of 0.089 m, evenly spaced between   absolem.sdf:1273 to 1690
+                        the axles; 5 a flipper, 0.089 to      absolem.sdf:988 to 1234
+                        0.029 m, evenly spaced
+    ==================  ====================================  ====================================
+
+    absolem.sdf is model.sdf of submitted_models/ctu_cras_norlab_absolem_sensor_config_1 in
+    osrf/subt, before its wheels were replaced by tracks (b626b6de^); absolem_specifications.md is
+    specifications.md there.
+
+    Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track: the
+    side view is that of an even line. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922),
+    here on them. Each of the five links of a flipper has its centre of mass 80 mm beyond its wheel
+    (absolem.sdf:990) and the moment of inertia of a whole flipper (absolem.sdf:996); here the mass
+    is spread evenly from pivot to tip. The friction of its wheels is 0.5 (absolem.sdf:1018); here
+    friction is the terrain's.
+
+    Examples
+    --------
+    What its makers tell of, in the pockets of its front flippers, at the friction of its wheels:
+
+    >>> import crawler2d as c2d
+    >>> step = c2d.terrains.step(0.10, friction=0.5)
+    >>> drive = c2d.Drive(gait=c2d.Climb())
+    >>> run = c2d.simulate(absolem(track="public"), step, drive=drive)
+    >>> str(run.outcome), str(run.mechanism)
+    ('seized', 'straddled')
+    >>> str(c2d.simulate(absolem(), step, drive=drive).outcome)
+    'cleared'
+
+    So it goes on steps, knife edges of 10 mm and barriers of 100 mm, 70 to 130 mm high, in all of
+    210 runs, and with the belt all of 210 clear; at 140 mm the wheels do, too. A belt comes into no
+    such pose, and one that is put there does not get away (none of 21). Without flippers the wheels
+    seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
+    """
+    built = Flippers(
+        length=0.33,
+        root_radius=0.089,
+        tip_radius=0.029,
+        mass=0.75,
+        ends="both",
+        angle=0.8,
+        rate_limit=0.785398,
+        torque_limit=20.0,
+    )
+    chassis = 35.6983
+    whole = chassis + 4.0 * built.mass
+    robot = Robot.simple(whole, axle_distance=0.5, radius=0.089, name="absolem", max_speed=0.4)
+    rear, front, bottom, top = -0.372085, 0.187487, 0.02995, 0.16895
+    robot = replace(
+        robot,
+        mass=chassis,
+        center_of_mass=(-0.03139, 0.10286),
+        moment_of_inertia=1.5354,
+        belly=((rear, bottom), (front, bottom), (front, top), (rear, top)),
+        gauge=0.397,
+        drivetrain=replace(robot.drivetrain, max_acceleration=1.4),
+    )
+    public = (LineOfWheels(8), LineOfWheels(5))
+    return finished(robot, flippers=flippers, built=built, track=track, public=public)

@@ -1,0 +1,66 @@
+"""What the presets share: flippers and track models that a user chooses in place of the built."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import Track
+
+__all__ = ["finished"]
+
+
+def finished(
+    robot: Robot,
+    *,
+    flippers: Flippers | str | None,
+    built: Flippers,
+    track: Track | str | None,
+    public: tuple[Track | None, Track | None],
+) -> Robot:
+    """Model the track of a robot without flippers, and mount those that were asked for.
+
+    Parameters
+    ----------
+    robot : Robot
+        Without flippers.
+    flippers : Flippers, "built" or None
+        What the user asked for.
+    built : Flippers
+        The robot's own.
+    track : Track, "public" or None
+        What the user asked for.
+    public : tuple of (Track or None, Track or None)
+        Models of the robot's and of the flippers' tracks in the public simulation model; None is
+        that of the preset.
+
+    Returns
+    -------
+    Robot
+        The preset.
+
+    Raises
+    ------
+    ScenarioError
+        If `flippers` or `track` is another word.
+    """
+    of_robot, of_flippers = None, None
+    if isinstance(track, str):
+        if track != "public":
+            raise ScenarioError("track", track, 'must be a track model, "public" or None')
+        of_robot, of_flippers = public
+    else:
+        of_robot = track
+    if of_robot is not None:
+        robot = robot.with_track(of_robot)
+    if isinstance(flippers, str):
+        if flippers != "built":
+            raise ScenarioError("flippers", flippers, 'must be Flippers, "built" or None')
+        flippers = built
+    if flippers is None:
+        return robot
+    if of_flippers is not None:
+        flippers = replace(flippers, track=of_flippers)
+    return robot.with_flippers(flippers)

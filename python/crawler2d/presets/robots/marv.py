@@ -1,0 +1,119 @@
+"""MARV, as its team modelled it for the SubT challenge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import GrouserBeltTrack, LineOfWheels, Track
+from crawler2d.presets.robots.finish import finished
+
+__all__ = ["marv"]
+
+
+def marv(
+    *,
+    flippers: Flippers | Literal["built"] | None = "built",
+    track: Track | Literal["public"] | None = None,
+) -> Robot:
+    """Make MARV of the SubT challenge, a 60 kg robot that has no tracks but four large flippers.
+
+    Parameters
+    ----------
+    flippers : Flippers, "built" or None
+        "built" takes its own. None leaves them and their mass off: then the robot stands on their
+        roots.
+    track : Track or "public", optional
+        What stands between the flippers' pivots. None are the roots of the flippers, two wheels,
+        under tracks of the kind of a belt with grousers round the arms; "public" has the wheels of
+        the public simulation model on them, eight a flipper.
+
+    Returns
+    -------
+    Robot
+        The preset.
+
+    Raises
+    ------
+    ScenarioError
+        If `flippers` or `track` is another word.
+
+    Notes
+    -----
+    ==================  ====================================  ====================================
+    figure              value                                 source
+    ==================  ====================================  ====================================
+    pivots              0.512 m apart                         marv.sdf:469, twice
+    gauge               0.496 m                               marv.sdf:469, twice
+    mass                45.726 kg without flippers            marv.sdf: all its links but those of
+                                                              the flippers, sensors included
+    centre of mass      (0.00292, 0.06481) m, the same        the same
+    moment of inertia   1.7532 kg m^2, the same               the same
+    flippers            0.3035 m between their axles          marv.sdf:618, 1045
+                        0.1165 to 0.078 m                     marv.sdf:636, 1063
+                        3.659 kg each                         marv.sdf:621, eight times
+                        at most 1 rad/s, 120 N m each         marv.sdf:522, 521
+                        0.5 rad up at the start               estimate: clear of the obstacle; the
+                                                              file has them level
+                        grousers of `Robot.simple`            estimate
+    belly               0.6 x 0.236 m, 73 mm above ground,    marv.sdf:18, 21, 26, 29, 34, 38
+                        bow and stern rounded below
+    max. speed          1 m/s                                 marv.sdf:669, at the root's radius
+    max. acceleration   3 m/s^2                               config/common.yaml of its package
+    max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
+    max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
+    mass, grousers
+    public wheels       8 a flipper, 0.1165 to 0.078 m,       marv.sdf:618 to 1063
+                        evenly spaced
+    ==================  ====================================  ====================================
+
+    marv.sdf is model.sdf of submitted_models/ctu_cras_norlab_marv_sensor_config_1 in osrf/subt,
+    before its wheels were replaced by tracks (b626b6de^); the tests do not read common.yaml, where
+    the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm are here four chords, at
+    most 1 mm inside.
+
+    The line between the roots is no track: ground that reaches above it is called inside the track
+    although nothing runs there. What the package says the robot weighs, 61 kg, is 60.36 kg in the
+    sum over all links.
+
+    Examples
+    --------
+    >>> round(marv().mass, 2)
+    60.36
+    """
+    built = Flippers(
+        length=0.3035,
+        root_radius=0.1165,
+        tip_radius=0.078,
+        mass=3.659,
+        ends="both",
+        angle=0.5,
+        rate_limit=1.0,
+        torque_limit=120.0,
+        track=GrouserBeltTrack(),
+    )
+    chassis = 45.726
+    whole = chassis + 4.0 * built.mass
+    robot = Robot.simple(whole, axle_distance=0.512, radius=0.1165, name="marv", max_speed=1.0)
+    bow = [_bow(step * math.pi / 8.0) for step in range(5)]
+    robot = replace(
+        robot,
+        mass=chassis,
+        center_of_mass=(0.00292, 0.06481),
+        moment_of_inertia=1.7532,
+        belly=(*bow, (0.3, 0.1921), (-0.3, 0.1921), *((-x, y) for x, y in reversed(bow))),
+        gauge=0.496,
+        drivetrain=replace(robot.drivetrain, max_acceleration=3.0),
+        track=LineOfWheels(2),
+    )
+    public = (LineOfWheels(2), LineOfWheels(8))
+    return finished(robot, flippers=flippers, built=built, track=track, public=public)
+
+
+def _bow(angle: float) -> tuple[float, float]:
+    """Go round the lower edge of the bow, from below its axle (0) to the level of it (pi / 2)."""
+    radius = 0.044
+    return 0.256 + radius * math.sin(angle), 0.0001 - radius * math.cos(angle)

@@ -1,0 +1,261 @@
+"""What came out of a run, as data: outcome, figures, history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.common.frozen import Figures, read_only
+from crawler2d.common.table import Table
+from crawler2d.errors import Crawler2dError
+from crawler2d.results.bodies import bodies_of, moved
+from crawler2d.results.diagnosis import Diagnosis
+from crawler2d.results.findings import Mechanism
+from crawler2d.results.outcome import Outcome
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from crawler2d.parameters.scenario import Scenario
+
+__all__ = ["Record"]
+
+
+class Record:
+    """What a `Run` holds, which says what each of them is; pictures are made of no more than this.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What was simulated.
+    result : mapping
+        What the core returned.
+    error : Crawler2dError, optional
+        Why there is no result.
+    trunk : tuple of Scenario and float, optional
+        For a branch: what was simulated before it, and until when [s].
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        result: Mapping[str, Any],
+        error: Crawler2dError | None = None,
+        trunk: tuple[Scenario, float] | None = None,
+    ) -> None:
+        self.scenario = scenario
+        self.error = error
+        self.trunk = trunk
+        self.outcome = Outcome(result["outcome"]) if error is None else None
+        why = result.get("diagnosis")
+        self.diagnosis = None if why is None else Diagnosis.from_core(why)
+        self.metrics = Figures(result.get("metrics", {}))
+        self.edges = Table(result.get("edges", {}))
+        self.events = Table(result.get("events", {}))
+        self.wall_time: float = result.get("wall_time", 0.0)
+        self._trace = {name: read_only(array) for name, array in result.get("trace", {}).items()}
+        self._contacts = Table(result.get("contacts", {}))
+
+    @property
+    def mechanism(self) -> Mechanism | None:
+        """How ground inside the track is held, if the run ended in a stop and there is any."""
+        return None if self.diagnosis is None else self.diagnosis.mechanism
+
+    @property
+    def is_creeping(self) -> bool:
+        """Whether it made a little way at its end, between `criteria.creep_from` and `creep_to`."""
+        criteria = self.scenario.criteria
+        progress = self.metrics.get("progress", 1.0)
+        return criteria.creep_from <= progress < criteria.creep_to
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """[s] End of each sample interval, shape (n,)."""
+        return self._recorded("time")
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """[m] Origin of the chassis frame, x and y, shape (n, 2)."""
+        return self._recorded("position")
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """[m/s] Velocity of that point, shape (n, 2)."""
+        return self._recorded("velocity")
+
+    @property
+    def chassis_angle(self) -> NDArray[np.float64]:
+        """[rad] Nose up > 0, shape (n,)."""
+        return self._recorded("chassis_angle")
+
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """[rad/s] Rate of the chassis angle, shape (n,)."""
+        return self._recorded("angular_velocity")
+
+    @property
+    def commanded_speed(self) -> NDArray[np.float64]:
+        """[m/s] Set-point of the drivetrain, within its acceleration limits, shape (n,)."""
+        return self._recorded("commanded_speed")
+
+    @property
+    def track_speed(self) -> NDArray[np.float64]:
+        """[m/s] Surface speed of the track, the mean of the drives, shape (n,)."""
+        return self._recorded("track_speed")
+
+    @property
+    def track_position(self) -> NDArray[np.float64]:
+        """[m] How far the surface has run, the mean of the drives, shape (n,)."""
+        return self._recorded("track_position")
+
+    @property
+    def slip_ratio(self) -> NDArray[np.float64]:
+        """[-] 1 - v / track_speed, 0 where the track stands, shape (n,)."""
+        return self._recorded("slip_ratio")
+
+    @property
+    def tractive_effort(self) -> NDArray[np.float64]:
+        """[N] Force of the ground along the driven surfaces, mean over the interval, shape (n,)."""
+        return self._recorded("tractive_effort")
+
+    @property
+    def drive_force(self) -> NDArray[np.float64]:
+        """[N] Force of all motors at the surface, mean over the interval, shape (n,)."""
+        return self._recorded("drive_force")
+
+    @property
+    def drive_speeds(self) -> NDArray[np.float64]:
+        """[m/s] Surface speed of each of the k drives, motors before free wheels, shape (n, k)."""
+        return self._recorded("drive_speeds")
+
+    @property
+    def drive_positions(self) -> NDArray[np.float64]:
+        """[m] How far the surface of each of the k drives has run, shape (n, k)."""
+        return self._recorded("drive_positions")
+
+    @property
+    def drive_forces(self) -> NDArray[np.float64]:
+        """[N] Force of the motor of each drive, 0 for free wheels, interval means, shape (n, k)."""
+        return self._recorded("drive_forces")
+
+    @property
+    def track_tension(self) -> NDArray[np.float64]:
+        """[N] Largest force in a pin of a chain of shoes, 0 for other tracks, shape (n,)."""
+        return self._recorded("track_tension")
+
+    @property
+    def shoe_poses(self) -> NDArray[np.float64]:
+        """[m, m, rad] Middle x, y and direction of travel of each of s shoes, shape (n, s, 3).
+
+        The origin of a shoe lies halfway between its pins; s is 0 for other tracks.
+        """
+        return self._recorded("shoe_poses")
+
+    @property
+    def flipper_angles(self) -> NDArray[np.float64]:
+        """[rad] Of the flippers at each of k ends, the front first, upwards > 0, shape (n, k)."""
+        return self._recorded("flipper_angles")
+
+    @property
+    def flipper_torques(self) -> NDArray[np.float64]:
+        """[N m] Of their motors, both sides together, upwards > 0, of the last step; (n, k)."""
+        return self._recorded("flipper_torques")
+
+    @property
+    def bodies(self) -> Table:
+        """Bodies of the robot, one row each, in the order of `poses`; computed when asked for.
+
+        First come those that can meet the ground: row k is the `body` k of the contacts. After them
+        come the wheels within belts and guides, which meet nothing.
+
+        =========  ====  ==========================================================================
+        column     unit  meaning
+        =========  ====  ==========================================================================
+        `body`           as in the contacts; -1: it meets nothing
+        `kind`           code of a `BodyKind`
+        `lane`           code of the `Lane` of its track
+        `carrier`        "chassis", "front flipper" or "rear flipper"
+        `shoe`           number of the shoe that it belongs to, as in `shoe_poses`; -1: none
+        `radius`   m     of a circle; nan where it is none
+        `outline`  m     corners in its own frame, counter-clockwise, shape (m, 2)
+        =========  ====  ==========================================================================
+        """
+        return bodies_of(self.scenario)
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """[m, m, rad] Origin x, y and angle of the frame of each of k bodies, shape (n, k, 3).
+
+        They are computed from the history when asked for: keep them while you need them. Angles
+        count full turns, so poses may be interpolated between samples. Belts, skids, the guide and
+        the belly have the frame of what carries them; a belt's surface moves within its outline.
+        The idler of a chain is where it is built.
+
+        Examples
+        --------
+        Where the outline of the second wheel from the rear is in the end:
+
+        >>> import numpy as np
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> run = c2d.simulate(robot, c2d.terrains.flat(), duration=1.0)
+        >>> x, y, angle = run.poses[-1, 1]
+        >>> turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        >>> corners = run.bodies["outline"][1] @ turn.T + (x, y)
+        >>> bool(abs(corners[:, 1].min()) < 1e-4)  # it stands on the ground
+        True
+        """
+        self._recorded("time")
+        return read_only(moved(self.scenario, self._trace)["bodies"])
+
+    @property
+    def contacts(self) -> Table:
+        """Contacts of robot and ground, one row a contact and sample; forces are interval means."""
+        self._recorded("time")
+        return self._contacts
+
+    def _recorded(self, name: str) -> NDArray[Any]:
+        if self._trace:
+            return self._trace[name]
+        if self.error is not None:
+            raise AttributeError(f"this run has no history: {self.error}", name=name, obj=self)
+        message = "this run has no history: it was recorded with record='summary'"
+        raise AttributeError(message, name=name, obj=self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the data; arrays are read-only again in the copy."""
+        result = {
+            "outcome": self.outcome,
+            "diagnosis": None if self.diagnosis is None else self.diagnosis.to_plain(),
+            "metrics": self.metrics,
+            "edges": dict(self.edges),
+            "events": dict(self.events),
+            "wall_time": self.wall_time,
+            "trace": self._trace,
+            "contacts": dict(self._contacts),
+        }
+        return type(self), (self.scenario, result, self.error, self.trunk)
+
+    def __repr__(self) -> str:
+        """Say what ran and how it ended."""
+        return f"{type(self).__name__}({self.title})"
+
+    @property
+    def title(self) -> str:
+        """What ran and how it ended, in one line for tables and plots."""
+        robot, terrain = self.scenario.robot, self.scenario.terrain
+        names = (
+            getattr(robot, "name", robot),
+            _kind(getattr(robot, "track", None)),
+            _kind(terrain),
+        )
+        subject = ", ".join(str(name) for name in names)
+        if self.error is not None:
+            return f"{subject}: {type(self.error).__name__}"
+        return f"{subject}: {self.outcome} after {self.metrics['time']:.2f} s"
+
+
+def _kind(part: object) -> str:
+    # A scenario that was refused may hold anything here.
+    return str(getattr(part, "kind", type(part).__name__))

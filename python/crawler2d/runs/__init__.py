@@ -1,0 +1,1 @@
+"""From scenarios to runs, and what can be done with a run."""

@@ -1,0 +1,219 @@
+"""From scenarios to runs: one, or many on several threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal
+
+from crawler2d import _core
+from crawler2d.errors import (
+    Crawler2dError,
+    InternalError,
+    RunUnfinished,
+    ScenarioError,
+)
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.runs.progress import Progress, reporter
+from crawler2d.runs.recording import Recording, recording, yes_or_no
+from crawler2d.runs.run import Run
+from crawler2d.runs.threads import thread_count
+
+__all__ = ["simulate", "simulate_many", "simulate_passed"]
+
+
+def simulate(
+    scenario: Scenario | Robot,
+    terrain: Terrain | None = None,
+    *,
+    record: Recording = "full",
+    sample_interval: float = 0.01,
+    counterfactual: bool = False,
+    **fields: Any,
+) -> Run:
+    """Simulate one scenario to its end.
+
+    Parameters
+    ----------
+    scenario : Scenario or Robot
+        What to simulate; a robot needs a terrain.
+    terrain : Terrain, optional
+        The ground; replaces that of a scenario.
+    record : {"full", "summary"}
+        Whether to keep the history, or only outcome, metrics and events.
+    sample_interval : float
+        [s] Time between two samples of the history, rounded to whole time steps.
+    counterfactual : bool
+        Whether to try a closed belt at the stop that the run ends in; see `Run.counterfactual`.
+    **fields : object
+        Further fields of the scenario, such as ``duration=5.0``.
+
+    Returns
+    -------
+    Run
+        Outcome, metrics and history.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario breaks a rule; nothing has been simulated.
+    LimitError
+        If the run needs more memory than the environment variable CRAWLER2D_MEMORY allows [GiB], 8
+        without it, or than the system gives.
+    SimulationDiverged
+        If the state became non-finite.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
+    >>> run.outcome
+    <Outcome.CLEARED: 'cleared'>
+    """
+    complete = _complete(scenario, terrain).replace(fields)
+    asked = yes_or_no(counterfactual, "counterfactual")
+    recorded = (*recording(sample_interval, record), asked)
+    return Run(complete, _core.simulate(complete.to_json(), *recorded))
+
+
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    threads: int | None = None,
+    record: Recording = "full",
+    sample_interval: float = 0.01,
+    counterfactual: bool = False,
+    progress: bool | Progress | None = False,
+    on_error: Literal["raise", "record"] = "raise",
+) -> list[Run]:
+    """Simulate many scenarios; the results do not depend on the number of threads.
+
+    Parameters
+    ----------
+    scenarios : iterable of Scenario
+        What to simulate.
+    threads : int, optional
+        1 to 1024; None takes every core of this process. The environment variable
+        CRAWLER2D_THREADS limits both.
+    record : {"full", "summary"}
+        Whether to keep the histories, or only outcomes, metrics and events.
+    sample_interval : float
+        [s] Time between two samples of a history, rounded to whole time steps.
+    counterfactual : bool
+        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
+    progress : bool or callable
+        True shows a bar; a callable gets the numbers of finished runs and of all runs.
+    on_error : {"raise", "record"}
+        What a scenario without a result does. "raise" ends the batch with its error: before the
+        first run if a scenario breaks a rule, after the last if a run failed. "record" keeps the
+        error in `Run.error` and all other runs, whatever one of them does.
+
+    Returns
+    -------
+    list of Run
+        In the order of the scenarios.
+
+    Raises
+    ------
+    ScenarioError
+        If a scenario or an argument breaks a rule; the path begins with ``scenarios[i]``.
+    LimitError
+        If `threads` or an environment variable is out of range, or the batch needs more memory
+        than the variable CRAWLER2D_MEMORY allows [GiB], 8 without it, or than the system gives.
+    SimulationDiverged
+        If a state became non-finite.
+    BatchInterrupted
+        On Ctrl-C; its `runs` keeps what was finished, and the scenarios of the others.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03))
+    >>> runs = c2d.simulate_many([base, base.replace({"terrain.height": 0.2})], record="summary")
+    >>> [str(run.outcome) for run in runs]
+    ['cleared', 'tipped_over']
+    """
+    if on_error not in ("raise", "record"):
+        raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    asked = yes_or_no(counterfactual, "counterfactual")
+    recorded = (*recording(sample_interval, record), asked)
+    count = thread_count(threads)
+    batch = list(scenarios)
+    checked = _checked(batch)
+    if on_error == "raise":
+        _raise_first(checked)
+    runs = simulate_passed(batch, checked, recorded, threads=count, progress=progress)
+    if on_error == "raise":
+        _raise_first([run.error for run in runs])
+    return runs
+
+
+def simulate_passed(
+    scenarios: Sequence[Scenario],
+    checked: Sequence[_core.Passed | ScenarioError],
+    recorded: tuple[float, str, bool],
+    *,
+    threads: int,
+    progress: bool | Progress | None,
+) -> list[Run]:
+    """Run what has passed the door; what was refused is a run with its error."""
+    passed = [scenario for scenario in checked if isinstance(scenario, _core.Passed)]
+    with reporter(progress, len(passed)) as callback:
+        results, interrupted = _core.simulate_many(passed, threads, *recorded, callback)
+    rest = iter(results)
+    runs = [
+        _run(scenario, next(rest) if isinstance(outcome, _core.Passed) else outcome)
+        for scenario, outcome in zip(scenarios, checked, strict=True)
+    ]
+    if interrupted:
+        raise BatchInterrupted(runs)
+    return runs
+
+
+def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
+    if isinstance(scenario, Scenario):
+        return scenario if terrain is None else scenario.replace({"terrain": terrain})
+    if not isinstance(scenario, Robot):
+        raise ScenarioError("scenario", scenario, "must be a Scenario or a Robot")
+    if terrain is None:
+        raise ScenarioError("terrain", terrain, "must be given with a robot")
+    return Scenario(scenario, terrain)
+
+
+def _checked(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
+    """Open the door to each scenario; of those that are refused, say why."""
+    results: list[_core.Passed | ScenarioError] = []
+    last = None
+    for index, scenario in enumerate(batch):
+        place = f"scenarios[{index}]"
+        if not isinstance(scenario, Scenario):
+            raise ScenarioError(place, scenario, "must be a Scenario")  # nothing a Run could hold
+        try:
+            last = _core.Passed(scenario.to_json(), last)
+            results.append(last)
+        except ScenarioError as error:
+            results.append(ScenarioError(f"{place}.{error.path}", error.value, error.rule))
+    return results
+
+
+def _raise_first(results: Iterable[object]) -> None:
+    for result in results:
+        if isinstance(result, Crawler2dError):
+            raise result
+
+
+def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run:
+    if result is None:
+        return Run(
+            scenario, {}, RunUnfinished("the batch was interrupted before this run had ended")
+        )
+    if isinstance(result, ScenarioError):
+        return Run(scenario, {}, result)
+    error = result.get("error")
+    if error is None:
+        return Run(scenario, result)
+    if not isinstance(error, Crawler2dError):  # such as a MemoryError while its arrays were made
+        error = InternalError(f"{type(error).__name__}: {error}")
+    return Run(scenario, {}, error)

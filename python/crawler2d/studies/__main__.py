@@ -1,0 +1,179 @@
+"""The seizure study: which track models get the Engineer over an edge, how often, and why not.
+
+Run it with ``python -m crawler2d.studies``; ``--help`` lists the options. With
+``chains`` it sets chains of shoes beside what stands in for them, on steps; with ``chain-steps`` it
+asks how fine a chain must be stepped; with ``flippers`` how high the Engineer gets with its arms.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.studies import report, stops_report
+from crawler2d.studies import tables as rows
+from crawler2d.studies.chain_steps import chain_steps, chain_steps_text
+from crawler2d.studies.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.studies.flippers import HEIGHTS, highest_steps, highest_steps_text
+from crawler2d.studies.models import gear_pairs
+from crawler2d.studies.public_model import posts, public_wheel_model
+from crawler2d.studies.replays import write_replays
+from crawler2d.studies.stops import gear_against_round, stops
+from crawler2d.studies.sweeps import FULL, QUICK, Study
+
+if TYPE_CHECKING:
+    from crawler2d.runs.run import Run
+
+__all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the study from the command line."""
+    parser = argparse.ArgumentParser(prog="python -m crawler2d.studies", description=__doc__)
+    parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("seizure", "chains", "chain-steps", "flippers"),
+        default="seizure",
+        help="the seizure study (default), or chains beside belt and gears, or how finely to step"
+        " them, or the highest step with flippers",
+    )
+    parser.add_argument("--quick", action="store_true", help="few heights and repeats")
+    parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the results")
+    parser.add_argument("--threads", type=int, default=None, help="default: all cores")
+    parser.add_argument("--seed", type=int, default=0, help="of the draws (default: 0)")
+    options = parser.parse_args(arguments)
+    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        if options.what == "chains":
+            design, models = CHAINS_QUICK if options.quick else CHAINS, chain_models()
+            study = Study(design=design, models=models, seed=options.seed, threads=options.threads)
+            _run_chains(study, options.out)
+        elif options.what == "chain-steps":
+            repeats = 2 if options.quick else 40
+            steps = chain_steps(repeats=repeats, seed=options.seed, threads=options.threads)
+            text = f"{chain_steps_text(steps)}\n"
+            print(f"\n{text}")
+            (options.out / "chain_steps.txt").write_text(text, encoding="utf-8")
+        elif options.what == "flippers":
+            heights, repeats = (HEIGHTS[1::4], 2) if options.quick else (HEIGHTS, 6)
+            highest = highest_steps(
+                heights, repeats=repeats, seed=options.seed, threads=options.threads
+            )
+            text = f"{highest_steps_text(highest)}\n"
+            print(f"\n{text}")
+            (options.out / "flippers.txt").write_text(text, encoding="utf-8")
+        else:
+            design = QUICK if options.quick else FULL
+            study = Study(design=design, seed=options.seed, threads=options.threads)
+            _run(study, options.out)
+    except BatchInterrupted as interrupt:
+        print(interrupt, file=sys.stderr)
+        return 130
+    return 0
+
+
+def _run(study: Study, out: Path) -> None:
+    begin = time.perf_counter()
+    print(report.header(study), flush=True)
+    sweeps = {obstacle: study.on_obstacle(obstacle) for obstacle in study.design.heights}
+    robots, flat, turned = study.on_other_robots(), study.on_the_flat(), study.over_phases()
+    runs = public_wheel_model(study.threads)
+    replays = write_replays(sweeps, out / "replays", threads=study.threads)
+    took = time.perf_counter() - begin
+
+    cells = [row for name, table in sweeps.items() for row in rows.cells(table, name)]
+    climbs = [row for name, table in sweeps.items() for row in rows.climbs(table, name)]
+    stopped = [row for name, table in sweeps.items() for row in stops(table, name)]
+    pairs, strong = gear_pairs(study.models), "torque doubled"
+    against = [
+        *gear_against_round(sweeps["step"], "step", pairs),
+        *gear_against_round(robots.sel(robot=strong), "step", pairs, strong),
+    ]
+    others = [
+        row
+        for robot in robots["robot"].to_numpy().tolist()
+        for row in rows.cells(robots.sel(robot=robot), "step", robot)
+    ]
+    rides, phases, found = rows.rides(flat), rows.phases(turned), posts(runs)
+
+    text = "\n\n\n".join(
+        (
+            report.rates_text(cells),
+            stops_report.stops_text(stopped),
+            stops_report.against_text(against),
+            stops_report.replays_text(replays, f"{out}/replays"),
+            report.robots_text(others),
+            report.rides_text(rides),
+            report.phases_text(phases),
+            report.posts_text(found),
+            report.beside_the_paper(study.models, climbs),
+            report.climbs_text(study.models, climbs),
+        )
+    )
+    print(f"\n{text}\n")
+    (out / "study.txt").write_text(f"{report.header(study)}\n\n\n{text}\n", encoding="utf-8")
+    for obstacle, table in sweeps.items():
+        # The scenarios follow from the seed, and would take most of the file.
+        frame = table.drop_vars("scenario").to_dataframe()
+        frame.to_csv(out / f"runs_{obstacle.replace(' ', '_')}.csv")
+    written: dict[str, list[Any]] = {
+        "rates": [*cells, *others],
+        "heights": climbs,
+        "stops": stopped,
+        "gear_against_round": against,
+        "replays": replays,
+        "flat": rides,
+        "phases": phases,
+        "posts": found,
+    }
+    for name, listed in written.items():
+        rows.write_csv(out / f"{name}.csv", listed)
+    _draw(cells, phases, runs, out)
+    count = sum(table["outcome"].size for table in (*sweeps.values(), robots, flat, turned))
+    print(f"{count + len(runs)} runs in {took:.0f} s; tables and pictures are in {out}")
+
+
+def _run_chains(study: Study, out: Path) -> None:
+    begin = time.perf_counter()
+    print(report.header(study), flush=True)
+    table = study.on_obstacle("step")
+    took = time.perf_counter() - begin
+    found = rows.cells(table, "step")
+    text = report.rates_text(found)
+    print(f"\n{text}\n")
+    (out / "chains.txt").write_text(f"{report.header(study)}\n\n\n{text}\n", encoding="utf-8")
+    table.drop_vars("scenario").to_dataframe().to_csv(out / "runs_chains.csv")
+    rows.write_csv(out / "chains.csv", found)
+    try:
+        from crawler2d.studies.chains_plot import plot_chains  # noqa: PLC0415 - optional
+
+        plot_chains(found).savefig(out / "chains.png", dpi=100)
+    except ImportError as missing:
+        print(f"no picture: {missing}", file=sys.stderr)
+    print(f"{table['outcome'].size} runs in {took:.0f} s; table and picture are in {out}")
+
+
+def _draw(
+    cells: list[rows.Cell],
+    phases: list[rows.Phase],
+    runs: dict[tuple[float, bool], Run],
+    out: Path,
+) -> None:
+    try:
+        from crawler2d.studies import plot  # noqa: PLC0415 - optional
+
+        plot.plot_rates(cells).savefig(out / "rates.png", dpi=100)
+        plot.plot_phases(phases).savefig(out / "phases.png", dpi=100)
+        plot.plot_posts(runs).savefig(out / "posts.png", dpi=100)
+    except ImportError as missing:
+        print(f"no pictures: {missing}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,164 @@
+"""The Engineer with flippers: the highest step by model of the track, and what limits each."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.parameters.gaits import Climb
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive
+from crawler2d.presets import terrains
+from crawler2d.presets.robots import engineer
+from crawler2d.studies.columns import aligned
+from crawler2d.studies.models import StudyModel, study_models
+from crawler2d.studies.paper import TABLE_3
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.sweep import sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import xarray
+
+    from crawler2d.parameters.robot import Robot
+
+__all__ = ["HEIGHTS", "HighestStep", "flipper_robots", "highest_steps", "highest_steps_text"]
+
+HEIGHTS = tuple(0.02 * step for step in range(2, 21))
+"""[m] Of the steps."""
+
+_FRICTION = 0.9
+# Flippers have no form for wheels that are placed by hand.
+_WITHOUT = ("hybrid", "hybrid gears", "line of 4, touching", "16 all round, spaced")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HighestStep:
+    """How high a robot gets with a model of its tracks."""
+
+    robot: str
+    model: str
+    height: float
+    """[m] The highest step that half of the runs clear; 0 if there is none."""
+    gaps: int
+    """Lower steps that fewer clear."""
+    limit: str
+    """How most of the others end at the next one."""
+    paper: float | None
+    """[m] What the paper found for its models of this kind, None where it has none."""
+
+
+def flipper_robots() -> dict[str, Robot]:
+    """List the robots: without flippers, with them in front, driven backwards, and at both ends."""
+    built = engineer()
+    arms = built.flippers
+    if arms is None:
+        raise AssertionError("the preset has flippers")
+    return {
+        "no flippers": engineer(flippers=None),
+        "in front": built,
+        "behind": engineer(flippers=replace(arms, ends="rear")),
+        "both ends": engineer(flippers=replace(arms, ends="both")),
+    }
+
+
+def highest_steps(
+    heights: Sequence[float] = HEIGHTS,
+    *,
+    repeats: int = 6,
+    seed: int = 0,
+    threads: int | None = None,
+    models: Mapping[str, StudyModel] | None = None,
+) -> list[HighestStep]:
+    """Run every robot under every model over steps, its flippers in the gait `Climb`.
+
+    Parameters
+    ----------
+    heights : sequence of float
+        [m] Of the steps, rising.
+    repeats, seed, threads : int
+        See `sweep`.
+    models : mapping of str to StudyModel, optional
+        Those of the study that flippers can have, by default.
+
+    Returns
+    -------
+    list of HighestStep
+        One a robot and model.
+    """
+    if models is None:
+        known = study_models(engineer().outline.axle_distance)
+        models = {name: model for name, model in known.items() if name not in _WITHOUT}
+    found = []
+    for name, robot in flipper_robots().items():
+        drive = Drive(speed=0.4, gait=None if robot.flippers is None else Climb())
+        base = Scenario(robot, terrains.step(heights[0], friction=_FRICTION), drive=drive)
+        default = base.solver.time_step
+        points = {
+            label: (model.track, model.time_step or default) for label, model in models.items()
+        }
+        over: dict[Any, Any] = {
+            ("robot.track", "solver.time_step"): points,
+            "terrain.height": list(heights),
+        }
+        table = sweep(
+            base, over, repeats=repeats, seed=seed, threads=threads, on_error="record"
+        ).rename({"track_time_step": "track"})
+        rates = rate(table)["rate"]
+        for label, model in models.items():
+            shares = rates.sel(track=label).to_numpy()
+            found.append(_highest(name, label, model, (heights, shares, table.sel(track=label))))
+    return found
+
+
+def _highest(
+    robot: str,
+    label: str,
+    model: StudyModel,
+    climbs: tuple[Sequence[float], np.ndarray[Any, Any], xarray.Dataset],
+) -> HighestStep:
+    heights, shares, table = climbs
+    cleared = np.flatnonzero(shares >= 0.5)
+    last = int(cleared[-1]) if cleared.size else -1
+    limit = "none up to here"
+    if last + 1 < len(heights):
+        above = table.isel(height=last + 1)
+        ends = zip(
+            above["outcome"].to_numpy().tolist(),
+            above["mechanism"].to_numpy().tolist(),
+            strict=True,
+        )
+        said = Counter(
+            " ".join(filter(None, (outcome, mechanism)))
+            for outcome, mechanism in ends
+            if outcome != "cleared"
+        )
+        limit = said.most_common(1)[0][0].replace("_", " ")
+    return HighestStep(
+        robot=robot,
+        model=label,
+        height=heights[last] if cleared.size else 0.0,
+        gaps=last + 1 - cleared.size,
+        limit=limit,
+        paper=next((row.max_height for row in TABLE_3 if row.model == model.row), None),
+    )
+
+
+def highest_steps_text(found: Sequence[HighestStep]) -> str:
+    """Write one row a model, with a column a robot, and what limits each."""
+    robots = list(dict.fromkeys(row.robot for row in found))
+    rows = []
+    for model in dict.fromkeys(row.model for row in found):
+        own = {row.robot: row for row in found if row.model == model}
+        paper = next(iter(own.values())).paper
+        cells = (
+            f"{100 * own[r].height:.0f}{'*' * bool(own[r].gaps)} {own[r].limit}" for r in robots
+        )
+        rows.append((model, "-" if paper is None else f"{100 * paper:.0f}", *cells))
+    head = ("highest step [cm], then what limits it", "paper", *robots)
+    note = "* fewer than half of the runs clear some lower step; the paper's real robot: 20 cm"
+    return f"{aligned(head, rows)}\n{note}"

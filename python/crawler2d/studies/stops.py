@@ -1,0 +1,191 @@
+"""Why the runs of the seizure study stopped, and how gear wheels compare with round ones."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d.results.outcome import Outcome
+from crawler2d.sweeps.statistics import wilson
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["FIGURES", "STOPS", "Against", "Stops", "gear_against_round", "stops"]
+
+STOPS = tuple(str(outcome) for outcome in Outcome if outcome.is_stop)
+"""Outcomes that are stops, by name."""
+
+FIGURES = (
+    *("cleared", "seized", "seized_alone", "at_tips"),
+    *("stopped", "unnatural_stops", "unnatural_passes"),
+)
+"""Counts of `Stops` that gear and round wheels are compared by."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stops:
+    """How the runs of one model on one obstacle ended, all heights together."""
+
+    obstacle: str
+    model: str
+    count: int
+    """Runs with a result."""
+    cleared: int
+    seized: int
+    hung_up: int
+    stalled: int
+    slipping: int
+    cycling: int
+    mechanism: str
+    """The commonest of the stops; "": of most there is none."""
+    of_mechanism: int
+    """How many stops have it."""
+    seized_alone: int
+    """Of the seized, those in no tie: nothing but a closed pocket would move them on."""
+    at_tips: int
+    """Stops that are seized where the track is taken to reach to the circumscribed circles."""
+    depth: float
+    """[m] Of the edges in seized stops, below the circumscribed circles: median; nan: none."""
+    root_depth: float
+    """[m] The same below the root circles."""
+    unnatural_stops: int
+    """Stops from which a closed belt gets away."""
+    unnatural_passes: int
+    """Runs that cleared where the belt of the same repeat did not."""
+
+    @property
+    def stopped(self) -> int:
+        """All stops."""
+        return sum(getattr(self, name) for name in STOPS)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Against:
+    """How often something befell one model of a pair that differs in its wheels alone."""
+
+    robot: str
+    obstacle: str
+    """Of all its heights together."""
+    model: str
+    wheel: str
+    """"round" or "gear"."""
+    figure: str
+    """One of `FIGURES`."""
+    found: int
+    count: int
+    """Runs with a result."""
+    rate: float
+    low: float
+    """[-] Of Wilson's 95 % interval."""
+    high: float
+
+
+def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stops]:
+    """Say how the runs of a sweep over track and height ended, one row a model.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With the dimensions track, height and repeat, and a belt tried at every stop.
+    obstacle : str
+        What they ran over.
+    belt : str
+        The model that decides what a pass is worth.
+    """
+    return [
+        _stops(table, obstacle, str(model), belt) for model in table["track"].to_numpy().tolist()
+    ]
+
+
+def gear_against_round(
+    table: xarray.Dataset,
+    obstacle: str,
+    pairs: Mapping[str, str],
+    robot: str = "preset",
+    belt: str = "belt",
+) -> list[Against]:
+    """Set models with gear wheels against the same with round ones.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        See `stops`.
+    obstacle, robot : str
+        What they ran over, and what ran.
+    pairs : mapping of str to str
+        From each model with gear wheels to that with round ones.
+    belt : str
+        See `stops`.
+
+    Returns
+    -------
+    list of Against
+        Round and gear of each pair, and of all pairs together.
+    """
+    rows = {row.model: row for row in stops(table, obstacle, belt)}
+    groups = [(name, [rows[name]]) for gear, plain in pairs.items() for name in (plain, gear)]
+    groups += [
+        ("all of these", [rows[name] for name in names]) for names in (pairs.values(), pairs.keys())
+    ]
+    wheels = ("round", "gear") * (len(pairs) + 1)
+    found = []
+    for (name, own), wheel in zip(groups, wheels, strict=True):
+        count = sum(row.count for row in own)
+        for figure in FIGURES:
+            times = sum(getattr(row, figure) for row in own)
+            rate, low, high = wilson(times, count)
+            found.append(
+                Against(
+                    robot=robot,
+                    obstacle=obstacle,
+                    model=name,
+                    wheel=wheel,
+                    figure=figure,
+                    found=times,
+                    count=count,
+                    rate=rate,
+                    low=low,
+                    high=high,
+                )
+            )
+    return found
+
+
+def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops:
+    own = table.sel(track=model)
+    outcomes = own["outcome"].to_numpy()
+    counts = Counter(outcomes.ravel().tolist())
+    stopped, seized = np.isin(outcomes, STOPS), outcomes == "seized"
+    mechanisms = Counter(own["mechanism"].to_numpy()[stopped].tolist())
+    mechanism, most = mechanisms.most_common(1)[0] if mechanisms else ("", 0)
+    passes = (outcomes == "cleared") & (table["outcome"].sel(track=belt).to_numpy() != "cleared")
+    return Stops(
+        obstacle=obstacle,
+        model=model,
+        count=sum(counts[each] for each in Outcome),
+        cleared=counts["cleared"],
+        **{name: counts[name] for name in STOPS},
+        mechanism=str(mechanism),
+        of_mechanism=most,
+        seized_alone=_count(own["cause"].to_numpy() == "pocket"),
+        at_tips=_count(own["seized_at_tips"].to_numpy() & stopped),
+        depth=_median(own["intrusion_depth"].to_numpy()[seized]),
+        root_depth=_median(own["intrusion_root_depth"].to_numpy()[seized]),
+        unnatural_stops=_count(own["belt_freed"].to_numpy() & stopped),
+        unnatural_passes=_count(passes),
+    )
+
+
+def _count(chosen: NDArray[np.bool_]) -> int:
+    return int(np.count_nonzero(chosen))
+
+
+def _median(values: NDArray[np.float64]) -> float:
+    return float(np.median(values)) if values.size else math.nan

@@ -1,0 +1,87 @@
+"""The stops of the seizure study as text for a terminal: why, and which runs to look at."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from crawler2d.studies.columns import aligned, mm
+from crawler2d.studies.stops import STOPS
+
+if TYPE_CHECKING:
+    from crawler2d.studies.replays import Replay
+    from crawler2d.studies.stops import Against, Stops
+
+__all__ = ["against_text", "replays_text", "stops_text"]
+
+
+def stops_text(stops: Iterable[Stops]) -> str:
+    """Write how the runs of every model ended, and what held those that stopped."""
+    rows = [
+        (
+            row.model,
+            row.obstacle,
+            *(str(n) if n else "-" for n in (row.count, row.cleared)),
+            *(str(getattr(row, name) or "-") for name in STOPS),
+            f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
+            _of_stops(row.seized, row),
+            _of_stops(row.seized_alone, row),
+            _of_stops(row.at_tips, row),
+            _of_stops(row.unnatural_stops, row),
+            str(row.unnatural_passes or "-"),
+            *("-" if math.isnan(d) else f"{1e3 * d:.1f}" for d in (row.depth, row.root_depth)),
+        )
+        for row in stops
+    ]
+    head = (
+        *("model", "obstacle", "runs", "cleared"),
+        *(name.replace("_", " ") for name in STOPS),
+        *("mechanism", "seized [%]", "alone [%]", "at tips [%]", "unnatural [%]", "passes"),
+        *("depth [mm]", "of roots [mm]"),
+    )
+    return (
+        "How the runs ended, all heights together, and of those that stopped: the commonest\n"
+        "mechanism; the shares that are seized, that are so in no tie with torque, belly or\n"
+        "friction, that are seized if the track reaches to the circumscribed circles, and that\n"
+        "are unnatural: a closed belt gets away from there.\n"
+        "Passes are unnatural ones: the belt of the same repeat did not clear. Depths are medians\n"
+        "of the edges that seized, below the circumscribed and below the root circles.\n\n"
+    ) + aligned(head, rows, left=(1, 9))
+
+
+def against_text(against: Sequence[Against]) -> str:
+    """Write gear wheels against round ones, two rows a pair, figures with their intervals."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for row in against:
+        cells = rows.setdefault((row.robot, row.model, row.wheel), [str(row.count)])
+        cells.append(f"{100 * row.rate:.0f} ({100 * row.low:.0f} to {100 * row.high:.0f})")
+    figures = dict.fromkeys(row.figure.replace("_", " ") for row in against)
+    head = ("model", "robot", "wheels", "runs", *figures)
+    obstacle = against[0].obstacle
+    return (
+        f"Gear wheels against round ones on {obstacle}s, all heights together: shares of all\n"
+        "runs [%], with Wilson's 95 % intervals. Alone: in no tie with torque, belly or friction.\n"
+        "At tips: stops that are seized if the track reaches to the circumscribed circles.\n\n"
+    ) + aligned(
+        head,
+        [(model, robot, wheel, *cells) for (robot, model, wheel), cells in rows.items()],
+        left=(1, 2),
+    )
+
+
+def replays_text(replays: Iterable[Replay], folder: str) -> str:
+    """Write which runs can be looked at, and what each says of itself."""
+    said = []
+    for replay in replays:
+        place = f"{replay.obstacle} of {mm(replay.height)} mm, repeat {replay.repeat}"
+        why = replay.sentence or replay.outcome
+        said.append(f"{folder}/{replay.file}")
+        said.append(textwrap.indent(f"{replay.model}, {place}:", "    "))
+        said += textwrap.wrap(why, 92, initial_indent="    ", subsequent_indent="    ")
+    return "Runs to look at, one a way to stop, and a belt:\n\n" + "\n".join(said)
+
+
+def _of_stops(count: int, row: Stops) -> str:
+    return f"{100 * count / row.stopped:.0f}" if row.stopped else "-"

@@ -1,0 +1,196 @@
+"""The sweeps of the seizure study: over obstacles, robots, flat ground and phases."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive
+from crawler2d.parameters.track import GearWheel, LineOfWheels
+from crawler2d.presets import terrains
+from crawler2d.presets.robots import engineer
+from crawler2d.studies.models import StudyModel, study_models
+from crawler2d.sweeps.sweep import sweep
+
+if TYPE_CHECKING:
+    import xarray
+
+    from crawler2d.parameters.robot import Robot
+    from crawler2d.parameters.terrain import Terrain
+
+__all__ = ["FULL", "QUICK", "Design", "Study", "robots_of_the_study"]
+
+# What a model of the study sets together.
+_TRACK_AND_STEP = ("robot.track", "solver.time_step")
+# [-] An estimate, as the robot's; the same everywhere.
+_FRICTION = 0.9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """How much is simulated."""
+
+    heights: Mapping[str, tuple[float, ...]]
+    """[m] By obstacle: "step", "barrier", "knife edge"."""
+    repeats: int
+    """Runs of a model on an obstacle of one height; 20 in the paper."""
+    robot_heights: tuple[float, ...]
+    """[m] Of the step that the other robots meet."""
+    robot_repeats: int
+    ride_repeats: int
+    """Runs on flat ground."""
+    phase_fractions: tuple[float, ...]
+    """[-] Of the gear wheels on flat ground."""
+
+
+FULL = Design(
+    heights={
+        "step": (0.040, 0.060, 0.075, 0.090, 0.100, 0.125, 0.150),
+        "barrier": (0.040, 0.060, 0.080, 0.100, 0.125),
+        "knife edge": (0.020, 0.040, 0.060, 0.100),
+    },
+    repeats=20,
+    robot_heights=(0.060, 0.090, 0.125),
+    robot_repeats=5,
+    ride_repeats=2,
+    phase_fractions=tuple(twelfth / 12.0 for twelfth in range(13)),
+)
+QUICK = Design(
+    heights={"step": (0.060, 0.100), "barrier": (0.060,), "knife edge": (0.040,)},
+    repeats=4,
+    robot_heights=(0.090,),
+    robot_repeats=1,
+    ride_repeats=1,
+    phase_fractions=(0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0),
+)
+
+
+def robots_of_the_study() -> dict[str, Robot]:
+    """List the robots: the preset, and what its estimates may have missed.
+
+    The centre of mass moves up with a raised arm, and forward with an arm or flippers stretched
+    out. The belly hangs lower, or is out of reach. The motors are twice as strong: a gear wheel
+    that hooks into an edge asks more of them than a round one that slides on it.
+    """
+    base = engineer(flippers=None)
+    strong = replace(base.drivetrain, max_torque=2.0 * base.drivetrain.max_torque)
+    return {
+        "preset": base,
+        "mass 20 mm up": engineer(flippers=None, center_of_mass=(0.0, 0.04)),
+        "mass 30 mm forward": engineer(flippers=None, center_of_mass=(0.03, 0.02)),
+        "belly at 20 mm": engineer(flippers=None, belly_clearance=0.020),
+        "no belly": replace(base, belly=None),
+        "torque doubled": replace(base, drivetrain=strong),
+    }
+
+
+def _obstacles(height: float) -> dict[str, Terrain]:
+    return {
+        "step": terrains.step(height, friction=_FRICTION),
+        "barrier": terrains.barrier(height, 0.1, friction=_FRICTION),
+        "knife edge": terrains.knife_edge(height, thickness=0.01, friction=_FRICTION),
+    }
+
+
+def _base() -> Scenario:
+    return Scenario(engineer(flippers=None), _obstacles(0.1)["step"], drive=Drive(speed=0.4))
+
+
+def _models() -> dict[str, StudyModel]:
+    return study_models(engineer(flippers=None).outline.axle_distance)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """What is simulated; each method runs one sweep, under the same draws.
+
+    Parameters
+    ----------
+    design : Design
+        How much.
+    base : Scenario
+        What all runs share: the Engineer without flippers, by default.
+    models : mapping of str to StudyModel
+        Those of `study_models`, by default.
+    seed : int
+        Of the draws.
+    threads : int, optional
+        See `simulate_many`.
+    progress : bool
+        Whether to show a bar.
+    """
+
+    design: Design = FULL
+    base: Scenario = field(default_factory=_base)
+    models: Mapping[str, StudyModel] = field(default_factory=_models)
+    seed: int = 0
+    threads: int | None = None
+    progress: bool = True
+
+    def on_obstacle(self, obstacle: str) -> xarray.Dataset:
+        """Run every model over one obstacle: track, height, repeat; with a belt at every stop."""
+        heights = self.design.heights[obstacle]
+        over = {**self._tracks(), "terrain.height": heights}
+        base = self.base.replace({"terrain": _obstacles(heights[0])[obstacle]})
+        return self._sweep(base, over, self.design.repeats, counterfactual=True)
+
+    def on_other_robots(self) -> xarray.Dataset:
+        """Run every model of every robot over a step: robot, track, height, repeat; with belts."""
+        over: dict[Any, Any] = {
+            "robot": robots_of_the_study(),
+            **self._tracks(),
+            "terrain.height": self.design.robot_heights,
+        }
+        return self._sweep(self.base, over, self.design.robot_repeats, counterfactual=True)
+
+    def on_the_flat(self) -> xarray.Dataset:
+        """Run every model over flat ground: track, repeat."""
+        return self._sweep(self._flat(), self._tracks(), self.design.ride_repeats)
+
+    def over_phases(self) -> xarray.Dataset:
+        """Run lines of gear wheels on the flat: robot_track_count, phase_fraction, repeat."""
+        over = {
+            "robot.track.count": [3, 4, 5],
+            "robot.track.wheel.phase_fraction": self.design.phase_fractions,
+        }
+        base = self._flat().replace({"robot.track": LineOfWheels(3, wheel=GearWheel())})
+        return self._sweep(base, over, self.design.ride_repeats)
+
+    def _flat(self) -> Scenario:
+        # Ten times the robot's acceleration: steady speed after a fifth of a second, not two.
+        acceleration = 10.0 * self.base.robot.drivetrain.max_acceleration
+        ground = terrains.flat(friction=_FRICTION)
+        return self.base.replace(
+            {"terrain": ground, "robot.drivetrain.max_acceleration": acceleration}
+        )
+
+    def _tracks(self) -> dict[Any, Any]:
+        """Sweep the models, each with the time step that it needs."""
+        default = self.base.solver.time_step
+        points = {
+            name: (model.track, model.time_step or default) for name, model in self.models.items()
+        }
+        return {_TRACK_AND_STEP: points}
+
+    def _sweep(
+        self,
+        base: Scenario,
+        over: Mapping[Any, Any],
+        repeats: int,
+        *,
+        counterfactual: bool = False,
+    ) -> xarray.Dataset:
+        table = sweep(
+            base,
+            over,
+            repeats=repeats,
+            seed=self.seed,
+            threads=self.threads,
+            progress=self.progress,
+            on_error="record",
+            counterfactual=counterfactual,
+            wall_time=True,
+        )
+        return table.rename({"track_time_step": "track"}) if _TRACK_AND_STEP in over else table

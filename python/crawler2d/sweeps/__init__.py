@@ -1,0 +1,1 @@
+"""Many variants of one scenario, and the statistics of what came out."""

@@ -1,0 +1,103 @@
+"""The runs of a sweep as an xarray data set, by cell and repeat."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.common.extras import extra
+from crawler2d.common.units import METRICS
+from crawler2d.errors import ScenarioError, SimulationDiverged
+from crawler2d.results.diagnosis import Diagnosis
+from crawler2d.runs.run import Run
+from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names
+from crawler2d.sweeps.draws import Distribution
+from crawler2d.sweeps.plan import Plan
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["NO_RESULT", "to_table"]
+
+NO_RESULT = ("diverged", "refused", "failed")
+"""Outcomes of runs without a result: the state became non-finite, a rule is broken, all else."""
+
+_Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
+
+
+def to_table(
+    axes: Sequence[Axis],
+    distributions: Mapping[str, Distribution],
+    plans: Sequence[Plan],
+    runs: Sequence[Run],
+    *,
+    seed: int,
+    with_belts: bool,
+    with_times: bool,
+) -> xarray.Dataset:
+    """Arrange what is known of the runs, which are in the order of their plans; see `sweep`.
+
+    Every column has every dimension, and none knows of other runs than its own: so tables join.
+    """
+    xr = extra("xarray", "analysis")
+    cells = [axis.name for axis in axes]
+    sizes = [len(axis.values) for axis in axes]
+    repeats = len(runs) // math.prod(sizes)
+
+    def by_run(values: list[Any], kind: type, **attributes: str) -> _Variable:
+        return [*cells, "repeat"], np.array(values, kind).reshape(*sizes, repeats), attributes
+
+    variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
+    why = [run.diagnosis for run in runs]
+    variables["mechanism"] = by_run([str((d and d.mechanism) or "") for d in why], str)
+    variables["cause"] = by_run([_cause(d) for d in why], str)
+    variables["seized_at_tips"] = by_run([bool(d and d.seized_at_tips) for d in why], bool)
+    belts = [d and d.counterfactual for d in why]
+    if with_belts:
+        distances = [belt.distance if belt else math.nan for belt in belts]
+        variables["belt_freed"] = by_run([bool(belt and belt.freed) for belt in belts], bool)
+        variables["belt_distance"] = by_run(distances, float, units="m")
+    for name in next((run.metrics for run in runs if run.error is None), {}):
+        figures = [run.metrics.get(name, math.nan) for run in runs]
+        variables[name] = by_run(figures, float, units=METRICS.get(name, ""))
+    for path, name in short_names(list(distributions)).items():
+        drawn = [plan.drawn.get(path, math.nan) for plan in plans]
+        variables[f"drawn_{name}"] = by_run(drawn, float, **field_attributes([path]))
+    if with_times:
+        times = [run.wall_time if run.error is None else math.nan for run in runs]
+        variables["wall_time"] = by_run(times, float, units="s")
+    variables["seed"] = by_run([seed] * len(runs), np.int64 if seed < 2**63 else np.uint64)
+    # Python's texts: in an array of texts each would take the room of the longest.
+    errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
+    variables["error"] = by_run([str(error) for error in errors], object)
+    texts = ["" if plan.refused else plan.scenario.to_json() for plan in plans]
+    variables["identity"] = by_run([plan.identity for plan in plans], object)
+    variables["scenario"] = by_run(texts, object)
+    dataset: xarray.Dataset = xr.Dataset(
+        variables, coords={**coordinates(axes), "repeat": np.arange(repeats)}
+    )
+    for key, variable in dataset.variables.items():
+        variable.attrs.setdefault("long_name", str(key).replace("_", " "))
+    return dataset
+
+
+def _outcome(run: Run) -> str:
+    diverged, refused, failed = NO_RESULT
+    match run.error:
+        case None:
+            return str(run.outcome)
+        case SimulationDiverged():
+            return diverged
+        case ScenarioError():
+            return refused
+        case _:  # beyond memory, or a fault of the program
+            return failed
+
+
+def _cause(why: Diagnosis | None) -> str:
+    """Write the sets of conditions, such as ``pocket or belly+torque``."""
+    return " or ".join("+".join(each) for each in why.cause) if why else ""

@@ -1,0 +1,242 @@
+"""Many variants of one scenario, repeated with small variations: a table of what came out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+from crawler2d._core import build_info, canonical
+from crawler2d.common.arrays import frozen_scalar
+from crawler2d.common.extras import extra
+from crawler2d.errors import Crawler2dError, ScenarioError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.runs.batch import simulate_passed
+from crawler2d.runs.progress import Progress
+from crawler2d.runs.recording import recording, yes_or_no
+from crawler2d.runs.threads import thread_count
+from crawler2d.sweeps.axes import Axis, read_axes
+from crawler2d.sweeps.dataset import to_table
+from crawler2d.sweeps.draws import Distribution, Variation
+from crawler2d.sweeps.plan import plan_runs
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["sweep"]
+
+OnError = Literal["raise", "record"]
+
+
+def sweep(
+    scenario: Scenario,
+    over: Mapping[Any, Any],
+    *,
+    repeats: int = 20,
+    seed: int = 0,
+    vary: Mapping[str, Distribution] | None = None,
+    counterfactual: bool = False,
+    wall_time: bool = False,
+    threads: int | None = None,
+    progress: bool | Progress | None = True,
+    on_error: OnError = "raise",
+) -> xarray.Dataset:
+    """Simulate every combination of some values, each several times with small variations.
+
+    The same repeat draws the same random numbers in every cell, so that cells compare in pairs.
+    What is drawn is written into the scenario of the run, so that every run replays alone.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all runs share.
+    over : mapping
+        From each dotted path to its values, set in this order: ``{"terrain.height": [0.05, 0.1]}``.
+        A mapping of values gives them labels: ``{"robot.track": {"belt": BeltTrack()}}``; objects
+        without are labelled by their short text. A tuple of paths sweeps them together, and takes
+        tuples of values. ``{}`` repeats the one scenario. Whole robots are swept as
+        ``{"robot": {"name": robot}}``: flippers and no flippers so, with `Robot.without_flippers`,
+        for ``robot.flippers`` set to None leaves their mass on the robot.
+    repeats : int
+        Runs a cell, 1 to 1,000,000.
+    seed : int
+        Of the draws, 0 to 2^64 - 1.
+    vary : mapping of str to distribution, optional
+        What the repeats draw, by path: `uniform` and, for whole numbers, `uniform_int` replace a
+        value, `scaled` multiplies it. None takes the variations of the notes, ``{}`` none at all.
+    counterfactual : bool
+        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
+    wall_time : bool
+        Whether to add the computing time. No two runs have the same, so that tables with it do not
+        merge where they overlap.
+    threads : int, optional
+        See `simulate_many`.
+    progress : bool or callable
+        See `simulate_many`.
+    on_error : {"raise", "record"}
+        What a run without a result does: end the sweep, before the first run if a scenario breaks a
+        rule, or stay in the table. A path that a variant lacks always ends it.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions: one an entry of `over`, and `repeat`. A dimension has the last name of its path,
+        or the whole path with underscores where another path or a column of the table or of `rate`
+        is so called: ``robot.track.count`` is `robot_track_count`. That of a tuple joins the last
+        names of its paths, whose numbers are further coordinates. Every column has every dimension.
+
+        - `outcome`, and `error` where there is none: `diverged`, `refused` by a rule, or `failed`
+          for want of memory or by a fault of the program;
+        - `mechanism` of a stop, "" without; its `cause`, such as "pocket or belly+torque" for a tie
+          of the pocket with belly and torque together; `seized_at_tips`; with `counterfactual`,
+          `belt_freed` and `belt_distance` [m], False and nan where there was no stop;
+        - every metric of `Run.metrics`; with `wall_time`, that [s], of one thread;
+        - `scenario`, the JSON text of each run, and its `identity`;
+        - `drawn_...`, the value that was drawn for each path of `vary`, and the `seed`.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument or a scenario breaks a rule; the path begins with the cell and the repeat.
+    LimitError
+        If `threads` is out of range.
+    SimulationDiverged
+        If a state became non-finite; a note names the run.
+    BatchInterrupted
+        On Ctrl-C; its `runs`, cell by cell, keeps what was finished, and the other scenarios.
+    ImportError
+        If xarray is missing; the message names the extra to install.
+
+    Warns
+    -----
+    ScenarioWarning
+        If a cell takes the flippers off a robot and leaves their mass on it.
+
+    Notes
+    -----
+    By default the repeats draw
+
+    - `start.approach`: uniform over a quarter of the axle distance about the scenario's own value,
+      and never below 0: the wheel spacing of a line of five;
+    - `start.track_phase`: uniform over one grouser pitch;
+    - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. Lanes have no
+      friction of their own, and keep theirs.
+
+    Distances are those of `scenario`, the same for every cell. Where approach or phase are swept,
+    they are not drawn. A draw that breaks a rule, such as a speed beyond the largest of the
+    drivetrain, is dropped: the run keeps the cell's own value.
+
+    The number drawn for a path depends on seed, repeat and path alone. Another path in `vary`, more
+    repeats or other cells leave it as it is, and equal runs have equal rows. So xarray joins the
+    tables of one design: `xarray.merge` those with other cells or more repeats, `xarray.concat`
+    along `repeat` those with another seed, where draws are told apart by `seed` and `repeat`
+    together. What is in neither table is missing in the joined one, and `rate` does not count it.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
+    >>> models = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
+    >>> table = c2d.sweep(base, {"robot.track": models}, repeats=2, progress=False)
+    >>> table.outcome.values.tolist()
+    [['cleared', 'cleared'], ['stalled', 'stalled']]
+
+    Any run replays alone, with its history.
+
+    >>> text = table.scenario.sel(track="belt", repeat=1).item()
+    >>> run = c2d.simulate(c2d.Scenario.from_json(text))
+    >>> run.metrics["final_x"] == table.final_x.sel(track="belt", repeat=1).item()
+    True
+
+    More repeats of the belt, and then more under another seed:
+
+    >>> import xarray as xr
+    >>> belt = {"robot.track": {"belt": c2d.BeltTrack()}}
+    >>> more = c2d.sweep(base, belt, repeats=3, progress=False)
+    >>> merged = xr.merge([table, more], join="outer", compat="no_conflicts")
+    >>> c2d.rate(merged)["count"].values.tolist()
+    [3, 2]
+    >>> other = c2d.sweep(base, belt, repeats=2, seed=1, progress=False)
+    >>> joined = xr.concat([more, other], "repeat")
+    >>> joined.seed.values.tolist(), c2d.rate(joined)["count"].item()
+    ([[0, 0, 0, 1, 1]], 5)
+    """
+    return tabulate(
+        scenario,
+        read_axes(over),
+        repeats=repeats,
+        seed=seed,
+        vary=vary,
+        counterfactual=counterfactual,
+        wall_time=wall_time,
+        threads=threads,
+        progress=progress,
+        on_error=on_error,
+    )
+
+
+def tabulate(
+    scenario: Scenario,
+    axes: Sequence[Axis],
+    *,
+    repeats: int,
+    seed: int,
+    vary: Mapping[str, Distribution] | None,
+    counterfactual: bool,
+    wall_time: bool,
+    threads: int | None,
+    progress: bool | Progress | None,
+    on_error: OnError,
+) -> xarray.Dataset:
+    """Run a sweep over axes that have been read; see `sweep`."""
+    extra("xarray", "analysis")  # a missing package is found before the runs
+    if not isinstance(scenario, Scenario):
+        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    if on_error not in ("raise", "record"):
+        raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    with_times = yes_or_no(wall_time, "wall_time")
+    recorded = (*recording(0.01, "summary"), yes_or_no(counterfactual, "counterfactual"))
+    count = thread_count(threads)
+    repeats = _whole(repeats, "repeats", 1, 10**6)
+    seed = _whole(seed, "seed", 0, 2**64 - 1)
+    canonical(scenario.to_json())
+    variation = Variation.of(scenario, vary, [path for axis in axes for path in axis.paths])
+    plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed)
+    if on_error == "raise":
+        _raise_first(plan.refused for plan in plans)
+    runs = simulate_passed(
+        [plan.scenario for plan in plans],
+        [plan.checked for plan in plans],
+        recorded,
+        threads=count,
+        progress=progress,
+    )
+    for plan, run in zip(plans, runs, strict=True):
+        if run.error is not None and plan.refused is None:
+            run.error.add_note(f"in {plan.place}")
+    if on_error == "raise":
+        _raise_first(run.error for run in runs)
+    dataset = to_table(
+        axes,
+        variation.distributions,
+        plans,
+        runs,
+        seed=seed,
+        with_belts=counterfactual,
+        with_times=with_times,
+    )
+    provenance = {"scenario": scenario.to_json(), "vary": str(variation.distributions)}
+    builds = {f"build_{name}": value for name, value in build_info().items()}
+    return dataset.assign_attrs(provenance, **builds)
+
+
+def _raise_first(errors: Iterable[Crawler2dError | None]) -> None:
+    for error in errors:
+        if error is not None:
+            raise error
+
+
+def _whole(value: object, path: str, least: int, most: int) -> int:
+    number = frozen_scalar(value, whole=True)
+    if type(number) is not int or not least <= number <= most:
+        raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")
+    return number

@@ -1,6 +1,0 @@
-"""A run to look at: one HTML page that replays it, alone or inside a notebook."""
-
-from crawler2d.viewer.page import replay_page
-from crawler2d.viewer.words import embedded
-
-__all__ = ["embedded", "replay_page"]

@@ -1,0 +1,246 @@
+//! The door: a scenario that passes it can be run, and comes out with what was built to know so.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::needs;
+use crate::error::Error;
+use crate::geometry::Vector;
+use crate::robot::{Model, Part, start_position};
+use crate::scenario::{Doubt, Scenario, ScenarioError, parse};
+use crate::terrain::Ground;
+
+/// Bytes of the longest text that is read: three lanes of the most points that there can be take half of it.
+const LONGEST_TEXT: usize = 64 << 20;
+
+/// A scenario that keeps every rule, with the robot on its ground as it was built to check that.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    scenario: Scenario,
+    ground: Arc<Ground>,
+    model: Arc<Model>,
+    position: Vector,
+    doubts: Vec<Doubt>,
+}
+
+/// Whether a text is not too long to be read.
+///
+/// # Errors
+/// It is, or more than memory holds.
+fn check_text(text: &str) -> Result<(), Error> {
+    if text.len() > LONGEST_TEXT {
+        let rule = format!("must be at most {} MiB of JSON", LONGEST_TEXT >> 20);
+        let value = format!("{} MiB", text.len() >> 20);
+        return Err(ScenarioError::new("scenario", value, rule).into());
+    }
+    Ok(needs::ask_for_text(text)?)
+}
+
+impl Checked {
+    /// Reads and checks a scenario.
+    ///
+    /// # Errors
+    /// The first broken rule, with the path of its field; a text or a ground beyond what memory holds.
+    pub fn from_json(text: &str) -> Result<Self, Error> {
+        Self::from_json_like(text, None)
+    }
+
+    /// The same; a robot or a ground that is equal to that of another scenario is not built again.
+    ///
+    /// # Errors
+    /// As [`Self::from_json`].
+    pub fn from_json_like(text: &str, other: Option<&Self>) -> Result<Self, Error> {
+        check_text(text)?;
+        Self::of_value(&parse(text)?, other)
+    }
+
+    /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
+    ///
+    /// # Errors
+    /// As [`Self::from_json`].
+    pub fn new(scenario: &Scenario) -> Result<Self, Error> {
+        let value = serde_json::to_value(scenario)
+            .unwrap_or_else(|e| unreachable!("plain data serialises: {e}"));
+        Self::of_value(&value, None)
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// Its ground.
+    pub fn ground(&self) -> &Arc<Ground> {
+        &self.ground
+    }
+
+    /// Its robot, on that ground.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// [m] Where the chassis frame is at time 0.
+    pub(crate) fn position(&self) -> Vector {
+        self.position
+    }
+
+    /// What is legal in it but unlikely to be meant.
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
+    }
+
+    fn of_value(value: &Value, other: Option<&Self>) -> Result<Self, Error> {
+        let scenario = Scenario::read(value)?;
+        let robot = &scenario.robot;
+        scenario.drive.check(&robot.drivetrain)?;
+        scenario.solver.check(robot)?;
+        let twin = other.filter(|other| other.scenario.robot == *robot);
+        let built = match twin {
+            None => Some(Model::new(robot)?),
+            Some(_) => None,
+        };
+        let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
+        check_sizes(&scenario, lumped.map_or(&[], |model| &model.parts))?;
+        let ground = match other.filter(|other| other.has_ground_of(&scenario)) {
+            Some(other) => Arc::clone(&other.ground),
+            None => {
+                needs::ask_for_ground(&scenario.terrain)?;
+                Arc::new(Ground::new(&scenario.terrain, robot.gauge)?)
+            }
+        };
+        let model = match (built, twin) {
+            (Some(model), _) => Arc::new(model.placed_on(&ground)),
+            (None, Some(twin)) if twin.ground.has_lanes_of(&ground) => Arc::clone(&twin.model),
+            _ => Arc::new(Model::on(robot, &ground)?),
+        };
+        let position = start_position(&scenario, &model, &ground)?;
+        let outline = &robot.outline;
+        let rear = position.x - 0.5 * outline.axle_distance * libm::cos(scenario.start.angle);
+        let to_goal = ground.goal_of(&scenario) + outline.rear_radius - rear;
+        let doubts = scenario.doubts(to_goal);
+        Ok(Self {
+            scenario,
+            ground,
+            model,
+            position,
+            doubts,
+        })
+    }
+
+    fn has_ground_of(&self, scenario: &Scenario) -> bool {
+        self.scenario.terrain == scenario.terrain
+            && self.scenario.robot.gauge == scenario.robot.gauge
+    }
+}
+
+impl Scenario {
+    /// Reads and checks a scenario, to change it before it runs; [`Checked`] keeps what was built.
+    ///
+    /// # Errors
+    /// As [`Checked::from_json`].
+    pub fn from_json(text: &str) -> Result<Self, Error> {
+        Checked::from_json(text).map(|checked| checked.scenario)
+    }
+}
+
+/// Rules that join the sizes of a track model's parts with speeds, time step and criteria.
+fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError> {
+    let smallest = (f64::INFINITY, f64::INFINITY);
+    let (tip, root) =
+        parts
+            .iter()
+            .flat_map(Part::discs)
+            .fold(smallest, |(tip, root), (circumscribed, inner)| {
+                (tip.min(circumscribed.radius), root.min(inner.radius))
+            });
+    let robot = &scenario.robot;
+    let rate_of_arms = robot.flippers.as_ref().map_or(0.0, |f| f.rate_limit);
+    let time_step = scenario.solver.time_step;
+    check_turn(
+        time_step,
+        "max_speed / radius",
+        robot.drivetrain.max_speed / tip,
+    )?;
+    check_turn(time_step, "robot.flippers.rate_limit", rate_of_arms)?;
+    let depth = scenario.criteria.intrusion_depth;
+    if depth >= root {
+        let rule = format!("must be below the smallest radius of the track model, {root} m");
+        return Err(ScenarioError::new("criteria.intrusion_depth", depth, rule));
+    }
+    Ok(())
+}
+
+/// What turns farther than this between two collision checks passes over corners unseen.
+fn check_turn(time_step: f64, name: &str, rate: f64) -> Result<(), ScenarioError> {
+    const FARTHEST: f64 = 0.7; // [rad]
+    let turn = rate * time_step;
+    if turn <= FARTHEST {
+        return Ok(());
+    }
+    let rule = format!("must keep {name} x time_step <= {FARTHEST} rad a step, here {turn:.3}");
+    Err(ScenarioError::new("solver.time_step", time_step, rule))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Simulation;
+    use crate::scenario::Terrain;
+
+    fn engineer() -> Scenario {
+        let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
+        Scenario::from_json(text).expect("the shared scenario is valid")
+    }
+
+    fn opened(scenario: &Scenario, like: Option<&Checked>) -> Checked {
+        Checked::from_json_like(&scenario.to_json(), like).expect("it is valid")
+    }
+
+    #[test]
+    fn a_simulation_takes_over_what_was_built_to_check_it() {
+        let checked = opened(&engineer(), None);
+        let simulation = Simulation::new(&checked);
+        assert!(std::ptr::eq(
+            simulation.ground(),
+            &raw const **checked.ground()
+        ));
+        assert_eq!(simulation.reading().position, checked.position);
+    }
+
+    #[test]
+    fn what_is_equal_in_another_scenario_is_not_built_again() {
+        let first = opened(&engineer(), None);
+        let mut variant = engineer();
+        variant.start.approach = 0.2;
+        let second = opened(&variant, Some(&first));
+        assert!(Arc::ptr_eq(&first.ground, &second.ground));
+        assert!(Arc::ptr_eq(&first.model, &second.model));
+        assert!((first.position.x - second.position.x - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_differs_is_built_for_itself_and_as_it_would_be_alone() {
+        let first = opened(&engineer(), None);
+        let (mut heavier, mut apart) = (engineer(), engineer());
+        heavier.robot.mass += 1.0;
+        let flat = |height| Terrain::Step {
+            height,
+            friction: 0.9,
+            edge_radius: 0.0,
+        };
+        apart.terrain = Terrain::Lanes {
+            left: Box::new(flat(0.05)),
+            right: Box::new(flat(0.1)),
+            middle: None,
+        };
+        for variant in [heavier, apart] {
+            let (alone, beside) = (opened(&variant, None), opened(&variant, Some(&first)));
+            assert!(!Arc::ptr_eq(&first.model, &beside.model));
+            assert_eq!(beside.position, alone.position);
+            assert_eq!(beside.model.mass.to_bits(), alone.model.mass.to_bits());
+            assert_eq!(beside.model.parts.len(), alone.model.parts.len());
+            assert_eq!(beside.ground.lanes.len(), alone.ground.lanes.len());
+        }
+    }
+}

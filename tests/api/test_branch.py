@@ -1,0 +1,230 @@
+"""The same instant with something changed, and a closed belt in the pose of a stop."""
+
+import math
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.results.findings import Counterfactual
+from crawler2d.runs.labelled import UNITS
+from tests.shared import GEAR, ROBOT
+
+WHEELS = ROBOT.with_track(c2d.LineOfWheels(4))
+SEIZING = c2d.Scenario(WHEELS, c2d.terrains.step(0.10), duration=6.0)
+GEARED = c2d.Scenario(
+    ROBOT.with_track(c2d.LineOfWheels(4, wheel=GEAR)), c2d.terrains.step(0.10), duration=4.0
+)
+CLEARING = c2d.Scenario(ROBOT, c2d.terrains.step(0.05), duration=6.0)
+
+
+@pytest.fixture(scope="module")
+def seized() -> c2d.Run:
+    return c2d.simulate(SEIZING)
+
+
+def refusal(call: Any) -> c2d.ScenarioError:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        call()
+    assert caught.value.rule.startswith("must")
+    return caught.value
+
+
+@pytest.mark.parametrize("scenario", [SEIZING, GEARED, CLEARING], ids=["line", "gears", "belt"])
+@pytest.mark.parametrize("at", [0.0, 0.51, 1.9])
+def test_a_branch_with_nothing_changed_is_the_rest_of_the_run(
+    scenario: c2d.Scenario, at: float
+) -> None:
+    run = c2d.simulate(scenario)
+    branch = run.branch(at=at, duration=2.0)
+    later = (run.time >= at - 1e-9) & (run.time <= at + 2.0 + 1e-9)
+    assert branch.time.tolist() == run.time[later].tolist()
+    of_intervals = {"drive_force", "drive_forces", "tractive_effort"}  # the first has none yet
+    for name in UNITS:
+        first = int(name in of_intervals)
+        assert np.array_equal(getattr(branch, name)[first:], getattr(run, name)[later][first:]), (
+            name
+        )
+
+
+def test_a_branch_counts_from_its_instant(seized: c2d.Run) -> None:
+    branch = seized.branch(at=1.0, duration=1.5)
+    assert branch.time[0] == 1.0
+    assert branch.metrics["time"] == branch.time[-1] == 2.5
+    assert branch.trunk == (seized.scenario, 1.0)
+    assert branch.scenario == seized.scenario.replace({"duration": 1.5})
+    way = branch.position[-1, 0] - branch.position[0, 0]
+    assert branch.metrics["distance"] == pytest.approx(way, abs=1e-12)
+    assert seized.trunk is None
+
+
+def test_a_stop_is_the_instant_of_the_diagnosis(seized: c2d.Run) -> None:
+    assert seized.diagnosis is not None
+    branch = seized.branch(duration=0.1)
+    assert branch.trunk is not None
+    assert branch.trunk[1] == branch.time[0] == seized.diagnosis.time
+    assert np.array_equal(branch.position[0], seized.position[-1])
+    assert branch.chassis_angle[0] == seized.chassis_angle[-1]
+
+
+def test_a_seized_robot_stays_seized_and_gets_away_on_a_belt(seized: c2d.Run) -> None:
+    assert seized.branch(duration=4.0).outcome is c2d.Outcome.SEIZED
+    freed = seized.branch(track=c2d.BeltTrack(), duration=4.0)
+    assert freed.outcome is c2d.Outcome.CLEARED
+    assert freed.scenario.robot.track == c2d.BeltTrack()
+    # Ground inside the belt is let out without a push: it leaves no faster than its track runs.
+    assert np.hypot(*freed.velocity.T).max() < 1.2
+    assert np.array_equal(freed.position[0], seized.position[-1])
+
+
+def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
+    """Gears that slip before a step: a smooth belt does, too, grousers take hold of its edge."""
+    gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
+    robot = c2d.robots.engineer(flippers=None, track=gears)
+    run = c2d.simulate(robot, c2d.terrains.step(0.10, friction=0.7))
+    smooth, grousers = run.counterfactual(), run.counterfactual(grousers=True)
+    assert (smooth.freed, grousers.freed) == (False, True)
+
+
+def test_a_belt_with_grousers_does_as_the_same_belt_does() -> None:
+    """Where it is the track itself, there is nothing that could get away."""
+    robot = c2d.robots.engineer(flippers=None, track=c2d.GrouserBeltTrack())
+    run = c2d.simulate(robot, c2d.terrains.step(0.25))
+    belt = run.counterfactual(grousers=True)
+    assert not belt.freed
+    assert belt.distance < 0.01
+
+
+def test_a_track_without_grousers_is_not_compared_with_grousers(seized: c2d.Run) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"robot\.track must have grousers"):
+        seized.counterfactual(grousers=True)
+
+
+def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
+    slippery = seized.branch(at=0.5, friction=0.05, duration=3.0)
+    assert slippery.scenario.terrain == c2d.terrains.step(0.10, friction=0.05)
+    assert slippery.outcome is c2d.Outcome.SLIPPING
+    backwards = seized.branch(drive=c2d.Drive(speed=-0.4), duration=3.0)
+    assert backwards.metrics["distance"] < -0.3
+    standing = seized.branch(drive=c2d.Drive(speed=0.0), duration=3.0)
+    assert standing.outcome is c2d.Outcome.TIMED_OUT
+    assert abs(standing.metrics["distance"]) < 0.1
+
+
+def test_a_branch_can_keep_its_summary_alone(seized: c2d.Run) -> None:
+    whole = seized.branch(at=1.0, duration=1.0, sample_interval=0.05)
+    assert np.diff(whole.time) == pytest.approx(0.05)
+    summary = seized.branch(at=1.0, duration=1.0, record="summary")
+    assert (summary.outcome, summary.metrics) == (whole.outcome, whole.metrics)
+    with pytest.raises(AttributeError, match="record='summary'"):
+        _ = summary.time
+
+
+def test_a_run_that_was_pickled_or_summarised_branches_alike(seized: c2d.Run) -> None:
+    summary = c2d.simulate(SEIZING, record="summary")
+    ends = [
+        each.branch(track=c2d.BeltTrack(), duration=1.0).position[-1].tolist()
+        for each in (seized, summary, pickle.loads(pickle.dumps(seized)))
+    ]
+    assert ends[0] == ends[1] == ends[2]
+
+
+def test_a_branch_survives_pickling_with_its_trunk(seized: c2d.Run) -> None:
+    branch = seized.branch(at=1.0, duration=0.1)
+    twin = pickle.loads(pickle.dumps(branch))
+    assert twin.trunk == branch.trunk
+    assert twin.metrics == branch.metrics
+
+
+@pytest.mark.parametrize("at", [-1, 6.1, 1e9, math.nan, math.inf, None, "stopp", "", True, 1j, [1]])
+def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None:
+    for call in (seized.branch, seized.counterfactual):
+        error = refusal(lambda call=call: call(at=at))
+        assert error.path == "at"
+        end = seized.metrics["time"]
+        assert error.rule == f'must be "stop" or a time from 0 to {end:.6g} s'
+
+
+def test_a_run_that_did_not_stop_has_no_stop_to_branch_at() -> None:
+    run = c2d.simulate(CLEARING, record="summary")
+    for call in (run.branch, run.counterfactual):
+        error = refusal(call)
+        assert (error.path, error.value) == ("at", "stop")
+        assert "did not end in a stop" in error.rule
+    assert run.branch(at=1.0, duration=0.1).outcome is c2d.Outcome.TIMED_OUT
+    assert run.counterfactual(at=1.0).freed
+
+
+def test_a_branch_is_not_branched_again(seized: c2d.Run) -> None:
+    branch = seized.branch(at=1.0, duration=0.5)
+    for call in (branch.branch, branch.counterfactual):
+        error = refusal(lambda call=call: call(at=1.2))
+        assert error.path == "run"
+        assert "branch the run it came from" in error.rule
+
+
+def test_a_run_without_a_result_is_not_branched() -> None:
+    wrong = SEIZING.replace({"terrain.height": -1.0})
+    (refused,) = c2d.simulate_many([wrong], on_error="record")
+    diverged = c2d.Run(SEIZING, {}, c2d.SimulationDiverged("chassis is not finite"))
+    for run, why in ((refused, "terrain.height must be > 0 m"), (diverged, "not finite")):
+        for call in (run.branch, run.counterfactual):
+            for at in ("stop", 0.0):
+                error = refusal(lambda call=call, at=at: call(at=at))
+                assert error.path == "run"
+                assert why in error.rule
+
+
+@pytest.mark.parametrize(
+    ("changes", "path"),
+    [
+        ({"track": "belt"}, "robot.track"),
+        ({"track": c2d.BeltTrack}, "robot.track"),
+        ({"track": ROBOT}, "robot.track"),
+        ({"track": c2d.LineOfWheels(1)}, "robot.track.count"),
+        ({"friction": -0.1}, "terrain.friction"),
+        ({"friction": math.nan}, "terrain.friction"),
+        ({"friction": "0.5"}, "terrain.friction"),
+        ({"drive": 0.4}, "drive"),
+        ({"drive": c2d.Drive(speed=9.0)}, "drive.speed"),
+        ({"duration": -1.0}, "duration"),
+        ({"duration": math.inf}, "duration"),
+        ({"sample_interval": 0.0}, "sample_interval"),
+        ({"record": "all"}, "record"),
+    ],
+)
+def test_an_impossible_change_is_refused_by_name(
+    seized: c2d.Run, changes: dict[str, Any], path: str
+) -> None:
+    assert refusal(lambda: seized.branch(at=1.0, **changes)).path == path
+
+
+def test_the_friction_of_lanes_is_not_one_value() -> None:
+    step = c2d.terrains.step(0.05)
+    scenario = c2d.Scenario(ROBOT, c2d.terrains.lanes(step, step, middle=step), duration=0.5)
+    run = c2d.simulate(scenario, record="summary")
+    error = refusal(lambda: run.branch(at=0.2, friction=0.5))
+    assert error.path == "terrain.friction"
+    assert "left, right, middle" in error.rule
+
+
+def test_a_belt_is_tried_on_demand_as_with_the_run(seized: c2d.Run) -> None:
+    with_it = c2d.simulate(SEIZING, record="summary", counterfactual=True).diagnosis
+    assert with_it is not None
+    found = seized.counterfactual()
+    assert isinstance(found, Counterfactual)
+    assert found == with_it.counterfactual
+    assert found.freed
+    assert found.outcome is c2d.Outcome.CLEARED
+    assert seized.diagnosis is not None
+    assert found == seized.counterfactual(at=seized.diagnosis.time)
+
+
+def test_a_belt_is_given_the_time_of_the_criteria() -> None:
+    hasty = SEIZING.replace({"criteria.escape_time": 0.02})
+    found = c2d.simulate(hasty, record="summary").counterfactual()
+    assert (found.freed, found.time) == (False, math.inf)
+    far = SEIZING.replace({"criteria.escape_distance": 5.0})
+    assert not c2d.simulate(far, record="summary").counterfactual().freed

@@ -1,0 +1,191 @@
+"""Doubts: a scenario that is legal but hardly meant is simulated, and a warning names the field."""
+
+import math
+import pickle
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.parameters.track import Track
+from tests.shared import ROBOT, VARIANTS, with_flippers
+
+ARMED = c2d.robots.engineer(track=c2d.BeltTrack())
+STEP = c2d.terrains.step(0.05)
+HIGH = Scenario(ROBOT, c2d.terrains.step(75.0), duration=0.05)
+
+
+def line(radius: float) -> c2d.LineOfWheels:
+    return c2d.LineOfWheels(3, wheel_radius=radius)
+
+
+def placed(x: float, y: float, radius: float) -> c2d.HybridWheels:
+    return c2d.HybridWheels(((0.0, 0.0, 0.06), (x, y, radius)))
+
+
+def hold(angle: float) -> Scenario:
+    return Scenario(ARMED, STEP, drive=c2d.Drive(gait=c2d.Hold(angle)))
+
+
+def on(track: Track) -> Scenario:
+    return Scenario(ROBOT.with_track(track), STEP)
+
+
+def over(terrain: Terrain) -> Scenario:
+    return Scenario(ROBOT, terrain)
+
+
+LANES = c2d.terrains.lanes(c2d.terrains.step(0.03), c2d.terrains.step(5.0))
+DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
+    "a step of 75 m": (HIGH, "terrain.height", 75.0),
+    "a barrier in centimetres": (over(c2d.terrains.barrier(5.0, 0.05)), "terrain.height", 5.0),
+    "stairs in centimetres": (over(c2d.terrains.stairs(rise=18.0)), "terrain.rise", 18.0),
+    "a trench in centimetres": (over(c2d.terrains.gap(8.0)), "terrain.width", 8.0),
+    "a pipe in centimetres": (over(c2d.terrains.half_round(5.0)), "terrain.radius", 5.0),
+    "one lane of two": (over(LANES), "terrain.right.height", 5.0),
+    "huge wheels": (on(line(0.5)), "robot.track.wheel_radius", 0.5),
+    "a huge placed wheel": (on(placed(0.1, 0.0, 0.5)), "robot.track.placements[1][2]", 0.5),
+    "a wheel beside the robot": (on(placed(18.0, 0.0, 0.06)), "robot.track.placements[1][0]", 18.0),
+    "an angle in degrees": (hold(5.0), "drive.gait.angle", 5.0),
+    "an angle in degrees, later": (
+        Scenario(ARMED, STEP, drive=c2d.Drive(gait=c2d.Hold(0.5, ((1.0, -6.0),)))),
+        "drive.gait.schedule[0][1]",
+        -6.0,
+    ),
+    "a climb in degrees": (
+        Scenario(ARMED, STEP, drive=c2d.Drive(gait=c2d.Climb(reach_angle=6.0))),
+        "drive.gait.reach_angle",
+        6.0,
+    ),
+    "a goal out of reach": (Scenario(ROBOT, STEP, goal=50.0), "goal", 50.0),
+    "ground that is too long": (over(c2d.terrains.flat(length=50.0)), "duration", 15.0),
+    "an approach out of reach": (
+        Scenario(ROBOT, STEP, start=c2d.Start(approach=50.0)),
+        "start.approach",
+        50.0,
+    ),
+    "a centre of mass in millimetres": (
+        Scenario(replace(ROBOT, center_of_mass=(0.0, 20.0)), STEP),
+        "robot.center_of_mass[1]",
+        20.0,
+    ),
+    "a moment of inertia in another unit": (
+        Scenario(replace(ROBOT, moment_of_inertia=440.0), STEP),
+        "robot.moment_of_inertia",
+        440.0,
+    ),
+    "gravity in centimetres": (Scenario(ROBOT, STEP, gravity=981.0), "gravity", 981.0),
+}
+
+
+def doubts(call: Callable[[], object]) -> list[c2d.ScenarioWarning]:
+    """Return what a call warns of, each at the line of this file."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    assert all(each.filename == __file__ for each in caught)
+    messages = [each.message for each in caught]
+    assert all(isinstance(each, c2d.ScenarioWarning) for each in messages)
+    return messages  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize("name", DOUBTFUL)
+def test_what_nobody_means_is_doubted_by_its_path(name: str) -> None:
+    scenario, path, value = DOUBTFUL[name]
+    found = {doubt.path: doubt for doubt in doubts(scenario.validate)}
+    assert found[path].value == value
+    assert str(found[path]) == f"{path} {found[path].reason}, got {value}"
+
+
+def test_a_tip_radius_that_wheels_of_their_own_radius_overrule_is_doubted() -> None:
+    # On the arms' own model, and where they take the robot's.
+    arms = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=0.06))
+    assert arms.flippers is not None
+    tip = arms.flippers.tip_radius
+    inherited = with_flippers(c2d.LineOfWheels(5, wheel_radius=0.06))
+    for robot, path in ((arms, "robot.flippers.track"), (inherited, "robot.track")):
+        (doubt,) = doubts(Scenario(robot, STEP).validate)
+        assert (doubt.path, doubt.value) == ("robot.flippers.tip_radius", tip)
+        assert f"{path}.wheel_radius = 0.06 m" in doubt.reason
+    as_built = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(5, wheel_radius=tip))
+    of_both = with_flippers(c2d.LineOfWheels(5))
+    for robot in (as_built, of_both):
+        assert not doubts(Scenario(robot, STEP).validate)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_what_is_usual_is_not_doubted(name: str) -> None:
+    assert not doubts(VARIANTS[name].validate)
+
+
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        Scenario(ROBOT, c2d.terrains.step(1.0)),
+        Scenario(ROBOT, c2d.terrains.flat(), duration=0.5),
+        Scenario(ROBOT, c2d.terrains.flat(), duration=4.0),
+        Scenario(ROBOT, STEP, goal=50.0, duration=0.5),
+        Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=0.0)),
+        Scenario(ROBOT, STEP, goal=50.0, drive=c2d.Drive(speed=-0.4)),
+        Scenario(ROBOT, STEP, goal=-50.0),
+        Scenario(ROBOT, STEP, goal=5.0),
+        hold(math.pi),
+        on(line(0.12)),
+        on(line(0.01)),
+    ],
+)
+def test_what_may_well_be_meant_is_not_doubted(scenario: Scenario) -> None:
+    assert not doubts(scenario.validate)
+
+
+CALLS: dict[str, Callable[[], object]] = {
+    "validate": HIGH.validate,
+    "simulate": lambda: c2d.simulate(HIGH),
+    "simulate a robot": lambda: c2d.simulate(ROBOT, c2d.terrains.step(75.0), duration=0.05),
+    "simulate_many": lambda: c2d.simulate_many(
+        [HIGH.replace({"terrain.height": height}) for height in (75.0, 80.0, 75.0)]
+    ),
+    "Simulation": lambda: c2d.Simulation(HIGH),
+    "sweep": lambda: c2d.sweep(
+        HIGH, {"terrain.height": [0.05, 60.0, 75.0]}, repeats=3, progress=False
+    ),
+    "compare": lambda: c2d.compare(
+        HIGH, {"belt": c2d.BeltTrack(), "wheels": c2d.LineOfWheels(4)}, repeats=2, progress=False
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_call_tells_a_doubt_once_at_the_line_of_the_caller(name: str) -> None:
+    (doubt,) = doubts(CALLS[name])
+    assert doubt.path == "terrain.height"
+
+
+def test_what_only_reads_and_writes_tells_no_doubt() -> None:
+    def read_and_write() -> None:
+        scenario = Scenario.from_json(HIGH.to_json()).replace({"duration": 0.01})
+        assert scenario.identity
+        ROBOT.with_track(line(0.5)).wheels()
+
+    assert not doubts(read_and_write)
+
+
+def test_a_doubt_that_is_made_an_error_comes_before_the_run() -> None:
+    asked: list[int] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", c2d.ScenarioWarning)
+        with pytest.raises(c2d.ScenarioWarning, match=r"terrain\.height is usually at most"):
+            c2d.simulate_many([HIGH], progress=lambda done, _: asked.append(done))
+    assert not asked
+
+
+def test_a_doubt_survives_pickling() -> None:
+    doubt = c2d.ScenarioWarning("terrain.height", 75.0, "is usually at most 1.5 m")
+    twin: Any = pickle.loads(pickle.dumps(doubt))
+    assert vars(twin) == vars(doubt)
+    assert str(twin) == "terrain.height is usually at most 1.5 m, got 75.0"

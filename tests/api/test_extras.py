@@ -1,0 +1,123 @@
+"""Optional packages: missing ones are told from those whose import fails or was interrupted."""
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from crawler2d.common.extras import extra
+from crawler2d.runs.progress import reporter
+
+# Its second half cannot be loaded twice, as that of many a compiled package.
+HALF = """
+import sys
+import halved.core
+if not hasattr(sys, "_halved_core"):
+    sys._halved_core = True
+    raise KeyboardInterrupt
+raise {error}
+"""
+
+INTERRUPTED = """
+import os, signal
+os.kill(os.getpid(), signal.SIGINT)
+for _ in range(1000):
+    pass  # the answer to the signal would come here
+whole = True
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder that packages are imported from, forgotten afterwards."""
+    monkeypatch.syspath_prepend(tmp_path)
+    known = set(sys.modules)
+    yield tmp_path
+    for name in set(sys.modules) - known:
+        del sys.modules[name]
+    vars(sys).pop("_halved_core", None)
+
+
+def package(folder: Path, text: str) -> None:
+    (folder / "halved").mkdir()
+    (folder / "halved" / "core.py").touch()
+    (folder / "halved" / "__init__.py").write_text(text)
+
+
+def test_a_package_that_is_not_there_names_its_extra() -> None:
+    with pytest.raises(ImportError, match=r"^this needs halved: pip install crawler2d\[half\]$"):
+        extra("halved.core", "half")
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        'ImportError("cannot load module more than once per process")',
+        "AttributeError(\"partially initialized module 'halved' has no attribute 'core'\")",
+        'ModuleNotFoundError("No module named \'other\'", name="other")',
+    ],
+)
+def test_a_package_that_was_imported_by_half_is_not_called_missing(
+    folder: Path, error: str
+) -> None:
+    package(folder, HALF.format(error=error))
+    with pytest.raises(KeyboardInterrupt):
+        extra("halved", "half")
+    with pytest.raises(ImportError) as caught:
+        extra("halved", "half")
+    kind, _, rest = error.partition("(")
+    assert f"halved is installed, but its import failed: {kind}: " in str(caught.value)
+    assert rest[1:20] in str(caught.value)
+    assert "pip install" not in str(caught.value)
+    assert type(caught.value.__cause__).__name__ == kind
+    assert caught.value.name == "halved"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to itself")
+def test_ctrl_c_during_an_import_is_answered_after_it(folder: Path) -> None:
+    package(folder, INTERRUPTED)
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        extra("halved", "half")
+    assert sys.modules["halved"].whole
+    assert extra("halved", "half") is sys.modules["halved"]
+    assert signal.getsignal(signal.SIGINT) is before
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to itself")
+def test_ctrl_c_that_is_ignored_stays_ignored(folder: Path) -> None:
+    package(folder, INTERRUPTED)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert extra("halved", "half").whole
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_another_thread_may_import(folder: Path) -> None:
+    package(folder, "whole = True")
+    found: list[bool] = []
+    thread = threading.Thread(target=lambda: found.append(extra("halved", "half").whole))
+    thread.start()
+    thread.join()
+    assert found == [True]
+
+
+def test_progress_is_a_line_where_the_import_of_tqdm_fails(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "tqdm").mkdir()
+    (folder / "tqdm" / "__init__.py").write_text("raise AttributeError('half')")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tqdm"]:
+        monkeypatch.delitem(sys.modules, name)
+    with reporter(True, 1) as callback:
+        assert callback is not None
+        callback(1, 1)
+    assert capsys.readouterr().err.startswith("1 of 1 runs")

@@ -1,0 +1,331 @@
+"""A run: its arrays, tables and ways out."""
+
+import copy
+import json
+import math
+import pickle
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.common.table import Table
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.runs.labelled import UNITS
+from tests.shared import ROBOT
+
+
+def test_the_arrays_share_their_samples(run: c2d.Run) -> None:
+    n = run.time.size
+    assert n > 100
+    for name in UNITS:
+        assert getattr(run, name).shape[0] == n
+        assert getattr(run, name).dtype == np.float64
+        assert np.isfinite(getattr(run, name)).all()
+    assert run.position.shape == run.velocity.shape == (n, 2)
+    assert run.drive_speeds.shape == run.drive_positions.shape == run.drive_forces.shape == (n, 1)
+    assert run.drive_positions[:, 0].tolist() == run.track_position.tolist()
+
+
+def test_samples_lie_the_interval_apart_and_end_with_the_run(scenario: Scenario) -> None:
+    run = c2d.simulate(scenario, sample_interval=0.025)
+    steps = np.diff(run.time)
+    assert run.time[0] == 0.0
+    assert steps[:-1] == pytest.approx(0.025)
+    assert 0.0 < steps[-1] <= 0.025 + 1e-9
+    assert run.time[-1] == pytest.approx(run.metrics["time"])
+
+
+def test_the_metrics_agree_with_the_arrays(run: c2d.Run) -> None:
+    assert run.outcome is c2d.Outcome.CLEARED
+    assert run.metrics["time"] == run.time[-1]
+    assert run.metrics["final_x"] == run.position[-1, 0]
+    assert run.metrics["final_y"] == run.position[-1, 1]
+    assert run.metrics["final_angle"] == run.chassis_angle[-1]
+    assert run.metrics["time_to_clear"] < run.metrics["time"]
+    assert run.wall_time > 0.0
+
+
+def test_wheels_of_their_own_servos_have_a_column_each() -> None:
+    robot = ROBOT.with_track(c2d.LineOfWheels(4))
+    scenario = Scenario(robot, c2d.terrains.flat(), duration=0.5)
+    run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": "wheel"}))
+    assert run.drive_forces.shape[1] == run.drive_speeds.shape[1] == 4
+    assert run.drive_forces.sum(axis=1) == pytest.approx(run.drive_force)
+
+
+def test_free_wheels_have_a_column_each_after_the_motor() -> None:
+    robot = ROBOT.with_track(c2d.ForceTrack(support="wheels", wheel_count=3))
+    run = c2d.simulate(robot, c2d.terrains.flat(), duration=2.0)
+    assert run.drive_positions.shape == (run.time.size, 4)
+    rolled = run.drive_positions[-1] - run.drive_positions[0]
+    assert rolled == pytest.approx(run.metrics["distance"], rel=1e-3)
+    assert np.all(run.drive_forces[:, 1:] == 0.0)
+    assert run.drive_forces[:, 0].tolist() == run.drive_force.tolist()
+
+
+def test_a_drive_starts_at_the_phase_of_the_track() -> None:
+    scenario = Scenario(ROBOT, c2d.terrains.flat(), duration=0.5)
+    run = c2d.simulate(scenario.replace({"start.track_phase": 0.03}))
+    assert run.drive_positions[0].tolist() == [0.03]
+    travelled = run.drive_positions[-1, 0] - 0.03
+    assert run.metrics["track_distance"] == pytest.approx(travelled)
+
+
+def test_on_level_ground_a_belt_goes_as_far_as_its_path_and_does_not_shake() -> None:
+    metrics = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=2.0).metrics
+    assert metrics["path_length"] == pytest.approx(metrics["distance"], rel=1e-6)
+    assert metrics["track_distance"] == pytest.approx(metrics["path_length"], rel=1e-3)
+    assert metrics["vertical_acceleration"] < 0.01
+    assert metrics["angular_velocity"] < 0.01
+
+
+@pytest.mark.filterwarnings("ignore:goal cannot be reached:crawler2d.ScenarioWarning")
+def test_up_a_ramp_the_path_is_longer_than_the_way_along_x() -> None:
+    angle = 0.3
+    scenario = Scenario(ROBOT, c2d.terrains.ramp(angle, length=5.0), duration=6.0, goal=4.0)
+    run = c2d.simulate(scenario)
+    on_slope = run.position[:, 0] > 0.3
+    x, y = np.ptp(run.position[on_slope], axis=0)
+    assert y / x == pytest.approx(math.tan(angle), rel=1e-3)
+    assert run.metrics["path_length"] > run.metrics["distance"] + 0.03
+    assert run.metrics["track_distance"] > run.metrics["path_length"]
+
+
+def test_the_angular_velocity_is_a_root_mean_square(run: c2d.Run) -> None:
+    mean = math.sqrt(np.mean(run.angular_velocity**2))
+    assert run.metrics["angular_velocity"] == pytest.approx(mean, rel=0.02)
+    acceleration = np.diff(run.velocity[:, 1]) / np.diff(run.time)
+    mean = math.sqrt(np.mean(acceleration**2))
+    assert run.metrics["vertical_acceleration"] == pytest.approx(mean, rel=0.1)
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_an_array_cannot_be_written_to(run: c2d.Run, name: str) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(run, name)[0] = 0.0
+
+
+def arrays_given_out() -> dict[str, np.ndarray[Any, Any]]:
+    """Every array of a run that ends in a stop, and of a simulation's state."""
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+    run = c2d.simulate(robot, c2d.terrains.step(0.10), start=c2d.Start(approach=0.02))
+    sim = c2d.Simulation(run.scenario)
+    state, inside = sim.state(), sim.intrusions()
+    assert run.diagnosis is not None
+    of_run = {name: getattr(run, name) for name in UNITS}
+    of_state = {name: getattr(state, name) for name in ("position", "velocity", "flipper_angles")}
+    tables = {
+        "contacts": run.contacts,
+        "edges": run.edges,
+        "events": run.events,
+        "diagnosis": run.diagnosis.contacts,
+        "state": state.contacts,
+        "intrusions": inside,
+        "wheels": robot.wheels(),
+        "pickled": pickle.loads(pickle.dumps(run)).contacts,
+    }
+    columns = {
+        f"{t}.{name}": column for t, table in tables.items() for name, column in table.items()
+    }
+    return of_run | of_state | columns
+
+
+def test_an_array_that_comes_back_cannot_be_unlocked() -> None:
+    for name, array in arrays_given_out().items():
+        assert not array.flags.writeable, name
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.flags.writeable = True
+
+
+def test_a_table_leaves_the_array_it_was_made_from_alone() -> None:
+    mine = np.zeros(3)
+    rows = np.zeros((3, 2))
+    table = Table({"own": mine, "view": rows[:, 0]})
+    mine[0] = rows[0, 0] = 1.0
+    assert table["own"].tolist() == table["view"].tolist() == [0.0, 0.0, 0.0]
+
+
+CHANGES: list[Any] = [
+    lambda metrics: metrics.__setitem__("time", 0.0),
+    lambda metrics: metrics.__delitem__("time"),
+    lambda metrics: metrics.update(time=0.0),
+    lambda metrics: metrics.setdefault("mine", 0.0),
+    lambda metrics: metrics.pop("time"),
+    lambda metrics: metrics.popitem(),
+    lambda metrics: metrics.clear(),
+    lambda metrics: metrics.__ior__({"time": 0.0}),
+]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_the_figures_of_a_run_cannot_be_changed(run: c2d.Run, change: Any) -> None:
+    before = dict(run.metrics)
+    with pytest.raises(TypeError, match="cannot be changed"):
+        change(run.metrics)
+    assert run.metrics == before
+
+
+def test_the_figures_of_a_run_are_a_dict_to_everybody_else(run: c2d.Run) -> None:
+    plain = dict(run.metrics)
+    for twin in (pickle.loads(pickle.dumps(run.metrics)), copy.deepcopy(run.metrics)):
+        assert twin == plain
+        assert type(twin) is type(run.metrics)
+    assert json.loads(json.dumps(run.metrics)) == plain
+    plain["time"] = -1.0
+    assert run.metrics != plain
+    assert run.metrics | {"time": -1.0} == plain
+
+
+def test_a_summary_has_the_same_figures_and_refuses_arrays_clearly(run: c2d.Run) -> None:
+    summary = c2d.simulate(run.scenario, record="summary")
+    assert (summary.outcome, summary.metrics) == (run.outcome, run.metrics)
+    assert len(summary.edges) == len(run.edges)
+    for name in [*UNITS, "contacts"]:
+        with pytest.raises(AttributeError, match="record='summary'"):
+            getattr(summary, name)
+    for way_out in (summary.plot, summary.to_xarray):
+        with pytest.raises(AttributeError, match="record='summary'"):
+            way_out()
+
+
+def test_a_run_survives_pickling(run: c2d.Run) -> None:
+    for twin in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+        assert repr(twin) == repr(run)
+        assert twin.scenario == run.scenario
+        assert twin.metrics == run.metrics
+        for name in UNITS:
+            assert np.array_equal(getattr(twin, name), getattr(run, name))
+        for name, column in run.contacts.items():
+            assert np.array_equal(twin.contacts[name], column)
+        with pytest.raises(ValueError, match="read-only"):
+            twin.time[0] = 1.0
+
+
+def test_the_repr_is_one_short_line(run: c2d.Run) -> None:
+    assert repr(run) == f"Run(engineer, line, step: cleared after {run.time[-1]:.2f} s)"
+
+
+def test_contacts_carry_the_weight_on_flat_ground() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), duration=1.0)
+    last = run.contacts["time"] == run.time[-1]
+    weight = ROBOT.mass * run.scenario.gravity
+    assert run.contacts["normal_force"][last].sum() == pytest.approx(weight, rel=1e-3)
+    assert run.contacts["normal_y"][last] == pytest.approx(1.0)
+    assert set(run.contacts["body_kind"]) == {1}  # belt
+
+
+def test_the_contact_table_has_the_documented_columns(run: c2d.Run) -> None:
+    assert list(run.contacts) == [
+        "time",
+        "lane",
+        "body",
+        "body_kind",
+        "segment",
+        "edge",
+        "x",
+        "y",
+        "normal_x",
+        "normal_y",
+        "normal_force",
+        "friction_force",
+        "surface_speed",
+        "penetration",
+    ]
+    assert list(run.edges) == ["id", "lane", "x", "y", "angle", "radius"]
+    assert list(run.events) == [
+        "kind",
+        "start",
+        "end",
+        "lane",
+        "edge",
+        "bodies",
+        "depth",
+        "root_depth",
+        "force",
+    ]
+
+
+def test_the_edges_are_those_of_the_step(run: c2d.Run) -> None:
+    assert run.edges["x"].tolist() == [0.0, 0.0]
+    assert run.edges["y"].tolist() == [0.0, 0.05]
+    assert run.edges["angle"] == pytest.approx([-np.pi / 2, np.pi / 2])
+    touched = run.contacts["edge"][run.contacts["edge"] >= 0]
+    assert set(touched) <= set(run.edges["id"])
+    assert touched.size > 0
+
+
+def test_a_stop_is_an_event_that_lasts_to_the_end() -> None:
+    run = c2d.simulate(ROBOT.with_track(c2d.ForceTrack()), c2d.terrains.step(0.1))
+    assert run.outcome is c2d.Outcome.STALLED
+    assert run.events["kind"].tolist() == ["stop"]
+    assert run.events["end"][0] == pytest.approx(run.time[-1])
+    length = run.events["end"][0] - run.events["start"][0]
+    assert run.metrics["stopped_time"] == pytest.approx(length)
+
+
+def test_a_table_has_columns_rows_and_a_short_repr(run: c2d.Run) -> None:
+    table = run.contacts
+    assert len(table) == table["time"].size
+    assert bool(table)
+    assert not Table({"x": []})
+    assert repr(run.edges) == "Table(2 rows: id, lane, x, y, angle, radius)"
+    with pytest.raises(KeyError):
+        table["height"]
+    with pytest.raises(ValueError, match="read-only"):
+        table["x"][0] = 0.0
+
+
+def test_a_table_shows_its_first_rows_in_a_notebook() -> None:
+    shown = Table({"<x>": list(range(25)), "bodies": [(1, 2)] * 25})._repr_html_()
+    assert shown.count("<tr>") == 1 + 10
+    assert "&lt;x&gt;" in shown
+    assert "(1, 2)" in shown
+    assert "25 rows, 10 shown" in shown
+    assert "shown" not in Table({"x": [1.5]})._repr_html_()
+
+
+def test_a_table_becomes_a_data_frame(run: c2d.Run) -> None:
+    frame = run.contacts.to_pandas()
+    assert list(frame.columns) == list(run.contacts)
+    assert frame["normal_force"].to_numpy() == pytest.approx(run.contacts["normal_force"])
+    frame.loc[0, "x"] = 7.0
+    assert run.contacts["x"][0] != 7.0
+    assert len(run.events.to_pandas()) == len(run.events)
+
+
+def test_the_data_set_has_units_and_provenance(run: c2d.Run) -> None:
+    dataset = run.to_xarray()
+    assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1}
+    assert dataset["position"].sel(axis="x").values == pytest.approx(run.position[:, 0])
+    assert {name: dataset[name].attrs["units"] for name in dataset} == {
+        name: unit
+        for name, unit in UNITS.items()
+        if name != "time" and not name.startswith(("shoe", "flipper"))
+    }
+    assert dataset.attrs["outcome"] == "cleared"
+    assert Scenario.from_json(dataset.attrs["scenario"]) == run.scenario
+    assert dataset.attrs["identity"] == run.scenario.identity
+    assert dataset.attrs["build_version"] == c2d.__version__
+
+
+def test_the_data_set_of_a_chain_has_its_shoes() -> None:
+    robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack())
+    run = c2d.simulate(c2d.Scenario(robot, c2d.terrains.flat(), duration=0.5))
+    dataset = run.to_xarray()
+    assert dataset.sizes == {"time": run.time.size, "axis": 2, "drive": 1, "shoe": 22, "pose": 3}
+    assert dataset["shoe_poses"].sel(pose="x").values == pytest.approx(run.shoe_poses[:, :, 0])
+    assert dataset["track_tension"].values == pytest.approx(run.track_tension)
+
+
+def test_a_missing_package_names_its_extra(run: c2d.Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("xarray", "pandas", "matplotlib.pyplot"):
+        monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+        run.to_xarray()
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[analysis\]"):
+        run.contacts.to_pandas()
+    with pytest.raises(ImportError, match=r"pip install crawler2d\[plot\]"):
+        run.plot()

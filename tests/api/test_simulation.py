@@ -1,0 +1,151 @@
+"""A simulation under the caller's control."""
+
+import copy
+import pickle
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+
+
+def test_steps_of_any_length_give_the_run(scenario: Scenario) -> None:
+    run = c2d.simulate(scenario, duration=1.0)
+    sim = c2d.Simulation(scenario)
+    for duration in (0.1, 0.25, 0.001, 0.0, 0.149, 0.5):
+        sim.advance(duration)
+    state = sim.state()
+    assert sim.time == state.time == run.time[-1]
+    assert np.array_equal(state.position, run.position[-1])
+    assert np.array_equal(state.velocity, run.velocity[-1])
+    assert state.chassis_angle == run.chassis_angle[-1]
+    assert state.track_position == run.track_position[-1]
+
+
+def test_a_new_simulation_stands_at_the_start(scenario: Scenario) -> None:
+    state = c2d.Simulation(scenario).state()
+    outline = scenario.robot.outline
+    nose = state.position[0] + 0.5 * outline.axle_distance + outline.front_radius
+    assert state.time == 0.0
+    assert nose == pytest.approx(-scenario.start.approach)
+    assert state.velocity.tolist() == [0.0, 0.0]
+    assert state.outcome is None
+
+
+def test_a_command_is_followed_within_the_limits_of_the_drivetrain(scenario: Scenario) -> None:
+    sim = c2d.Simulation(scenario.replace({"terrain": c2d.terrains.flat(), "drive.speed": 0.0}))
+    sim.advance(0.5)
+    assert sim.state().commanded_speed == 0.0
+    sim.command(speed=0.1)
+    sim.advance(0.25)
+    assert sim.state().commanded_speed == pytest.approx(0.05)  # 0.2 m/s^2
+    sim.command()
+    sim.advance(1.0)
+    assert sim.state().track_speed == pytest.approx(0.1, rel=1e-6)
+    sim.command(speed=-0.1)
+    sim.advance(2.0)
+    assert sim.state().velocity[0] == pytest.approx(-0.1, rel=1e-3)
+
+
+def test_an_outcome_is_reported_and_does_not_end_the_simulation(scenario: Scenario) -> None:
+    sim = c2d.Simulation(scenario)
+    sim.advance(6.0)
+    assert sim.state().outcome is c2d.Outcome.CLEARED
+    before = sim.state().position[0]
+    sim.advance(1.0)
+    assert sim.state().position[0] > before + 0.3
+
+
+def test_a_state_does_not_change_afterwards(scenario: Scenario) -> None:
+    sim = c2d.Simulation(scenario)
+    sim.advance(0.5)
+    state = sim.state()
+    x, contacts = state.position[0], len(state.contacts)
+    sim.advance(0.5)
+    assert (state.position[0], len(state.contacts)) == (x, contacts)
+    assert contacts > 0
+    with pytest.raises(ValueError, match="read-only"):
+        state.position[0] = 0.0
+
+
+@pytest.mark.parametrize("duration", [-1.0, np.nan, np.inf, 1e9, "1", None, True, 1j, [1.0]])
+def test_an_impossible_duration_is_refused(scenario: Scenario, duration: Any) -> None:
+    sim = c2d.Simulation(scenario)
+    with pytest.raises(c2d.ScenarioError) as caught:
+        sim.advance(duration)
+    assert caught.value.path == "duration"
+    half: Any = np.float32(0.5)
+    sim.advance(half)
+    assert sim.time == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("speed", [np.nan, np.inf, 1.4, -1.4, "0.1", True])
+def test_an_impossible_speed_is_refused_and_changes_nothing(scenario: Scenario, speed: Any) -> None:
+    sim, twin = c2d.Simulation(scenario), c2d.Simulation(scenario)
+    with pytest.raises(c2d.ScenarioError) as caught:
+        sim.command(speed=speed)
+    assert caught.value.path == "drive.speed"
+    sim.advance(0.5)
+    twin.advance(0.5)
+    assert np.array_equal(sim.state().position, twin.state().position)
+
+
+@pytest.mark.parametrize("wrong", ["scenario", None, c2d.robots.engineer(flippers=None)])
+def test_what_is_no_scenario_is_refused(wrong: Any) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.Simulation(wrong)
+    assert caught.value.path == "scenario"
+
+
+def test_a_broken_scenario_is_refused(scenario: Scenario) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.Simulation(scenario.replace({"robot.mass": 0.0}))
+    assert caught.value.path == "robot.mass"
+
+
+def pickled(sim: c2d.Simulation) -> c2d.Simulation:
+    twin: c2d.Simulation = pickle.loads(pickle.dumps(sim))
+    return twin
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, pickled])
+def test_a_copied_simulation_goes_its_own_way(scenario: Scenario, copied: Any) -> None:
+    sim = c2d.Simulation(scenario)
+    sim.advance(0.5)
+    before = sim.snapshot()
+    twin = copied(sim)
+    assert type(twin) is c2d.Simulation
+    assert twin.scenario == scenario
+    assert twin.snapshot() == before
+    twin.command(speed=-0.1)
+    twin.advance(0.5)
+    assert sim.snapshot() == before
+    assert sim.time == pytest.approx(0.5)
+
+
+def test_threads_take_turns_on_one_simulation(scenario: Scenario) -> None:
+    sim = c2d.Simulation(scenario)
+
+    def work() -> None:
+        for _ in range(50):
+            sim.advance(0.002)
+            sim.state()
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(timeout=60.0)
+    assert sim.time == pytest.approx(4 * 50 * 0.002)
+    whole = c2d.Simulation(scenario)
+    whole.advance(0.4)
+    assert np.array_equal(whole.state().position, sim.state().position)
+
+
+def test_the_repr_says_how_far_it_is(scenario: Scenario) -> None:
+    sim = c2d.Simulation(scenario)
+    sim.advance(0.25)
+    assert repr(sim) == "Simulation(engineer at 0.250 s)"

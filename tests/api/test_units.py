@@ -1,0 +1,45 @@
+"""Units of tables: none is missing, none contradicts the documentation."""
+
+import inspect
+import re
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.common.units import METRICS, unit_of
+from crawler2d.parameters import flippers, gaits, robot, scenario, settings, terrain, track
+from crawler2d.parameters.plain import Parameters
+
+
+def test_every_metric_has_a_unit(run: c2d.Run) -> None:
+    assert set(run.metrics) == set(METRICS)
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        ("robot.center_of_mass[0]", "m"),
+        ("terrain.left.points[3]", "m"),
+        ("terrain.points[3][1]", "m"),
+        ("robot.track.placements[0][2]", "m"),
+        ("drive.schedule[0][0]", "s"),
+        ("drive.schedule[12][1]", "m/s"),
+        ("drive.gait.schedule[0][1]", "rad"),
+        ("drive.schedule[0]", None),  # two units
+        ("drive.schedule", None),
+    ],
+)
+def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> None:
+    assert unit_of(path) == unit
+
+
+def test_units_are_those_of_the_docstrings() -> None:
+    documented: dict[str, str] = {}
+    for module in (scenario, settings, gaits, robot, flippers, terrain, track):
+        for kind in vars(module).values():
+            if inspect.isclass(kind) and issubclass(kind, Parameters):
+                text = inspect.getdoc(kind) or ""
+                for names, unit in re.findall(r"^([\w, ]+) : .*\n +\[([^\]]+)\]", text, re.M):
+                    paths = [f"{kind.place}.{name}" for name in names.split(", ")]
+                    documented |= dict.fromkeys(paths, unit.replace("-", "1"))
+    assert {path: unit_of(path) for path in documented} == documented

@@ -1,0 +1,116 @@
+"""benches/peers: the chain is one robot in both engines, closes, and its gaps are told rightly."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benches.peers import chain_crawler2d, chain_robot, chains_report
+from benches.peers.chain_robot import TEETH, ChainRobot
+from benches.peers.engine import Setting
+from crawler2d.runs.simulation import Simulation
+
+STEP = np.array([(-5.0, 0.0), (0.8, 0.0), (0.8, 0.15), (15.0, 0.15)])
+every_chain = pytest.mark.parametrize("count", TEETH)
+
+
+@every_chain
+def test_the_chain_closes_round_both_ends(count: int) -> None:
+    robot = ChainRobot(count)
+    pins = robot.pins()
+    spans = np.hypot(*(np.roll(pins, -1, axis=0) - pins).T)
+    assert len(pins) == count
+    assert spans == pytest.approx(robot.pitch)
+    # Each shoe runs on from where the last ends: once round, counter-clockwise.
+    angles = robot.shoes()[:, 2]
+    turns = np.remainder(np.diff(angles, append=angles[0]) + 1e-9, 2.0 * np.pi)
+    assert turns.sum() == pytest.approx(2.0 * np.pi)
+    assert turns.max() < 2.1 * np.pi / robot.tooth_count
+
+
+@every_chain
+def test_teeth_stand_between_lugs_and_below_the_plates(count: int) -> None:
+    robot = ChainRobot(count)
+    for tooth in robot.teeth():
+        assert np.hypot(*tooth.T).max() < robot.disc_radius() + chain_robot.DROP
+    # A lug and a tooth share a pitch at the tip of the lug.
+    reach = robot.pin_radius * np.cos(np.pi / robot.tooth_count) - robot.lug()[:, 1].max()
+    room = 2.0 * np.pi * reach / robot.tooth_count
+    assert np.ptp(robot.lug()[:, 0]) + np.ptp(robot.teeth()[0][:, 0]) < room
+
+
+@every_chain
+def test_crawler2d_has_the_same_robot(count: int) -> None:
+    robot = ChainRobot(count)
+    scenario = chain_crawler2d.scenario(robot, STEP, Setting(1e-3, 2, 30), 1.0, 0.0)
+    built = scenario.robot
+    assert built.mass == pytest.approx(19.96)
+    assert built.track_mass == pytest.approx(robot.shoe_mass * count)
+    # Both sprockets together pull as the one motor does at the pins.
+    assert 2.0 * built.drivetrain.max_torque == chain_robot.TORQUE
+    state = Simulation(scenario).state()
+    # A corner of the polygon may stand below the outline at first.
+    assert state.position == pytest.approx((0.0, robot.radius), abs=0.05 * robot.radius)
+    # The teeth count shoes of the commanded speed.
+    passed = -robot.sprocket_speed / (2.0 * np.pi) * robot.tooth_count * robot.pitch
+    assert passed == pytest.approx(scenario.drive.speed)
+
+
+def test_a_gap_is_the_distance_of_two_ends() -> None:
+    chains = pytest.importorskip("benches.peers.chains", reason="needs pymunk")
+    robot = ChainRobot(36)
+    shoes = robot.shoes()
+    assert chains.pin_gap(shoes, robot.pitch) < 1e-12
+    shoes[7, 0] += 3e-4
+    assert chains.pin_gap(shoes, robot.pitch) == pytest.approx(3e-4)
+
+
+def test_pymunks_chain_runs_and_stays_on() -> None:
+    chains = pytest.importorskip("benches.peers.chains", reason="needs pymunk")
+    place = chains.Place(ChainRobot(22), "flat")
+    run = chains.ride("pymunk", place, chains.SETTINGS["pymunk, defaults"])
+    assert run.survived
+    assert abs(run.speed_error) < 0.02
+    early = chains.ride("pymunk", place, chains.SETTINGS["pymunk, defaults"], most=1e-6)
+    assert len(early.path) < len(run.path)
+
+
+def test_the_report_says_what_is_met_and_what_is_not() -> None:
+    cell: dict[str, Any] = {"shoes": 22, "terrain": "flat", "gap": 5e-6}
+    judged = {
+        "survived": 3,
+        "count": 3,
+        "distance_gone": 3.16,
+        "speed_error": -0.004,
+        "distance": 0.003,
+    }
+    equal = {
+        "per_second": {"allowed": 0.1, "crawler2d": 0.05},
+        "found": {"allowed": "1 ms, 20 iterations"},
+        "finest": ("0.125 ms, 160 iterations", 2e-5),
+    }
+    text = chains_report.render(
+        {
+            "machine": {
+                "date": "2000-01-01",
+                "processor": "one",
+                "cores": 2,
+                "load": 0.0,
+                "system": "any",
+                "python": "3",
+                "versions": {"pymunk": "7"},
+            },
+            "wall": 60.0,
+            "side_by_side": [
+                {**cell, **judged, "engine": "crawler2d", "per_step": 3e-5},
+                {**cell, **judged, "engine": "pymunk, defaults", "per_step": 2e-5, "gap": 1e-3},
+            ],
+            "equal_gaps": [{**cell, **equal, "allowed": 2e-4}],
+            "engineer": [{"track": "22 shoes", "terrain": "flat", "per_step": 4e-5}],
+        }
+    )
+    assert "**30.0 us**<br>0.005 mm, 3/3<br>3.16 m, -0.4 %<br>3 mm off" in text
+    assert "1 ms, 20 iterations<br>100.0 ms, **2 times**" in text
+    assert "none in the grid: 0.02 mm at 0.125 ms, 160 iterations" in text
+    assert "| 22 shoes | 40.0 | 50, better 35 | yes |" in text
+    assert "costs 1.5 to 1.5 times as much; its pins open 200 to 200 times less" in text

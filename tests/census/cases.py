@@ -1,0 +1,214 @@
+"""Runs of a census without their histories, and what has to hold for them."""
+
+import collections
+import itertools
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import crawler2d as c2d
+from crawler2d.results.diagnosis import Diagnosis
+from crawler2d.results.findings import Condition, Mechanism
+from crawler2d.results.outcome import Outcome
+from tests.census.strata import Strata, drawn
+from tests.judges.judge import STOPS, Opinion, judge
+
+AT_A_TIME = 100  # histories that are held in memory
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One run of the census, without its history."""
+
+    stratum: str
+    index: int
+    track: str
+    outcome: Outcome | None
+    """None where there is no result."""
+    diagnosis: Diagnosis | None
+    lasts: bool
+    """The last stop goes on to the end."""
+    opinion: Opinion | None
+    family: str
+    """Models whose contacts are alike."""
+
+    @property
+    def name(self) -> str:
+        return f"{self.stratum}:{self.index} {self.track}"
+
+    @property
+    def opinions(self) -> tuple[str, str]:
+        """What core and judge say, where there is a stop."""
+        assert self.diagnosis is not None
+        assert self.opinion is not None
+        return (
+            f"{self.outcome}, {self.diagnosis.mechanism}",
+            f"{self.opinion.outcome}, {self.opinion.mechanism}",
+        )
+
+    @property
+    def is_hard(self) -> bool:
+        """Somebody sees loaded ground inside the track."""
+        assert self.diagnosis is not None
+        assert self.opinion is not None
+        return self.diagnosis.mechanism is not None or self.opinion.mechanism is not None
+
+
+def cases(strata: Strata, sizes: dict[str, int], share: int) -> Iterable[Case]:
+    """Every case of strata of these sizes, or as many of it as a share."""
+    for stratum, size in sizes.items():
+        scenarios = drawn(stratum, -(-size // share), strata=strata)
+        index = itertools.count()
+        while batch := list(itertools.islice(scenarios, AT_A_TIME)):
+            # One that fails is shown by its test, after all others have been looked at.
+            for run in c2d.simulate_many(batch, threads=2, on_error="record"):
+                yield case(stratum, next(index), run)
+
+
+def case(stratum: str, index: int, run: c2d.Run) -> Case:
+    """What is kept of a run."""
+    robot = run.scenario.robot
+    stops = run.events["end"][run.events["kind"] == "stop"] if len(run.events) else np.zeros(0)
+    names = [name_of(robot.track)]
+    if robot.flippers is not None:
+        arms = robot.flippers.track
+        names.append(f"arms {'' if arms is None else name_of(arms)}".strip())
+    return Case(
+        stratum=stratum,
+        index=index,
+        track=", ".join(names),
+        outcome=run.outcome,
+        diagnosis=run.diagnosis,
+        lasts=bool(len(stops) and stops.max() >= run.time[-1] - 1e-6),
+        opinion=second_opinion(run) if run.outcome in STOPS else None,
+        family=family(names),
+    )
+
+
+def name_of(track: Any) -> str:
+    """The model of a track, with the shape of its wheels or what carries it."""
+    shape = getattr(getattr(track, "wheel", None), "kind", getattr(track, "support", ""))
+    return f"{track.kind} {getattr(track, 'mechanism', shape)}".strip()
+
+
+def family(names: list[str]) -> str:
+    """Which of the names decides how contacts are: chains and gears go on as they rattle."""
+    said = " ".join(names)
+    for word, found in (
+        ("segmental", "chains"),
+        ("gear", "gears"),
+        ("round", "round wheels"),
+        ("grouser_belt", "grouser belts"),
+    ):
+        if word in said:
+            return found
+    return names[0]
+
+
+def second_opinion(run: c2d.Run) -> Opinion:
+    try:
+        return judge(run)
+    except AssertionError as error:  # a linear program without an answer
+        return Opinion(outcome=str(error), mechanism=None, imbalance=np.inf)
+
+
+def stopped(census: list[Case]) -> list[Case]:
+    return [case for case in census if case.outcome in STOPS]
+
+
+def faults_of_kind(census: list[Case]) -> list[str]:
+    """Cases without a result, or whose diagnosis is there where it should not be, or not there."""
+    wrong = []
+    for case in census:
+        d = case.diagnosis
+        rules = {
+            "result": case.outcome is not None,
+            "diagnosis": (d is not None) == (case.outcome in STOPS),
+            "lasts": d is None or case.lasts,
+            "outcome": d is None or d.outcome is case.outcome,
+        }
+        wrong += [f"{case.name}: {rule}" for rule, holds in rules.items() if not holds]
+    return wrong
+
+
+def faults_of_fields(census: list[Case]) -> list[str]:
+    """Diagnoses that contradict themselves."""
+    wrong = []
+    for case in stopped(census):
+        assert case.diagnosis is not None
+        rules = rules_of(case.diagnosis)
+        wrong += [f"{case.name}: {rule}" for rule, holds in rules.items() if not holds]
+    return wrong
+
+
+def rules_of(d: Diagnosis) -> dict[str, bool]:
+    """What has to hold in a diagnosis, and whether it does."""
+    criteria = c2d.SeizureCriteria()
+    allowed = criteria.imbalance if d.stationary else criteria.mean_imbalance
+    # A push means nothing to a state that rattles on.
+    has_escape = d.certified and d.stationary
+    shares = (d.belly_share, d.sliding_share, d.stalled_share)
+    is_seized, is_stalled = d.outcome is Outcome.SEIZED, d.stalled_share >= 0.5
+    jams = {Mechanism.INTERLOCKED, Mechanism.BLOCKED}
+    return {
+        "certified": d.certified == (d.imbalance is not None and d.imbalance <= allowed),
+        "escape force": (d.escape_force is not None) == has_escape,
+        "free escape force": (d.free_escape_force is not None) == has_escape,
+        "since": d.since < d.time,
+        "shares": all(0.0 <= share <= 1.0 + 1e-9 for share in shares),
+        "intrusion": d.mechanism is None or d.intrusion is not None,
+        "a seizure is certified": d.certified or not is_seized,
+        "a seizure is due to a pocket": is_seized == ((Condition.POCKET,) in d.cause)
+        or d.outcome is Outcome.CYCLING,
+        "a seizure has contacts in a pocket": any(d.contacts["in_pocket"]) or not is_seized,
+        "a belly hangs": d.outcome is not Outcome.HUNG_UP or d.belly_share >= criteria.belly_load,
+        "motors stall": d.outcome is not Outcome.STALLED or is_stalled,
+        "motors jam": d.mechanism not in jams or is_stalled,
+    }
+
+
+def certificates(census: list[Case]) -> tuple[list[str], dict[str, float]]:
+    """A table of imbalances, and for families at rest the share that is within the criteria."""
+    families: dict[tuple[str, bool], list[float]] = collections.defaultdict(list)
+    for case in stopped(census):
+        d = case.diagnosis
+        assert d is not None
+        found = np.inf if d.imbalance is None else d.imbalance
+        families[case.family, d.stationary].append(found)
+    lines = ["imbalance: median, 95 %, 99 %, largest; no certificate"]
+    criteria = c2d.SeizureCriteria()
+    shares = {}
+    for (name, stationary), values in sorted(families.items()):
+        allowed = criteria.imbalance if stationary else criteria.mean_imbalance
+        within = [value <= allowed for value in values]
+        figures = " ".join(f"{q:.1e}" for q in np.quantile(values, [0.5, 0.95, 0.99, 1.0]))
+        state = "stationary" if stationary else "in the mean"
+        lines.append(f"{name:13} {state:11} {len(values):5}: {figures}; {within.count(False)}")
+        if stationary:
+            shares[name] = float(np.mean(within))
+    return lines, shares
+
+
+def apart(census: list[Case]) -> list[Case]:
+    """The stops that core and judge call by different names."""
+    return [case for case in stopped(census) if case.opinions[0] != case.opinions[1]]
+
+
+def disagreements(census: list[Case]) -> list[str]:
+    """Each of them with its figures, and how many there are."""
+    hard = [case for case in stopped(census) if case.is_hard]
+    hard_apart = [case for case in apart(census) if case.is_hard]
+    lines = []
+    for case in apart(census):
+        assert case.opinion is not None
+        figures = " ".join(f"{name} {value:.3g}" for name, value in case.opinion.figures.items())
+        relaxed = " ".join(f"{value:.1e}" for value in case.opinion.relaxed)
+        core, other = case.opinions
+        lines.append(f"{case.name}: core {core}; judge {other}; closed {relaxed}; {figures}")
+    lines.append(
+        f"{len(stopped(census))} stops, {len(apart(census))} judged differently; "
+        f"of {len(hard)} with loaded ground inside {len(hard_apart)}"
+    )
+    return lines

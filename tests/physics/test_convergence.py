@@ -1,0 +1,118 @@
+"""Success rates do not move when the solver's steps are halved.
+
+Cells are chosen where the rate lies between 5 and 95 %: there a robot only just gets over, and any
+error of the discretisation shows as a shift of the rate. `make soak` runs all of them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.parameters.track import Track
+from crawler2d.sweeps.statistics import newcombe
+from tests.judges.judge import STOPS
+
+RUNS = 400
+
+GEAR = c2d.GearWheel()
+
+# Track model, friction, height of the step [m].
+CELLS: list[tuple[Track, float, float]] = [
+    (c2d.LineOfWheels(3), 0.6, 0.049),
+    (c2d.LineOfWheels(3), 0.6, 0.050),
+    (c2d.LineOfWheels(3), 0.9, 0.106),
+    (c2d.LineOfWheels(4, wheel_radius=0.365 / 6), 0.6, 0.050),
+    (c2d.LineOfWheels(4, wheel_radius=0.365 / 6), 0.9, 0.071),
+    (c2d.LineOfWheels(5), 0.6, 0.052),
+    (c2d.LineOfWheels(5), 0.6, 0.053),
+    (c2d.LineOfWheels(9), 0.6, 0.052),
+    (c2d.LineOfWheels(9), 0.6, 0.053),
+    (c2d.LineOfWheels(9), 0.9, 0.104),
+    (c2d.BeltTrack(), 0.6, 0.052),
+    (c2d.BeltTrack(), 0.6, 0.053),
+    (c2d.LineOfWheels(3, wheel=GEAR), 0.9, 0.110),
+    (c2d.LineOfWheels(3, wheel=GEAR), 0.9, 0.120),
+    (c2d.LineOfWheels(5, wheel=GEAR), 0.9, 0.090),
+    (c2d.LineOfWheels(5, wheel=GEAR), 0.9, 0.110),
+    (c2d.CircumferentialWheels(24, wheel=GEAR), 0.6, 0.050),
+    (c2d.GrouserBeltTrack(), 0.9, 0.080),
+    (c2d.GrouserBeltTrack(), 0.9, 0.090),
+]
+
+# The same with the arms in front: higher than any robot gets without.
+ON_ARMS: list[tuple[Track, float, float]] = [
+    (c2d.BeltTrack(), 0.6, 0.105),
+    (c2d.BeltTrack(), 0.9, 0.115),
+]
+
+# [s] Small gear wheels turn by a degree in a step of 1 ms, and get over far too often with it.
+FINE_STEP = 0.25e-3
+
+
+def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -> list[c2d.Run]:
+    """Runs with the same draws of approach, phase, speed and friction for every solver."""
+    has_arms = (track, friction, height) in ON_ARMS
+    robot = c2d.robots.engineer(flippers="built" if has_arms else None, track=track)
+    gait = c2d.Climb() if has_arms else None
+    scenarios = []
+    for repeat in range(RUNS):
+        draw = np.random.default_rng([0, repeat]).random(4)
+        scenarios.append(
+            c2d.Scenario(
+                robot=robot,
+                terrain=c2d.terrains.step(height, friction=friction * (0.98 + 0.04 * draw[3])),
+                drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * draw[2]), gait=gait),
+                start=c2d.Start(approach=0.05 + 0.1 * draw[0], track_phase=0.048 * draw[1]),
+                duration=12.0,
+                solver=solver,
+            )
+        )
+    return c2d.simulate_many(scenarios, record="summary")
+
+
+@pytest.mark.soak
+def test_rates_and_poses_do_not_move_when_the_steps_are_halved() -> None:
+    names = ("half the time step", "twice the substeps")
+    # One of them moves beyond its interval by chance in one of twenty such tests.
+    cells = CELLS + ON_ARMS
+    confidence = 1.0 - 0.05 / (len(names) * len(cells))
+    shifts: dict[str, list[float]] = {name: [] for name in names}
+    holds = []
+    for track, friction, height in cells:
+        solver = c2d.Solver()
+        if isinstance(track, c2d.CircumferentialWheels):
+            solver = replace(solver, time_step=FINE_STEP)
+        finer = {
+            "half the time step": replace(solver, time_step=0.5 * solver.time_step),
+            "twice the substeps": replace(solver, substeps=2 * solver.substeps),
+        }
+        base = ensemble(track, friction, height, solver)
+        cleared = sum(run.outcome == "cleared" for run in base)
+        for name, variant in finer.items():
+            runs = ensemble(track, friction, height, variant)
+            shift, low, high = newcombe(
+                sum(run.outcome == "cleared" for run in runs), RUNS, cleared, RUNS, confidence
+            )
+            apart = [
+                np.hypot(
+                    a.metrics["final_x"] - b.metrics["final_x"],
+                    a.metrics["final_y"] - b.metrics["final_y"],
+                )
+                for a, b in zip(base, runs, strict=True)
+                if a.outcome == b.outcome and a.outcome in STOPS
+            ]
+            print(
+                f"{track} friction {friction} step {height}: rate {cleared / RUNS:.3f}; "
+                f"{name} {shift:+.3f} [{low:+.3f}, {high:+.3f}], "
+                f"stopped poses within {1e3 * max(apart, default=0.0):.2f} mm"
+            )
+            shifts[name].append(shift)
+            holds.append(abs(shift) < 0.05 or low <= 0.0 <= high)
+            # Grousers keep a robot that has stopped moving to and fro.
+            turns_on = getattr(getattr(track, "wheel", None), "kind", "") == "gear"
+            assert turns_on or max(apart, default=0.0) < 1e-3
+    print({name: f"pooled {np.mean(values):+.4f}" for name, values in shifts.items()})
+    assert all(holds)
+    assert all(abs(np.mean(values)) <= 0.02 for values in shifts.values())

@@ -1,0 +1,163 @@
+"""Pictures: what is drawn where; whether it is beautiful is for people to judge."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+from matplotlib.text import Text
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from tests.pictures.reading import distance
+from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT
+
+WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
+
+
+def test_a_plot_has_a_side_view_and_three_strips(run: c2d.Run) -> None:
+    side, angle, speed, force = run.plot()
+    assert side.get_xlabel() == "x [m]"
+    assert "[deg]" in angle.get_ylabel()
+    assert "[m/s]" in speed.get_ylabel()
+    assert "[N]" in force.get_ylabel()
+    assert force.get_xlabel() == "time [s]"
+    assert "cleared" in side.get_title(loc="left")
+    side.figure.canvas.draw()
+
+
+def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
+    side = run.plot()[0]
+    left, right = side.get_xlim()
+    bottom, top = side.get_ylim()
+    x, y = run.position.T
+    assert left < x.min() < x.max() < right
+    assert bottom < y.min() < y.max() < top
+    assert side.get_aspect() == 1.0
+
+
+@pytest.mark.parametrize("name", ["$5", "a $ b $ c", "$\\frac{$", "\\$", "x_{$1^$", "100 %"])
+def test_a_name_is_no_formula(scenario: Scenario, name: str) -> None:
+    run = c2d.simulate(scenario.replace({"robot.name": name, "duration": 0.1}))
+    side = run.plot()[0]
+    side.figure.canvas.draw()
+    title = next(text for text in side.findobj(Text) if text.get_text().startswith(name))
+    assert not title.get_parse_math()
+
+
+def test_one_axes_takes_the_side_view_alone(run: c2d.Run) -> None:
+    _, ax = plt.subplots()
+    assert run.plot([0.0, 1.0], axes=ax) == (ax,)
+    assert ax.get_lines()
+
+
+def test_four_axes_of_the_caller_are_used(run: c2d.Run) -> None:
+    _, axes = plt.subplots(4, 1)
+    assert run.plot(1.0, axes=axes) == tuple(axes)
+    assert all(ax.get_lines() for ax in axes)
+
+
+def test_another_number_of_axes_is_refused(run: c2d.Run) -> None:
+    _, axes = plt.subplots(2, 1)
+    with pytest.raises(c2d.ScenarioError, match="one Axes or four"):
+        run.plot(axes=tuple(axes))
+
+
+@pytest.mark.parametrize(
+    ("track", "terrain"),
+    [
+        (c2d.BeltTrack(), c2d.terrains.ramp(0.3, edge_radius=0.02)),
+        (c2d.ForceTrack(), c2d.terrains.step(0.1)),
+        (c2d.LineOfWheels(5), c2d.terrains.from_points(POINTS, goal=0.0)),
+        (c2d.HybridWheels(PLACEMENTS, wheel=GEAR), c2d.terrains.half_round(0.03)),
+        (c2d.ForceTrack(support="wheels"), c2d.terrains.gap(0.1)),
+    ],
+    ids=["belt", "skids that stop", "wheels", "gears", "free wheels"],
+)
+def test_every_kind_of_robot_and_ground_is_drawn(track: Any, terrain: Any) -> None:
+    side = c2d.simulate(ROBOT.with_track(track), terrain).plot()[0]
+    side.figure.canvas.draw()
+
+
+def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:
+    track = c2d.CircumferentialWheels(24, wheel=c2d.GearWheel(grouser_count=8))
+    run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.06), duration=3.0)
+    assert run.diagnosis is not None  # it stopped, so that its last contacts are those of its pose
+    _, ax = plt.subplots()
+    run.plot(run.time[-1], axes=ax)
+    drawn = [np.array(line.get_xydata()) for line in ax.get_lines()]
+    gears = [outline for outline in drawn if len(outline) == 8 * 14 + 1]
+    assert len(gears) == 24
+    last = run.contacts["time"] == run.time[-1]
+    places = np.column_stack([run.contacts["x"], run.contacts["y"]])[last]
+    assert len(places) >= 2
+    # A gear turned wrongly would miss its contacts by up to 5 mm, the height of its grousers.
+    for place in places:
+        assert min(distance(place, outline) for outline in gears) < 5e-5
+
+
+def test_an_edge_inside_the_track_is_marked_and_named() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    side, *strips = run.plot()
+    (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
+    assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.1]]
+    depth = 1e3 * run.metrics["intrusion_depth"]
+    assert mark.get_label() == f"edge inside the track: {depth:.1f} mm between wheels 1 and 2"
+    shaded = [len(strip.patches) for strip in strips]
+    assert shaded == [np.count_nonzero(run.events["kind"] == "stop")] * 3 == [1] * 3
+
+
+def labels(ax: Any) -> list[str]:
+    return [str(artist.get_label()) for artist in (*ax.get_lines(), *ax.collections)]
+
+
+def test_the_last_pose_has_its_contacts_with_a_stated_scale() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    side = run.plot()[0]
+    last = run.contacts["time"] == run.time[-1]
+    force = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])[last].max()
+    speed = np.abs(run.contacts["surface_speed"][last]).max()
+    forces, speeds = (
+        next(c for c in side.collections if word in str(c.get_label()))
+        for word in ("contact forces", "surface over the ground")
+    )
+    assert forces.get_label() == f"contact forces, longest {force:.0f} N"
+    assert speeds.get_label() == f"surface over the ground, longest {speed:.2f} m/s"
+    assert len(np.asarray(forces.get_offsets())) == np.count_nonzero(last)
+
+
+def test_contacts_are_those_of_the_last_pose_that_is_drawn() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    _, ax = plt.subplots()
+    run.plot([0.0, 0.5], axes=ax)
+    now = run.contacts["time"] == run.time[np.abs(run.time - 0.5).argmin()]
+    (forces,) = [c for c in ax.collections if "contact forces" in str(c.get_label())]
+    assert np.allclose(np.asarray(forces.get_offsets())[:, 0], run.contacts["x"][now])
+    assert not [label for label in labels(ax) if "inside" in label]
+
+
+def test_the_belt_is_drawn_round_wheels_alone(run: c2d.Run) -> None:
+    belt = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.5)
+    assert "taut belt round the wheels" in labels(run.plot()[0])
+    assert "taut belt round the wheels" not in labels(belt.plot()[0])
+
+
+def test_the_title_says_why_the_robot_stopped() -> None:
+    run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
+    title, *why = run.plot()[0].get_title(loc="left").splitlines()
+    assert title == run.title
+    assert " ".join(why) == str(run.diagnosis)
+    assert max(map(len, why)) <= 80
+
+
+def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) -> None:
+    side, *strips = run.plot()
+    assert not [line for line in side.get_lines() if "inside" in str(line.get_label())]
+    assert "intrusion" in run.events["kind"]
+    assert not any(strip.patches for strip in strips)
+
+
+def test_a_run_of_one_sample_is_drawn() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.0, gravity=0.0)
+    with np.errstate(all="raise"):
+        assert len(run.plot()) == 4

@@ -1,0 +1,30 @@
+"""Small sweeps that several tests make."""
+
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.sweep import sweep
+from tests.shared import ROBOT
+
+BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=4.0)
+BRIEF = BASE.replace({"duration": 0.05})
+MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3)}
+
+
+def quiet(base: Scenario, over: Any, **options: Any) -> xr.Dataset:
+    """Sweep without a progress bar."""
+    return sweep(base, over, **{"repeats": 2, "progress": False, **options})
+
+
+def refusal(base: Any, over: Any, **options: Any) -> c2d.ScenarioError:
+    """Why a sweep is refused; nothing may run before that."""
+    calls: list[int] = []
+    with pytest.raises(c2d.ScenarioError) as caught:
+        sweep(base, over, **{"progress": lambda done, _: calls.append(done), **options})
+    assert calls == []
+    assert caught.value.rule.startswith("must")
+    return caught.value

@@ -1,0 +1,193 @@
+"""The axes of a sweep: order, labels, names of the dimensions."""
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.common.units import METRICS
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.axes import COLUMNS
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.sweep import sweep
+from tests.shared import ROBOT, VARIANTS
+from tests.sweeps.small import quiet
+
+BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=0.05)
+
+
+def test_axes_are_replaced_in_the_order_given() -> None:
+    over = {"robot.track": {"line": c2d.LineOfWheels(9)}, "robot.track.count": [3, 5]}
+    found = quiet(BASE, over)
+    texts = found["scenario"].sel(track="line").isel(repeat=0).values
+    assert [json.loads(text)["robot"]["track"]["count"] for text in texts] == [3, 5]
+
+
+def test_objects_without_labels_are_labelled_in_short() -> None:
+    tracks = [c2d.BeltTrack(), c2d.LineOfWheels(3), c2d.LineOfWheels(4, wheel_radius=0.06)]
+    centers = [(0.0, 0.02), np.array([0.01, 0.02])]
+    found = quiet(BASE, {"robot.track": tracks, "robot.center_of_mass": centers})
+    assert found["track"].values.tolist() == [
+        "BeltTrack()",
+        "LineOfWheels(3)",
+        "LineOfWheels(4, wheel_radius=0.06)",
+    ]
+    assert found["center_of_mass"].values.tolist() == ["(0.0, 0.02)", "(0.01, 0.02)"]
+
+
+def test_labels_that_are_no_numbers_are_texts() -> None:
+    line = BASE.replace({"robot.track": c2d.LineOfWheels(3)})
+    found = quiet(line, {"robot.track.wheel_radius": [None, 0.06]})
+    assert found["wheel_radius"].values.tolist() == ["None", "0.06"]
+    assert "units" not in found["wheel_radius"].attrs
+    counts = {3: c2d.LineOfWheels(3), np.int64(5): c2d.LineOfWheels(5)}
+    assert quiet(BASE, {"robot.track": counts})["track"].values.tolist() == [3, 5]
+    named = quiet(BASE, {"terrain.height": {1: 0.02, 2: 0.03}})["height"]
+    assert named.values.tolist() == [1, 2]
+    assert "units" not in named.attrs
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [np.array([0.02, 0.03]), (0.02, 0.03), np.linspace(0.02, 0.03, 2), iter([0.02, 0.03])],
+    ids=lambda values: type(values).__name__,
+)
+def test_any_sequence_of_numbers_is_an_axis(heights: Iterable[float]) -> None:
+    found = quiet(BASE, {"terrain.height": heights})
+    assert found["height"].values.tolist() == [0.02, 0.03]
+    assert json.loads(found["scenario"].values[0, 0])["terrain"]["height"] == 0.02
+
+
+def test_paths_swept_together_share_a_dimension_and_have_coordinates_of_their_own() -> None:
+    over = {("terrain.height", "robot.track"): [(0.02, c2d.BeltTrack()), (0.03, c2d.ForceTrack())]}
+    found = quiet(BASE, over)
+    assert found["outcome"].dims == ("height_track", "repeat")
+    assert found["height_track"].values.tolist() == ["(0.02, BeltTrack())", "(0.03, ForceTrack())"]
+    assert found["height_track"].attrs["path"] == "terrain.height, robot.track"
+    assert found["height"].dims == ("height_track",)
+    assert found["height"].attrs["units"] == "m"
+    kinds = [json.loads(text)["robot"]["track"]["kind"] for text in found["scenario"].values[:, 0]]
+    assert kinds == ["belt", "force"]
+
+
+def test_the_lanes_of_a_terrain_are_swept_together() -> None:
+    lanes = VARIANTS["belt-lanes"].replace({"duration": 0.05})
+    sides = ("terrain.left.height", "terrain.right.height", "terrain.middle.height")
+    found = quiet(lanes, {sides: np.repeat([[0.02], [0.03]], 3, axis=1)})
+    assert found["outcome"].sizes == {"height": 2, "repeat": 2}
+    assert found["terrain_left_height"].values.tolist() == [0.02, 0.03]
+    assert "drawn_friction" in found
+    assert found["drawn_friction"].isnull().all()
+
+
+def test_paths_that_end_alike_are_named_in_full() -> None:
+    found = quiet(BASE, {"start.angle": [0.0], "terrain": {"r": c2d.terrains.ramp(0.1)}})
+    assert found["outcome"].dims == ("angle", "terrain", "repeat")
+    ramp = BASE.replace({"terrain": c2d.terrains.ramp(0.1)})
+    found = quiet(ramp, {"start.angle": [0.0], "terrain.angle": [0.1, 0.2]})
+    assert found["outcome"].dims == ("start_angle", "terrain_angle", "repeat")
+    depth = quiet(BASE, {"criteria.intrusion_depth": [1e-4, 2e-4]})  # also a metric
+    assert depth["outcome"].dims == ("criteria_intrusion_depth", "repeat")
+    pairs = {("start.angle", "terrain.angle"): [(0.0, 0.1)], ("goal",): [(1.0,), (2.0,)]}
+    assert quiet(ramp, pairs)["outcome"].dims == ("angle", "goal", "repeat")
+
+
+def test_elements_are_axes_with_names_that_python_can_spell() -> None:
+    driven = BASE.replace({"drive.schedule": [(1.0, 0.2), (2.0, 0.3)]})
+    over = {
+        "robot.center_of_mass[0]": [-0.05, 0.05],
+        ("drive.schedule[0][1]", "drive.schedule[1][1]"): [(0.1, 0.2), (0.2, 0.3)],
+    }
+    found = quiet(driven, over)
+    assert found["outcome"].dims == ("center_of_mass_0", "schedule_0_1_schedule_1_1", "repeat")
+    assert all(str(name).isidentifier() for name in found.variables)
+    assert found["center_of_mass_0"].attrs == {
+        "path": "robot.center_of_mass[0]",
+        "units": "m",
+        "long_name": "center of mass[0]",
+    }
+    assert found["schedule_1_1"].values.tolist() == [0.2, 0.3]
+    assert found["schedule_1_1"].attrs["units"] == "m/s"
+    text = found["scenario"].values[1, 0, 0]
+    assert json.loads(text)["robot"]["center_of_mass"] == [0.05, 0.02]
+    assert json.loads(text)["drive"]["schedule"] == [[1.0, 0.1], [2.0, 0.2]]
+
+
+def test_an_element_and_a_field_that_are_called_alike_are_named_in_full() -> None:
+    belly = {"robot.belly[0][0]": [-0.1], "robot.belly[1][0]": [0.1]}
+    assert quiet(BASE, belly)["outcome"].dims == ("belly_0_0", "belly_1_0", "repeat")
+    lanes = VARIANTS["belt-lanes"].replace(
+        {f"terrain.{side}": VARIANTS["belt-points"].terrain for side in ("left", "right", "middle")}
+    )
+    ends = {"terrain.left.points[3][1]": [0.05], "terrain.right.points[3][1]": [0.05]}
+    assert quiet(lanes.replace({"duration": 0.0}), ends)["outcome"].dims == (
+        "terrain_left_points_3_1",
+        "terrain_right_points_3_1",
+        "repeat",
+    )
+
+
+def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> None:
+    table = sweep(BASE, {}, repeats=2, counterfactual=True, wall_time=True, vary={}, progress=False)
+    assert {*METRICS, *COLUMNS} >= {*map(str, table.variables), *map(str, rate(table).variables)}
+    wheels = BASE.replace({"robot.track": c2d.LineOfWheels(3)})
+    found = quiet(wheels, {"robot.track.count": [3, 5]})
+    assert found["outcome"].dims == ("robot_track_count", "repeat")
+    assert rate(found)["count"].dims == ("robot_track_count",)
+    assert rate(found)["count"].sel(robot_track_count=5).item() == 2
+    field = BASE.replace({"terrain": c2d.terrains.random_stepfield(0)})
+    assert quiet(field, {"terrain.seed": [3, 4]})["outcome"].dims == ("terrain_seed", "repeat")
+    together = {("robot.track.count", "duration"): [(3, 0.0), (5, 0.1)]}
+    paired = quiet(wheels, together)
+    assert paired["outcome"].dims == ("count_duration", "repeat")
+    assert paired["robot_track_count"].values.tolist() == [3, 5]
+    assert rate(paired)["robot_track_count"].values.tolist() == [3, 5]
+
+
+@pytest.mark.parametrize(
+    ("over", "path", "hint"),
+    [
+        (None, "over", "mapping"),
+        ([("terrain.height", [0.1])], "over", "mapping"),
+        ({3: [0.1]}, "over", "dotted paths"),
+        ({(): [0.1]}, "over", "dotted paths"),
+        ({("terrain.height", 3): [(0.1, 0.1)]}, "over", "dotted paths"),
+        ({"terrain.height": []}, "over['terrain.height']", "at least one value"),
+        ({"terrain.height": {}}, "over['terrain.height']", "at least one value"),
+        ({"terrain.height": 0.1}, "over['terrain.height']", "a sequence"),
+        ({"terrain.height": None}, "over['terrain.height']", "a sequence"),
+        ({"terrain.height": "0.1"}, "over['terrain.height']", "a sequence"),
+        ({"terrain.height": {0.1, 0.2}}, "over['terrain.height']", "a sequence"),
+        ({"robot.track": c2d.BeltTrack()}, "over['robot.track']", "a sequence"),
+        ({"terrain.height": np.array(0.1)}, "over['terrain.height']", "one dimension"),
+        ({"terrain.height": {None: 0.1}}, "over['terrain.height']", "texts or numbers"),
+        ({"terrain.height": {True: 0.1}}, "over['terrain.height']", "texts or numbers"),
+        ({"terrain.height": [0.1, 0.2, 0.1]}, "over['terrain.height'][2]", "label 0.1 is taken"),
+        ({"terrain.height": {"1": 0.1, 1: 0.2}}, "over['terrain.height'][1]", "label 1 is taken"),
+        ({"robot.track": [c2d.BeltTrack()] * 2}, "over['robot.track'][1]", "unique"),
+        ({"robot": [ROBOT]}, "over['robot'][0]", "give a mapping"),
+        ({("terrain.height", "gravity"): [0.1]}, "over[('terrain.height', 'gravity')]", "2 values"),
+        ({("terrain.height",): [(1, 2)]}, "over[('terrain.height',)]", "tuples of 1 values"),
+        ({("gravity", "gravity"): [(9.0, 9.1)]}, "over", "each path once"),
+        ({"gravity": [9.0], ("gravity", "duration"): [(9.0, 1.0)]}, "over", "each path once"),
+        (
+            {"robot.track.count": [3], "robot.track": [c2d.LineOfWheels(5)]},
+            "over",
+            "before robot.track.count",
+        ),
+        (
+            {"robot.center_of_mass[0]": [0.1], "robot.center_of_mass": {"low": (0.0, 0.0)}},
+            "over",
+            "before robot.center_of_mass[0]",
+        ),
+    ],
+)
+def test_what_is_no_axis_is_refused_by_name(over: Any, path: str, hint: str) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        quiet(BASE, over)
+    assert caught.value.path == path
+    assert caught.value.rule.startswith("must")
+    assert hint in caught.value.rule

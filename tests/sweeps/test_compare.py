@@ -1,0 +1,189 @@
+"""Models compared in pairs: counts, intervals, and what a pair is."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.compare import compare
+from crawler2d.sweeps.draws import uniform
+from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
+from crawler2d.sweeps.sweep import sweep
+from tests.shared import ROBOT
+
+# At this friction some of the draws get over the step and some do not.
+BASE = Scenario(ROBOT, c2d.terrains.step(0.05, friction=0.6), duration=6.0)
+VARY = {"terrain.friction": uniform(0.45, 0.75), "start.approach": uniform(0.05, 0.15)}
+MODELS = {"belt": c2d.BeltTrack(), "line of 3": c2d.LineOfWheels(3), "skids": c2d.ForceTrack()}
+REPEATS = 12
+
+
+def quiet(models: Any, **options: Any) -> xr.Dataset:
+    """Compare without a progress bar."""
+    return compare(BASE, models, **{"progress": False, **options})
+
+
+@pytest.fixture(scope="module")
+def found() -> xr.Dataset:
+    return quiet(MODELS, repeats=REPEATS, vary=VARY)
+
+
+def test_the_models_run_as_in_a_sweep(found: xr.Dataset) -> None:
+    over = {"robot.track": MODELS}
+    table = sweep(BASE, over, repeats=REPEATS, vary=VARY, progress=False).rename(track="model")
+    for name in table.data_vars:
+        assert found[name].equals(table[name]), name
+    assert found.attrs["reference"] == "belt"
+    assert found.attrs["scenario"] == BASE.to_json()
+
+
+def test_some_pairs_differ(found: xr.Dataset) -> None:
+    """Otherwise the tests below would be about nothing."""
+    assert 0.0 < found["rate"].sel(model="belt").item() < 1.0
+    assert found["both"].sel(model="line of 3").item() > 2
+    assert found["only_reference"].sel(model="skids").item() > 2
+
+
+def test_a_pair_is_one_repeat_of_both_models(found: xr.Dataset) -> None:
+    cleared = found["outcome"].to_numpy() == "cleared"
+    for index, name in enumerate(MODELS):
+        row = found.sel(model=name)
+        assert row["both"].item() == (cleared[index] & cleared[0]).sum()
+        assert row["only_model"].item() == (cleared[index] & ~cleared[0]).sum()
+        assert row["only_reference"].item() == (~cleared[index] & cleared[0]).sum()
+        assert row["neither"].item() == (~cleared[index] & ~cleared[0]).sum()
+
+
+def test_rates_and_differences_are_those_of_the_pairs(found: xr.Dataset) -> None:
+    rates = rate(found)
+    for name in list(MODELS)[1:]:
+        row = found.sel(model=name)
+        assert (row["rate"].item(), row["rate_low"].item(), row["rate_high"].item()) == tuple(
+            rates.sel(model=name)[bound].item() for bound in ("rate", "low", "high")
+        )
+        pairs = [row[n].item() for n in ("both", "only_model", "only_reference", "neither")]
+        expected = newcombe_paired(*pairs)
+        assert row["difference"].item() == pytest.approx(expected.rate)
+        reference = rates["rate"].sel(model="belt")
+        assert row["difference"].item() == pytest.approx((row["rate"] - reference).item())
+        assert row["difference_low"].item() == expected.low
+        assert row["difference_high"].item() == expected.high
+        assert row["p_value"].item() == mcnemar(pairs[1], pairs[2])
+
+
+def test_costs_are_compared_where_both_cleared(found: xr.Dataset) -> None:
+    line, belt = found.sel(model="line of 3"), found.sel(model="belt")
+    both = ((line["outcome"] == "cleared") & (belt["outcome"] == "cleared")).to_numpy()
+    for name in ("time_to_clear", "drive_work"):
+        expected = bootstrap_mean((line[name] - belt[name]).to_numpy()[both])
+        assert np.isfinite(expected.rate)
+        bounds = [line[f"{name}_difference{end}"].item() for end in ("", "_low", "_high")]
+        assert bounds == list(expected)
+    assert found["time_to_clear_difference"].attrs["units"] == "s"
+    assert found["drive_work_difference_low"].attrs["units"] == "J"
+
+
+def test_models_that_never_cleared_together_have_no_cost_to_compare(found: xr.Dataset) -> None:
+    skids = found.sel(model="skids")
+    assert skids["both"].item() == 0
+    assert np.isnan(skids["drive_work_difference"].item())
+    assert np.isneginf(skids["drive_work_difference_low"].item())
+    assert np.isposinf(skids["drive_work_difference_high"].item())
+
+
+def test_the_reference_differs_from_itself_by_nothing(found: xr.Dataset) -> None:
+    belt = found.sel(model="belt")
+    for name in ("difference", "time_to_clear_difference", "drive_work_difference"):
+        assert [belt[f"{name}{end}"].item() for end in ("", "_low", "_high")] == [0.0, 0.0, 0.0]
+    assert belt["p_value"].item() == 1.0
+
+
+def test_another_reference_turns_the_difference_round(found: xr.Dataset) -> None:
+    turned = quiet(MODELS, repeats=REPEATS, vary=VARY, reference="line of 3")
+    assert turned.attrs["reference"] == "line of 3"
+    there, back = found.sel(model="line of 3"), turned.sel(model="belt")
+    assert back["difference"].item() == -there["difference"].item()
+    assert back["difference_low"].item() == pytest.approx(-there["difference_high"].item())
+    assert back["only_model"].item() == there["only_reference"].item()
+
+
+def test_models_in_a_sequence_are_labelled_in_short() -> None:
+    pair = quiet([c2d.BeltTrack(), c2d.LineOfWheels(3)], repeats=1, vary={})
+    assert pair["model"].values.tolist() == ["BeltTrack()", "LineOfWheels(3)"]
+    assert pair["model"].attrs == {"path": "robot.track", "long_name": "track"}
+    counts = {3: c2d.LineOfWheels(3), 5: c2d.LineOfWheels(5)}
+    assert quiet(counts, repeats=1, reference=5).attrs["reference"] == 5
+
+
+def test_fields_are_compared_as_models_are() -> None:
+    heavy = {"robot.mass": 30.0, "robot.center_of_mass[0]": -0.05}
+    step = c2d.Solver(time_step=5e-4)
+    other = c2d.robots.absolem(flippers=None)
+    models = {
+        "as it is": {},
+        "heavy": heavy,
+        "fine": step,
+        "other": other,
+        "skids": c2d.ForceTrack(),
+    }
+    pair = quiet(models, repeats=2, vary=VARY)
+    assert pair["model"].values.tolist() == list(models)
+    assert pair["rate"].dims == ("model",)
+    first = Scenario.from_json(pair["scenario"].values[0, 0])
+    draws = {path: pair[f"drawn_{path.rpartition('.')[2]}"].values[0, 0] for path in VARY}
+    assert first == BASE.replace(draws)
+    replaced: dict[str, Any] = {
+        "heavy": heavy,
+        "fine": {"solver": step},
+        "other": {"robot": other},
+        "skids": {"robot.track": c2d.ForceTrack()},
+    }
+    for label, fields in replaced.items():
+        text = pair["scenario"].sel(model=label).values[0]
+        assert Scenario.from_json(text) == first.replace(fields)
+
+
+def test_what_models_replace_is_told_of_their_axis() -> None:
+    models = [{"robot.mass": 20.0}, {"robot.mass": 22.0, "gravity": 9.0}]
+    pair = quiet(models, repeats=1, vary={})
+    assert pair["model"].attrs["path"] == "robot.mass, gravity"
+    assert pair["mass"].values.tolist() == [20.0, 22.0]
+    assert "gravity" not in pair  # the first model leaves it as it is
+
+
+@pytest.mark.parametrize(
+    ("models", "options", "path"),
+    [
+        ({"belt": c2d.BeltTrack()}, {}, "models"),
+        ([], {}, "models"),
+        (c2d.BeltTrack(), {}, "models"),
+        ([c2d.BeltTrack()] * 2, {}, "models[1]"),
+        (MODELS, {"reference": "line of 9"}, "reference"),
+        (MODELS, {"reference": c2d.BeltTrack()}, "reference"),
+        (MODELS, {"repeats": 0}, "repeats"),
+        (MODELS, {"seed": -1}, "seed"),
+        (MODELS, {"vary": {"robot.track": 3}}, "vary['robot.track']"),
+        ({**MODELS, "wall": "brick"}, {}, "models['wall']"),
+        ({"robot.mass": [20.0, 22.0], "robot.gauge": [0.2, 0.3]}, {}, "models['robot.mass']"),
+        ({**MODELS, "all": BASE}, {}, "models['all']"),
+        ({**MODELS, "heavy": {"robot.mas": 30.0}}, {}, "cell[model=heavy].robot.mas"),
+        ({**MODELS, "heavy": {3: 30.0}}, {}, "cell[model=heavy].path"),
+        (
+            {"a": {}, "b": {"terrain.friction": 0.5}},
+            {"vary": {"terrain.friction": uniform(0.4, 0.6)}},
+            "vary['terrain.friction']",
+        ),
+        ({**MODELS, "one": c2d.LineOfWheels(1)}, {}, "cell[model=one].robot.track.count"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_by_name(
+    models: Any, options: dict[str, Any], path: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        quiet(models, **options)
+    assert caught.value.path == path
+    assert caught.value.rule.startswith("must")

@@ -1,0 +1,303 @@
+"""What repeats draw: the same for every cell, whatever else is drawn."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.sweeps.draws import Variation, scaled, uniform, uniform_int, uniform_numbers
+from crawler2d.sweeps.plan import plan_runs
+from tests.shared import ROBOT, VARIANTS
+
+DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.friction"]
+
+
+def drawn(cell: Scenario, *, base: Scenario | None = None, swept: tuple[str, ...] = ()) -> Any:
+    """The default draws of 200 repeats, shape (200,) by path."""
+    variation = Variation.of(base or cell, None, swept)
+    plans = plan_runs(cell, [], variation, repeats=200, seed=0)
+    assert all(plan.refused is None for plan in plans)
+    return {path: np.array([plan.drawn[path] for plan in plans]) for path in plans[0].drawn}
+
+
+def test_a_uniform_value_lies_between_its_bounds_and_does_not_know_the_scenario() -> None:
+    assert uniform(0.05, 0.15).value(0.0, nominal=7.0) == 0.05
+    assert uniform(0.05, 0.15).value(0.25, nominal=None) == pytest.approx(0.075)
+    assert uniform(0.1, 0.1).value(0.7, nominal=None) == 0.1
+
+
+def test_a_scaled_value_is_a_share_of_the_scenarios_own() -> None:
+    assert scaled(0.98, 1.02).value(0.5, nominal=0.4) == pytest.approx(0.4)
+    assert scaled(0.98, 1.02).value(0.0, nominal=-0.4) == pytest.approx(-0.392)
+
+
+def test_no_value_lies_beyond_the_upper_bound() -> None:
+    almost_1 = math.nextafter(1.0, 0.0)
+    for low, high in np.random.default_rng(0).uniform(-1.0, 1.0, (1000, 2)):
+        distribution = uniform(min(low, high), max(low, high))
+        assert distribution.low <= distribution.value(almost_1, nominal=None) <= distribution.high
+
+
+def test_every_whole_number_of_its_bounds_has_the_same_share() -> None:
+    six = uniform_int(-2, 3)
+    assert [six.value((i + 0.5) / 6.0, nominal=None) for i in range(6)] == [-2, -1, 0, 1, 2, 3]
+    assert six.value(0.0, nominal=7) == -2
+    for low, high in [(-2, 3), (0, 2**32 - 1), (5, 5), (-(2**52), 2**52 - 1), (1, 2**53 - 1)]:
+        assert uniform_int(low, high).value(math.nextafter(1.0, 0.0), nominal=None) == high
+    assert type(six.value(0.5, nominal=None)) is int
+    drawn = [six.value(number, None) for number in uniform_numbers("terrain.seed", 0, 6000)]
+    counts = np.bincount(np.array(drawn) + 2)
+    assert np.abs(counts - 1000).max() < 120  # four standard deviations of a number
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "message"),
+    [
+        ("a", 1.0, "low must be a number, got a"),
+        (None, 1.0, "low must be a number, got None"),
+        (True, 1.0, "low must be a number, got True"),
+        (0.0, [1.0], "high must be a number, got [1.0]"),
+        (-math.inf, 1.0, "low must be finite, got -inf"),
+        (0.0, math.nan, "high must be finite, got nan"),
+        (2.0, 1.0, "high must be >= low = 2.0, got 1.0"),
+    ],
+)
+def test_bounds_are_finite_numbers_in_order(low: Any, high: Any, message: str) -> None:
+    for distribution in (uniform, scaled):
+        with pytest.raises(c2d.ScenarioError) as caught:
+            distribution(low, high)
+        assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "message"),
+    [
+        (0.0, 1, "low must be a whole number, got 0.0"),
+        (0, True, "high must be a whole number, got True"),
+        (0, "9", "high must be a whole number, got 9"),
+        (3, 2, "high must be >= low = 3, got 2"),
+        (0, 2**53, "high must be < low + 2^53 = 9007199254740992, got 9007199254740992"),
+        (-1, 2**53 - 1, "high must be < low + 2^53 = 9007199254740991, got 9007199254740991"),
+    ],
+)
+def test_bounds_of_whole_numbers_are_whole_and_in_order(low: Any, high: Any, message: str) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        uniform_int(low, high)
+    assert str(caught.value) == message
+
+
+def test_bounds_may_be_whole_or_of_numpy() -> None:
+    whole: Any = np.int64(1)
+    assert uniform(0, whole) == uniform(0.0, 1.0)
+    assert repr(uniform(0, 1)) == "Uniform(low=0.0, high=1.0)"
+    assert repr(uniform_int(whole, whole)) == "UniformInt(low=1, high=1)"
+    assert uniform(1.0, 1.0).high == uniform_int(1, 1).low
+
+
+def test_another_path_draws_numbers_that_know_nothing_of_those_of_the_first() -> None:
+    paths = [
+        *("start.approach", "start.track_phase", "drive.speed", "terrain.friction", "terrain.seed"),
+        *("robot.belly[0][1]", "robot.belly[1][0]", "robot.belly[01]"),  # the same letters
+        *("terrain.left.height", "terrain.right.height", "gravity", "gravitz", "ravity", ""),
+    ]
+    count = 4000
+    drawn = np.array([uniform_numbers(path, 3, count) for path in paths])
+    correlations = np.corrcoef(drawn)[np.triu_indices(len(paths), 1)]
+    assert np.abs(correlations).max() < 4.5 / math.sqrt(count)  # standard errors, of 91 pairs
+    # Nor does the next number, or the previous one.
+    ahead = np.corrcoef(np.vstack([drawn[:, 1:], drawn[:, :-1]]))
+    assert np.abs(ahead - np.diag(np.diag(ahead))).max() < 4.5 / math.sqrt(count)
+
+
+@pytest.mark.parametrize("path", ["start.approach", "terrain.seed", "a"])
+def test_more_repeats_go_on_with_the_same_numbers(path: str) -> None:
+    whole = uniform_numbers(path, 7, 1000)
+    for count in (0, 1, 2, 3, 10, 999):
+        assert uniform_numbers(path, 7, count).tolist() == whole[:count].tolist()
+
+
+def test_seeds_draw_numbers_that_know_nothing_of_each_other() -> None:
+    seeds = [0, 1, 2, 3, 2**32 - 1, 2**32, 2**63, 2**64 - 1]
+    drawn = np.array([uniform_numbers("drive.speed", seed, 4000) for seed in seeds])
+    correlations = np.corrcoef(drawn)[np.triu_indices(len(seeds), 1)]
+    assert np.abs(correlations).max() < 4.0 / math.sqrt(4000)  # standard errors, of 28 pairs
+
+
+def test_the_numbers_of_a_repeat_depend_on_path_seed_and_repeat_alone() -> None:
+    numbers = uniform_numbers("drive.speed", 0, 1000)
+    assert numbers.tolist() == uniform_numbers("drive.speed", 0, 1000).tolist()
+    assert numbers[:20].tolist() == uniform_numbers("drive.speed", 0, 20).tolist()
+    for path, seed in [("drive.speed", 1), ("drive.speed", 2**64 - 1), ("start.approach", 0)]:
+        other = uniform_numbers(path, seed, 1000)
+        assert abs(np.corrcoef(numbers, other)[0, 1]) < 0.1  # three standard errors of 1000
+
+
+def test_the_numbers_fill_the_interval_evenly() -> None:
+    numbers = uniform_numbers("start.approach", 0, 10_000)
+    assert numbers.min() >= 0.0
+    assert numbers.max() < 1.0
+    counts, _ = np.histogram(numbers, bins=10, range=(0.0, 1.0))
+    assert np.abs(counts - 1000).max() < 120  # four standard deviations of a bin
+
+
+def test_the_default_varies_approach_phase_speed_and_friction_in_their_ranges() -> None:
+    found = drawn(Scenario(ROBOT, c2d.terrains.step(0.05)))
+    assert list(found) == DEFAULT_PATHS
+    bounds = [(0.1 - 0.365 / 8, 0.1 + 0.365 / 8), (0.0, 0.048), (0.392, 0.408), (0.882, 0.918)]
+    for (low, high), values in zip(bounds, found.values(), strict=True):
+        assert low <= values.min() < low + 0.1 * (high - low)
+        assert high - 0.1 * (high - low) < values.max() <= high
+
+
+def test_the_default_distributions_are_those_of_the_documentation() -> None:
+    near = Scenario(ROBOT, c2d.terrains.step(0.05), start=c2d.Start(approach=0.5))
+    found = Variation.of(near, None, []).distributions
+    quarter = ROBOT.outline.axle_distance / 4.0
+    approach, phase, *scales = (found[path] for path in DEFAULT_PATHS)
+    assert (approach.low, approach.high) == pytest.approx((0.5 - quarter / 2, 0.5 + quarter / 2))
+    assert phase == uniform(0.0, ROBOT.outline.grouser_pitch)
+    assert scales == [scaled(0.98, 1.02)] * 2
+
+
+def test_a_number_too_long_for_a_float_is_scaled() -> None:
+    cell = Scenario(ROBOT, c2d.terrains.step(0.05), duration=2**60 + 1)
+    drawn = Variation.of(cell, {"duration": scaled(0.5, 0.5)}, []).draw(cell, {"duration": 0.0})
+    assert drawn == {"duration": 2.0**59}
+
+
+def test_the_default_approach_is_never_below_0() -> None:
+    near = Scenario(ROBOT, c2d.terrains.step(0.05), start=c2d.Start(approach=0.01))
+    approach = drawn(near)["start.approach"]
+    assert approach.min() >= 0.0
+    assert np.ptp(approach) == pytest.approx(0.365 / 4, rel=0.05)
+
+
+def test_the_default_distances_are_those_of_the_base_in_every_cell() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    other = c2d.Robot.simple(5.0, axle_distance=0.2, radius=0.03, track=c2d.LineOfWheels(9))
+    here, there = drawn(base), drawn(base.replace({"robot": other}), base=base)
+    assert {path: v.tolist() for path, v in here.items()} == {
+        path: v.tolist() for path, v in there.items()
+    }
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_default_speed_never_exceeds_the_drivetrains(direction: float) -> None:
+    fastest = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=direction * 1.39))
+    speeds = direction * drawn(fastest)["drive.speed"]
+    assert speeds.max() == 1.39
+    assert speeds.min() < 1.37
+    assert (speeds < 1.39).sum() == pytest.approx(100, abs=30)  # only the faster half is cut
+
+
+def test_the_default_leaves_the_friction_of_lanes() -> None:
+    assert list(drawn(VARIANTS["belt-lanes"])) == DEFAULT_PATHS[:3]
+
+
+@pytest.mark.parametrize(
+    ("swept", "kept"),
+    [
+        ("start.approach", ["start.track_phase", "drive.speed", "terrain.friction"]),
+        ("start.track_phase", ["start.approach", "drive.speed", "terrain.friction"]),
+        ("start", ["drive.speed", "terrain.friction"]),
+        ("drive.speed", DEFAULT_PATHS),
+    ],
+)
+def test_the_default_does_not_undo_what_is_swept(swept: str, kept: list[str]) -> None:
+    found = drawn(Scenario(ROBOT, c2d.terrains.step(0.05)), swept=(swept,))
+    assert list(found) == kept
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_default_draws_valid_scenarios_of_every_variant(name: str) -> None:
+    cell = VARIANTS[name]
+    found = drawn(cell)
+    for index in range(20):
+        cell.replace({path: float(values[index]) for path, values in found.items()}).validate()
+
+
+@pytest.mark.parametrize(
+    ("vary", "message"),
+    [
+        (["start.approach"], "vary must be a mapping from paths to distributions, got ["),
+        ({3: uniform(0.0, 1.0)}, "vary must have dotted paths as keys, got 3"),
+        (
+            {"start.approach": 0.1},
+            "vary['start.approach'] must be uniform(low, high), uniform_int(low, high) or"
+            " scaled(low, high), got 0.1",
+        ),
+        (
+            {"start.approach": (0.05, 0.15)},
+            "vary['start.approach'] must be uniform(low, high), uniform_int(low, high) or"
+            " scaled(low, high), got (0.05, 0.15)",
+        ),
+        *(
+            (
+                {"terrain.height": distribution},
+                "vary['terrain.height'] must not replace the values of `over`;"
+                f" scaled(low, high) varies about them, got {distribution}",
+            )
+            for distribution in (uniform(0, 1), uniform_int(0, 1))
+        ),
+    ],
+)
+def test_what_is_no_variation_is_refused_by_name(vary: Any, message: str) -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    with pytest.raises(c2d.ScenarioError) as caught:
+        Variation.of(base, vary, ["terrain.height"])
+    assert str(caught.value).startswith(message)
+
+
+def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    vary = {"terrain.friction": uniform(0.0, 400.0), "terrain.height": scaled(0.5, 1.5)}
+    variation = Variation.of(base, vary, ["terrain.height"])
+    assert variation.distributions == vary
+    plans = plan_runs(base, [], variation, repeats=10, seed=0)
+    refused = [plan.refused is not None for plan in plans]
+    assert refused == [plan.drawn["terrain.friction"] > 100.0 for plan in plans]
+    assert 0 < sum(refused) < 10
+    lanes = VARIANTS["belt-lanes"]
+    with pytest.raises(c2d.ScenarioError, match="must name a field of Lanes"):
+        Variation.of(lanes, vary, []).draw(lanes, dict.fromkeys(vary, 0.5))
+
+
+@pytest.mark.parametrize("distribution", [uniform(1.0, 9.0), scaled(1.0, 2.0)])
+def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None:
+    for name, path in [
+        ("line-flat", "robot.track.count"),
+        ("segmental-step", "robot.track.return_roller_count"),
+        ("gears-diagonal-barrier", "solver.substeps"),
+    ]:
+        cell = VARIANTS[name]
+        with pytest.raises(c2d.ScenarioError) as caught:
+            Variation.of(cell, {path: distribution}, []).draw(cell, {path: 0.5})
+        assert str(caught.value) == (
+            f"{path} must be drawn by uniform_int(low, high), for it is a whole number,"
+            f" got {distribution}"
+        )
+    cell = VARIANTS["line-flat"]
+    drawn = Variation.of(cell, {"gravity": uniform_int(8, 8)}, []).draw(cell, {"gravity": 0.5})
+    assert drawn == {"gravity": 8}  # a whole number is a number, too
+
+
+@pytest.mark.parametrize(
+    ("path", "value"), [("goal", None), ("robot.name", "engineer"), ("robot", None)]
+)
+def test_only_a_number_is_scaled(path: str, value: Any) -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    variation = Variation.of(base, {path: scaled(0.9, 1.1)}, [])
+    with pytest.raises(c2d.ScenarioError, match=r"must be a number to be scaled, got ") as caught:
+        variation.draw(base, {path: 0.5})
+    assert caught.value.path == path
+    assert value is None or caught.value.value == value
+
+
+def test_a_path_that_is_no_field_lists_the_fields() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05))
+    variation = Variation.of(base, {"terrain.hight": uniform(0.0, 0.1)}, [])
+    with pytest.raises(c2d.ScenarioError, match=r"did you mean height\?"):
+        variation.draw(base, {"terrain.hight": 0.5})

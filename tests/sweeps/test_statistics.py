@@ -1,0 +1,244 @@
+"""Intervals: published values, an independent implementation where it is there, and the limits."""
+
+import math
+
+import numpy as np
+import pytest
+
+from crawler2d import newcombe, wilson
+from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
+
+# Newcombe (1998), Two-sided confidence intervals for the single proportion, table I, method 3.
+PUBLISHED_RATES = [
+    (81, 263, 0.2553, 0.3662),
+    (15, 148, 0.0624, 0.1605),
+    (0, 20, 0.0, 0.1611),
+    (1, 29, 0.0061, 0.1718),
+]
+
+# Newcombe (1998), Interval estimation for the difference ..., table II, method 10.
+PUBLISHED_DIFFERENCES = [
+    (56, 70, 48, 80, 0.0524, 0.3339),
+    (9, 10, 3, 10, 0.1705, 0.8090),
+    (6, 7, 2, 7, 0.0582, 0.8062),
+    (5, 56, 0, 29, -0.0381, 0.1926),
+    (0, 10, 0, 20, -0.1611, 0.2775),
+    (0, 10, 0, 10, -0.2775, 0.2775),
+    (10, 10, 0, 20, 0.6791, 1.0),
+    (10, 10, 0, 10, 0.6075, 1.0),
+]
+
+# Newcombe (1998), Improved confidence intervals for the difference ... paired data, table III,
+# method 10.
+PUBLISHED_PAIRS = [
+    (36, 12, 2, 0, 0.0569, 0.3404),
+    (20, 12, 2, 16, 0.0562, 0.3292),
+    (18, 12, 2, 18, 0.0562, 0.3290),
+    (36, 14, 0, 0, 0.1528, 0.4167),
+    (35, 14, 0, 1, 0.1461, 0.4175),
+    (18, 14, 0, 18, 0.1441, 0.3963),
+    (2, 97, 1, 0, 0.8721, 0.9854),
+    (1, 97, 1, 1, 0.8737, 0.9850),  # printed 0.8736; method 8, the same here, has 0.8737
+    (0, 29, 1, 0, 0.6666, 0.9882),
+    (2, 98, 0, 0, 0.9178, 0.9945),
+    (1, 98, 0, 1, 0.9171, 0.9916),
+    (0, 30, 0, 0, 0.8395, 1.0),
+    (54, 0, 0, 0, -0.0664, 0.0664),
+    (53, 0, 0, 1, -0.0729, 0.0729),
+    (30, 0, 0, 24, -0.0358, 0.0358),
+    (29, 0, 0, 25, -0.0354, 0.0354),
+    (28, 0, 0, 26, -0.0352, 0.0352),
+    (27, 0, 0, 27, -0.0351, 0.0351),
+]
+
+
+@pytest.mark.parametrize(("successes", "count", "low", "high"), PUBLISHED_RATES)
+def test_wilson_is_as_published(successes: int, count: int, low: float, high: float) -> None:
+    rate = wilson(successes, count)
+    assert rate.rate == successes / count
+    assert (rate.low, rate.high) == pytest.approx((low, high), abs=5e-5)
+
+
+@pytest.mark.parametrize(("a", "n", "b", "m", "low", "high"), PUBLISHED_DIFFERENCES)
+def test_newcombe_is_as_published(a: int, n: int, b: int, m: int, low: float, high: float) -> None:
+    difference = newcombe(a, n, b, m)
+    assert difference.rate == pytest.approx(a / n - b / m)
+    assert (difference.low, difference.high) == pytest.approx((low, high), abs=5e-5)
+
+
+@pytest.mark.parametrize("confidence", [0.5, 0.9, 0.95, 0.999])
+def test_wilson_bounds_solve_the_score_equation(confidence: float) -> None:
+    from statistics import NormalDist  # noqa: PLC0415
+
+    z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
+    rate, low, high = wilson(7, 20, confidence)
+    for bound in (low, high):
+        assert abs(rate - bound) == pytest.approx(z * math.sqrt(bound * (1 - bound) / 20))
+
+
+def test_wilson_ends_exactly_at_0_and_1() -> None:
+    assert wilson(0, 20).low == 0.0
+    assert wilson(20, 20).high == 1.0
+
+
+def test_wilson_of_no_runs_knows_nothing() -> None:
+    rate, low, high = wilson(0, 0)
+    assert math.isnan(rate)
+    assert (low, high) == (0.0, 1.0)
+
+
+def test_newcombe_changes_sign_with_its_samples() -> None:
+    there, back = newcombe(9, 20, 4, 15), newcombe(4, 15, 9, 20)
+    assert (there.rate, there.low, there.high) == pytest.approx((-back.rate, -back.high, -back.low))
+
+
+@pytest.mark.parametrize(("successes", "count"), [(-1, 5), (6, 5), (0, -1)])
+def test_impossible_counts_are_refused(successes: int, count: int) -> None:
+    message = f"^successes must be from 0 to count = {count}, got {successes}$"
+    with pytest.raises(ValueError, match=message):
+        wilson(successes, count)
+
+
+@pytest.mark.parametrize("confidence", [0.0, 1.0, 95.0, math.nan])
+def test_impossible_confidence_is_refused(confidence: float) -> None:
+    message = f"^confidence must be between 0 and 1, got {confidence}$"
+    with pytest.raises(ValueError, match=message):
+        wilson(1, 2, confidence)
+
+
+def test_an_empty_sample_has_no_difference() -> None:
+    for sizes in ((0, 2), (2, 0), (-1, 2)):
+        message = f"^n and m must be at least 1, got {sizes[0]} and {sizes[1]}$"
+        with pytest.raises(ValueError, match=message):
+            newcombe(0, sizes[0], 0, sizes[1])
+
+
+@pytest.mark.parametrize(("both", "first", "second", "neither", "low", "high"), PUBLISHED_PAIRS)
+def test_newcombe_paired_is_as_published(
+    both: int, first: int, second: int, neither: int, low: float, high: float
+) -> None:
+    difference = newcombe_paired(both, first, second, neither)
+    assert difference.rate == (first - second) / (both + first + second + neither)
+    assert (difference.low, difference.high) == pytest.approx((low, high), abs=5e-5)
+
+
+def test_newcombe_paired_holds_the_difference_and_stays_within_its_range() -> None:
+    n = 12
+    for both in range(n + 1):
+        for first in range(n + 1 - both):
+            for second in range(n + 1 - both - first):
+                rate, low, high = newcombe_paired(both, first, second, n - both - first - second)
+                assert -1.0 - 1e-12 <= low <= rate <= high <= 1.0 + 1e-12
+                assert low < high  # even where no pair differs
+
+
+def test_newcombe_paired_changes_sign_with_its_order() -> None:
+    there, back = newcombe_paired(5, 9, 4, 2), newcombe_paired(5, 4, 9, 2)
+    assert (there.rate, there.low, there.high) == pytest.approx((-back.rate, -back.high, -back.low))
+
+
+def test_pairs_that_agree_narrow_the_interval_and_those_that_do_not_widen_it() -> None:
+    independent = newcombe(10, 20, 10, 20)
+    alike, opposed = newcombe_paired(9, 1, 1, 9), newcombe_paired(1, 9, 9, 1)
+    assert alike.high < 0.7 * independent.high
+    assert opposed.high > 1.2 * independent.high
+
+
+@pytest.mark.parametrize(
+    "shares",
+    [(0.5, 0.2, 0.1, 0.2), (0.3, 0.1, 0.1, 0.5), (0.75, 0.15, 0.02, 0.08), (0.1, 0.5, 0.3, 0.1)],
+)
+def test_newcombe_paired_covers_the_true_difference_as_often_as_it_claims(
+    shares: tuple[float, ...],
+) -> None:
+    tables, counts = np.unique(
+        np.random.default_rng(0).multinomial(20, shares, size=20_000), axis=0, return_counts=True
+    )
+    covered = 0
+    for table, count in zip(tables.tolist(), counts.tolist(), strict=True):
+        _, low, high = newcombe_paired(*table)
+        covered += count * (low <= shares[1] - shares[2] <= high)
+    # Of 20 pairs few tables are likely: the coverage jumps about, a little above its claim.
+    assert 0.935 < covered / 20_000 < 0.985
+
+
+def test_newcombe_paired_of_a_million_pairs_does_not_overflow() -> None:
+    pairs = np.array([500_000, 100_000, 100_000, 300_000])
+    difference = newcombe_paired(*pairs.tolist())
+    assert difference.high == pytest.approx(1.96 * math.sqrt(0.2 / 1e6), rel=1e-3)
+    assert newcombe_paired(*pairs) == difference
+
+
+@pytest.mark.parametrize("pairs", [(0, 0, 0, 0), (-1, 2, 3, 4), (1, 2, 3, -4)])
+def test_impossible_numbers_of_pairs_are_refused(pairs: tuple[int, int, int, int]) -> None:
+    a, b, c, d = pairs
+    message = f"numbers of pairs must be at least 0, and one above 0, got {a}, {b}, {c} and {d}$"
+    with pytest.raises(ValueError, match=f"^{message}"):
+        newcombe_paired(*pairs)
+
+
+# Two-sided binomial tails, by hand.
+@pytest.mark.parametrize(
+    ("first", "second", "p"),
+    [(0, 0, 1.0), (3, 3, 1.0), (0, 1, 1.0), (0, 5, 2 / 32), (1, 7, 18 / 256), (2, 12, 212 / 16384)],
+)
+def test_mcnemar_is_the_exact_binomial_test(first: int, second: int, p: float) -> None:
+    assert mcnemar(first, second) == pytest.approx(p, rel=1e-12)
+    assert mcnemar(second, first) == mcnemar(first, second)
+
+
+def test_mcnemar_of_many_pairs_is_the_normal_test() -> None:
+    from statistics import NormalDist  # noqa: PLC0415
+
+    z = (1000 - 1) / math.sqrt(200_000)  # with continuity correction
+    assert mcnemar(99_500, 100_500) == pytest.approx(2 * NormalDist().cdf(-z), rel=1e-3)
+
+
+def test_mcnemar_refuses_a_negative_number() -> None:
+    with pytest.raises(ValueError, match=r"^numbers of pairs must be at least 0, got -1 and 3$"):
+        mcnemar(-1, 3)
+    with pytest.raises(ValueError, match=r"got 3 and -1$"):
+        mcnemar(3, -1)
+
+
+def test_a_bootstrap_is_the_normal_interval_of_many_values() -> None:
+    values = np.random.default_rng(1).normal(3.0, 2.0, 400)
+    mean, low, high = bootstrap_mean(values)
+    error = values.std() / 20.0
+    assert mean == pytest.approx(values.mean())
+    # 2000 resamples tell the bounds to about a tenth of the standard error.
+    assert (low, high) == pytest.approx(
+        (mean - 1.96 * error, mean + 1.96 * error), abs=0.15 * error
+    )
+    assert bootstrap_mean(values, 0.95) == (mean, low, high)
+    narrow = bootstrap_mean(values, confidence=0.5)
+    assert high - low == pytest.approx((narrow.high - narrow.low) * 1.96 / 0.674, rel=0.1)
+
+
+def test_a_bootstrap_repeats_itself() -> None:
+    assert bootstrap_mean([1.0, 5.0, 2.0]) == bootstrap_mean([1.0, 5.0, 2.0])
+
+
+def test_a_bootstrap_covers_the_true_mean_nearly_as_often_as_it_claims() -> None:
+    samples = np.random.default_rng(2).normal(0.0, 1.0, (80, 20))
+    covered = np.mean([low <= 0.0 <= high for _, low, high in map(bootstrap_mean, samples)])
+    assert covered > 0.84  # 0.93 expected for 20 values, three standard errors of 0.03
+
+
+def test_too_few_values_have_no_interval() -> None:
+    assert bootstrap_mean([2.5]) == (2.5, -math.inf, math.inf)
+    mean, low, high = bootstrap_mean([])
+    assert math.isnan(mean)
+    assert (low, high) == (-math.inf, math.inf)
+
+
+def test_equal_values_have_an_interval_of_no_width() -> None:
+    assert bootstrap_mean([0.25] * 4) == (0.25, 0.25, 0.25)
+
+
+@pytest.mark.parametrize("confidence", [0.0, 1.0, math.nan])
+def test_every_interval_refuses_an_impossible_confidence(confidence: float) -> None:
+    with pytest.raises(ValueError, match="confidence"):
+        newcombe_paired(1, 2, 3, 4, confidence)
+    with pytest.raises(ValueError, match="confidence"):
+        bootstrap_mean([1.0, 2.0], confidence)

@@ -1,0 +1,125 @@
+"""What the files of a crate import of each other, unit tests left out."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from tests.walls.rooms import Import
+
+Module = tuple[str, ...]
+
+_NO_CODE = re.compile(
+    r"""//[^\n]* | /\*.*?\*/ | b?r(\#*)".*?"\1 | b?"(?:\\.|[^"\\])*" | b?'(?:\\.[^']*|[^'\\])'""",
+    re.DOTALL | re.VERBOSE,
+)
+_TEST = re.compile(r"#\[cfg\(test\)\]")
+_TEST_MODULE = re.compile(r"#\[cfg\(test\)\]\s*mod\s+(\w+)\s*;")
+_USE = re.compile(r"\buse\s+([^;]+);")
+_PATH = re.compile(r"\b((?:crate|super|self)(?:\s*::\s*\w+)+)")
+
+
+def rust_files(folder: Path) -> dict[str, Module]:
+    """Map the paths of the files of a crate to its modules, those of unit tests left out."""
+    found = {}
+    for path in sorted(folder.rglob("*.rs")):
+        file = path.relative_to(folder)
+        *parents, last = file.with_suffix("").parts
+        if "tests" not in (*parents, last):
+            found[file.as_posix()] = tuple(parents if last in ("lib", "mod") else [*parents, last])
+    tests = {
+        (*module, name)
+        for file, module in found.items()
+        for name in _TEST_MODULE.findall((folder / file).read_text(encoding="utf-8"))
+    }
+    return {
+        file: module
+        for file, module in found.items()
+        if not any(module[: len(test)] == test for test in tests)
+    }
+
+
+def rust_imports(folder: Path) -> list[Import]:
+    """List the imports between the files of a crate, in the order of files and lines."""
+    files = rust_files(folder)
+    by_module = {module: file for file, module in files.items()}
+    found = set()
+    for file, module in files.items():
+        code = code_of((folder / file).read_text(encoding="utf-8"))
+        for position, path in paths(code):
+            target = resolved(path, module, by_module)
+            if target is not None and by_module[target] != file:
+                line = code.count("\n", 0, position) + 1
+                found.add(Import(file, line, by_module[target]))
+    return sorted(found, key=lambda each: (each.file, each.line, each.imported))
+
+
+def code_of(text: str) -> str:
+    """Blank comments, literals and unit tests; what is left stays where it was."""
+    code = _NO_CODE.sub(_blank, text)
+    while match := _TEST.search(code):
+        end = _end_of_item(code, match.end())
+        code = code[: match.start()] + _blanked(code[match.start() : end]) + code[end:]
+    return code
+
+
+def _blank(match: re.Match[str]) -> str:
+    return _blanked(match[0])
+
+
+def _blanked(text: str) -> str:
+    return re.sub(r"[^\n]", " ", text)
+
+
+def _end_of_item(code: str, start: int) -> int:
+    """Find the end of an item: the first semicolon outside of braces, or the last of its braces."""
+    depth = 0
+    for position in range(start, len(code)):
+        character = code[position]
+        depth += (character in "{([") - (character in "})]")
+        if depth == 0 and character in ";}":
+            return position + 1
+    return len(code)
+
+
+def paths(code: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the paths of `use` items, and those in code that begin at a module, with positions."""
+    for match in _USE.finditer(code):
+        for offset, path in _branches(match[1]):
+            yield match.start(1) + offset, path
+    for match in _PATH.finditer(_USE.sub(_blank, code)):
+        yield match.start(), re.split(r"\s*::\s*", match[1])
+
+
+def _branches(tree: str, before: tuple[str, ...] = ()) -> Iterator[tuple[int, list[str]]]:
+    """Spread the braces of a `use`; each path comes with the place of its last part."""
+    stem, brace, _ = tree.partition("{")
+    parts = [*before, *re.findall(r"\w+|\*", stem.split(" as ")[0])]
+    if not brace:
+        if tree.strip():
+            yield len(stem) - len(stem.lstrip()), parts
+        return
+    begin = start = len(stem) + 1
+    depth = 0
+    for position in range(begin, len(tree)):
+        character = tree[position]
+        if character in "," * (depth == 0) or (character == "}" and depth == 0):
+            for offset, path in _branches(tree[start:position], tuple(parts)):
+                yield start + offset, path
+            start = position + 1
+        depth += (character == "{") - (character == "}")
+
+
+def resolved(path: list[str], module: Module, modules: dict[Module, str]) -> Module | None:
+    """Find the module that a path leads to; None if it leads out of the crate."""
+    first = path[0]
+    if first == "crate":
+        full = path[1:]
+    elif first in ("self", "super"):
+        ups = sum(part == "super" for part in path)
+        full = [*module[: len(module) - ups], *(p for p in path if p not in ("self", "super"))]
+    elif (*module, first) in modules:
+        full = [*module, *path]
+    else:
+        return None
+    lengths = range(len(full), -1, -1)
+    return next((tuple(full[:n]) for n in lengths if tuple(full[:n]) in modules), None)

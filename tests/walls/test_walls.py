@@ -1,0 +1,20 @@
+"""The walls: what a file imports lies in its own room or below, and files do not go in circles."""
+
+import pytest
+
+from tests.walls.houses import HOUSES, files_of, imports_of
+from tests.walls.rooms import House, violations
+
+
+@pytest.mark.parametrize("name", HOUSES)
+def test_imports_lead_to_the_own_room_or_down(name: str) -> None:
+    house = House.read(name)
+    found = list(violations(house, files_of(house), imports_of(house)))
+    assert not found, "\n" + "\n".join(found)
+
+
+@pytest.mark.parametrize("name", HOUSES)
+def test_imports_are_found(name: str) -> None:
+    house = House.read(name)
+    assert len(files_of(house)) > 60
+    assert len(imports_of(house)) > 3 * len(files_of(house))
