@@ -91,7 +91,7 @@ fn carrier<'py>(
         numbers.resize(circles.len(), number);
         if let Some(found) = part.circuit() {
             circuit.set_item("belt", number)?;
-            circuit.set_item("length", found.length)?;
+            circuit.set_item("ways", found.ways.into_pyarray(py))?;
             circuit.set_item("poses", rows(py, &found.poses))?;
         }
     }

@@ -56,7 +56,7 @@ class Loop:
 
 
 def shapes_of(geometry: dict[str, Any]) -> list[dict[str, Any]]:
-    """Shapes of each carrier with outlines of its gear wheels [m] and the number of its grousers."""
+    """Shapes of each carrier with the outlines [m] of its gear wheels, and how many grousers."""
     bodies = geometry["bodies"]
     is_gear = (bodies["kind"] == c2d.BodyKind.WHEEL) & np.isnan(bodies["radius"])
     return [

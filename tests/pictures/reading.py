@@ -73,12 +73,11 @@ class PageRobot:
         if circuit is None:
             return []
         poses = np.column_stack([unpacked(circuit[name]) for name in ("x", "y", "angle")])
-        travel, last = self.value(circuit["travel"], frame), len(poses) - 1
+        ways, travel = unpacked(circuit["ways"]), self.value(circuit["travel"], frame)
         found = []
         for outline, start in zip(circuit["grousers"], circuit["starts"], strict=True):
-            at = ((travel + start) / circuit["length"]) % 1.0 * last
-            i = min(int(at), last - 1)
-            found.append((outline, poses[i] + (at - i) * (poses[i + 1] - poses[i])))
+            way = (travel + start) % circuit["length"]
+            found.append((outline, [np.interp(way, ways, column) for column in poses.T]))
         return found
 
 

@@ -26,8 +26,8 @@ def test_contacts_lie_on_the_grousers_that_pictures_show() -> None:
         now = (table["time"] == run.time[sample]) & (table["body_kind"] == BodyKind.GROUSER)
         for row in np.flatnonzero(now):
             point = np.array([table["x"][row], table["y"][row]])
-            # In half a step a grouser moves by 0.2 mm.
-            assert distance(point, scene.outline(table["body"][row], sample)) < 3e-4
+            # In half a step a grouser moves by 0.2 mm, its tip round an end by twice that.
+            assert distance(point, scene.outline(table["body"][row], sample)) < 5e-4
             seen.add(int(table["body"][row]))
     assert len(seen) > 11
 

@@ -64,7 +64,9 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
         plt.close("all")
         assert len(outlines) == len(pieces)
         now = (table["time"] == chain.time[sample]) & (table["lane"] == near)
-        for row in np.flatnonzero(now & np.isin(table["body_kind"], (BodyKind.GROUSER, BodyKind.SHOE))):
+        for row in np.flatnonzero(
+            now & np.isin(table["body_kind"], (BodyKind.GROUSER, BodyKind.SHOE))
+        ):
             point = np.array([table["x"][row], table["y"][row]])
             distances.append(distance(point, outlines[pieces.index(table["body"][row])]))
     assert len(distances) > 100

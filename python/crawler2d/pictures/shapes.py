@@ -31,10 +31,10 @@ class Circuit:
     ----------
     belt : int
         Row of the belt.
-    length : float
-        [m] All the way round.
+    ways : ndarray, shape (k,)
+        [m] Along the belt, all the way round; between them poses may be interpolated.
     poses : ndarray, shape (k, 3)
-        [m, m, rad] In the frame of the carrier, evenly spaced; the last is the first, a turn on.
+        [m, m, rad] There, in the frame of the carrier; the last is the first, a turn on.
     grousers : ndarray of int
         Rows of its grousers, ...
     starts : ndarray
@@ -42,7 +42,7 @@ class Circuit:
     """
 
     belt: int
-    length: float
+    ways: NDArray[np.float64]
     poses: NDArray[np.float64]
     grousers: NDArray[np.int64]
     starts: NDArray[np.float64]
@@ -108,7 +108,9 @@ class Scene:
         geometry = _core.geometry(scenario.to_json())
         columns = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
         found = moved(scenario, {name: getattr(run, name) for name in columns})
-        self.lanes = [lane for lane in geometry["lanes"] if lane[0] != Lane.MIDDLE]
+        self.lanes: list[tuple[int, NDArray[np.float64]]] = [
+            lane for lane in geometry["lanes"] if lane[0] != Lane.MIDDLE
+        ]
         self.edges = geometry["edges"]
         self.goal = float(geometry["goal"])
         self.bodies: dict[str, Any] = geometry["bodies"]

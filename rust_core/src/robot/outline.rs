@@ -12,8 +12,6 @@ const CIRCLE: u32 = 180;
 const ARC_POINTS: usize = 12;
 /// [rad] Turn between two points of a belt.
 const BELT_TURN: f64 = 0.05;
-/// Poses along a belt: between two of them a grouser is off by less than 0.1 mm.
-const WAYPOINTS: u32 = 360;
 
 /// A body with its outline.
 #[derive(Clone, Debug)]
@@ -47,10 +45,9 @@ enum Turning {
 /// What a belt carries along, all the way round.
 #[derive(Clone, Debug)]
 pub struct Circuit {
-    /// [m] Length of the belt.
-    pub length: f64,
-    /// [m, m, rad] Poses in the frame of what carries the belt, evenly spaced along it; the last is the first, one
-    /// turn on.
+    /// [m] Ways along the belt; between them it is straight, or so little bent that poses may be interpolated.
+    pub ways: Vec<f64>,
+    /// [m, m, rad] Poses there in the frame of what carries the belt; the last is the first, one turn on.
     pub poses: Vec<[f64; 3]>,
 }
 
@@ -180,15 +177,12 @@ impl Part {
             return None;
         };
         let belt = Envelope::new(discs);
-        let length = belt.length();
-        let pose = |i: u32| {
-            let way = length * f64::from(i) / f64::from(WAYPOINTS);
-            let ([x, y], angle) = (belt.point_at(way).into(), belt.angle_at(way));
-            [x, y, angle]
+        let pose = |way: &f64| {
+            let [x, y] = belt.point_at(*way).into();
+            [x, y, belt.angle_at(*way)]
         };
-        Some(Circuit {
-            length,
-            poses: (0..=WAYPOINTS).map(pose).collect(),
-        })
+        let ways: Vec<f64> = belt.ways(BELT_TURN).chain([belt.length()]).collect();
+        let poses = ways.iter().map(pose).collect();
+        Some(Circuit { ways, poses })
     }
 }

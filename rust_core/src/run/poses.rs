@@ -1,5 +1,8 @@
 //! Where every body of a robot was, at every sample of a run: what pictures draw, from the trace.
 
+#[cfg(test)]
+mod tests;
+
 use super::trace::Columns;
 use super::{Checked, Trace};
 use crate::error::Error;

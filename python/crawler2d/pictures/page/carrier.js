@@ -110,17 +110,23 @@ class Body {
 class Circuit {
   constructor(data, outlines) {
     Object.assign(this, data);
-    [this.x, this.y, this.angle] = [data.x, data.y, data.angle].map(unpacked);
+    for (const name of ["ways", "x", "y", "angle"]) this[name] = unpacked(data[name]);
     this.grousers = data.grousers.map((index) => outlines[index].path);
     this.marks = 6 * Math.max(2, Math.min(12, Math.round(data.length / data.pitch / 6)));
   }
 
   // The last pose is the first, a turn on.
   pose(way) {
-    const last = this.x.length - 1;
-    const at = (way / this.length - Math.floor(way / this.length)) * last;
-    const i = Math.min(Math.floor(at), last - 1);
-    const mixed = (values) => values[i] + (at - i) * (values[i + 1] - values[i]);
+    const { ways, length } = this;
+    const there = way - length * Math.floor(way / length);
+    let [i, after] = [0, ways.length - 1];
+    while (after - i > 1) {
+      const middle = (i + after) >> 1;
+      if (ways[middle] <= there) i = middle;
+      else after = middle;
+    }
+    const share = (there - ways[i]) / (ways[after] - ways[i]);
+    const mixed = (values) => values[i] + share * (values[after] - values[i]);
     return { x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle) };
   }
 
