@@ -64,7 +64,7 @@ def test_a_picture_holds_every_track_where_it_is(climb: c2d.Run) -> None:
     for sample in (0, climb.time.size // 2, climb.time.size - 1):
         lines = drawn_lines(climb, climb.time[sample])
         scene = Scene(climb)
-        for row in np.flatnonzero(climb.bodies["body"] >= 0):
+        for row in np.flatnonzero(climb.bodies["body"] >= 0).tolist():
             outline = scene.outline(row, sample)
             assert any(np.array_equal(outline, line) for line in lines)
 

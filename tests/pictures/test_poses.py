@@ -86,14 +86,13 @@ def test_the_page_has_every_body_to_a_tenth_of_a_millimetre(run: c2d.Run) -> Non
             alike = [
                 np.abs(there - line).max()
                 for _, body, there in drawn
-                if there.shape == line.shape and body in (number, None, shoe_of(run, row))
+                if there.shape == line.shape and body in (number, None, plate_of(scene.bodies, row))
             ]
             assert min(alike) < 1e-4, kind
 
 
-def shoe_of(run: c2d.Run, row: int) -> int | None:
+def plate_of(bodies: dict[str, Any], row: int) -> int | None:
     """The number of the plate that a page has for all pieces of a shoe."""
-    bodies = run.bodies
     is_plate = (bodies["shoe"] == bodies["shoe"][row]) & (bodies["kind"] == c2d.BodyKind.SHOE)
     return int(np.flatnonzero(is_plate)[0]) if bodies["shoe"][row] >= 0 else None
 
