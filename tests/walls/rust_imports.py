@@ -12,9 +12,11 @@ _NO_CODE = re.compile(
     r"""//[^\n]* | /\*.*?\*/ | b?r(\#*)".*?"\1 | b?"(?:\\.|[^"\\])*" | b?'(?:\\.[^']*|[^'\\])'""",
     re.DOTALL | re.VERBOSE,
 )
+_VISIBLE_IN = re.compile(r"\(in [^)]*\)")
 _TEST = re.compile(r"#\[cfg\(test\)\]")
 _TEST_MODULE = re.compile(r"#\[cfg\(test\)\]\s*mod\s+(\w+)\s*;")
 _USE = re.compile(r"\buse\s+([^;]+);")
+_HANDED_ON = re.compile(r"\bpub(?:\([^)]*\))?\s+use\s+([^;]+);")
 _PATH = re.compile(r"\b((?:crate|super|self)(?:\s*::\s*\w+)+)")
 
 
@@ -42,20 +44,30 @@ def rust_imports(folder: Path) -> list[Import]:
     """List the imports between the files of a crate, in the order of files and lines."""
     files = rust_files(folder)
     by_module = {module: file for file, module in files.items()}
+    codes = {file: code_of((folder / file).read_text(encoding="utf-8")) for file in files}
+    faces = {
+        (*module, path[-1]): resolved(path, module, by_module, {})
+        for file, module in files.items()
+        for _, path in paths(codes[file], _HANDED_ON)
+    }
     found = set()
     for file, module in files.items():
-        code = code_of((folder / file).read_text(encoding="utf-8"))
+        code = codes[file]
         for position, path in paths(code):
-            target = resolved(path, module, by_module)
-            if target is not None and by_module[target] != file:
+            target = resolved(path, module, by_module, faces)
+            is_face = target is not None and faces.get((*module, path[-1])) == target
+            # A room that hands on what is in it does not depend on that.
+            if target is None or (is_face and target[: len(module)] == module):
+                continue
+            if by_module[target] != file:
                 line = code.count("\n", 0, position) + 1
                 found.add(Import(file, line, by_module[target]))
     return sorted(found, key=lambda each: (each.file, each.line, each.imported))
 
 
 def code_of(text: str) -> str:
-    """Blank comments, literals and unit tests; what is left stays where it was."""
-    code = _NO_CODE.sub(_blank, text)
+    """Blank comments, literals, visibilities and unit tests; what is left stays where it was."""
+    code = _VISIBLE_IN.sub(_blank, _NO_CODE.sub(_blank, text))
     while match := _TEST.search(code):
         end = _end_of_item(code, match.end())
         code = code[: match.start()] + _blanked(code[match.start() : end]) + code[end:]
@@ -81,11 +93,13 @@ def _end_of_item(code: str, start: int) -> int:
     return len(code)
 
 
-def paths(code: str) -> Iterator[tuple[int, list[str]]]:
+def paths(code: str, uses: re.Pattern[str] = _USE) -> Iterator[tuple[int, list[str]]]:
     """Yield the paths of `use` items, and those in code that begin at a module, with positions."""
-    for match in _USE.finditer(code):
+    for match in uses.finditer(code):
         for offset, path in _branches(match[1]):
             yield match.start(1) + offset, path
+    if uses is not _USE:
+        return
     for match in _PATH.finditer(_USE.sub(_blank, code)):
         yield match.start(), re.split(r"\s*::\s*", match[1])
 
@@ -109,8 +123,16 @@ def _branches(tree: str, before: tuple[str, ...] = ()) -> Iterator[tuple[int, li
         depth += (character == "{") - (character == "}")
 
 
-def resolved(path: list[str], module: Module, modules: dict[Module, str]) -> Module | None:
-    """Find the module that a path leads to; None if it leads out of the crate."""
+def resolved(
+    path: list[str],
+    module: Module,
+    modules: dict[Module, str],
+    faces: dict[Module, Module | None],
+) -> Module | None:
+    """Find the module that a path leads to; None if it leads out of the crate.
+
+    `faces` are names that a module hands on, with the modules that they come from.
+    """
     first = path[0]
     if first == "crate":
         full = path[1:]
@@ -121,5 +143,9 @@ def resolved(path: list[str], module: Module, modules: dict[Module, str]) -> Mod
         full = [*module, *path]
     else:
         return None
-    lengths = range(len(full), -1, -1)
-    return next((tuple(full[:n]) for n in lengths if tuple(full[:n]) in modules), None)
+    for end in range(len(full), -1, -1):
+        if faces.get(tuple(full[:end])) is not None:
+            return faces[tuple(full[:end])]
+        if tuple(full[:end]) in modules:
+            return tuple(full[:end])
+    return None

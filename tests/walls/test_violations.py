@@ -154,9 +154,23 @@ def test_files_of_unit_tests_may_use_everything(tmp_path: Path) -> None:
 
 
 def test_a_path_of_a_submodule_is_an_import(tmp_path: Path) -> None:
-    house = crate(tmp_path, {"upper/mod.rs": "mod high;\npub use high::High;\n"})
+    house = crate(tmp_path, {"upper/mod.rs": "mod high;\nuse high::High;\n"})
     assert Import("upper/mod.rs", 2, "upper/high.rs") in imports_of(house)
-    assert Import("lib.rs", 3, "upper/mod.rs") in imports_of(house)
+
+
+def test_a_name_that_a_room_hands_on_is_imported_from_where_it_is_defined(tmp_path: Path) -> None:
+    face = "mod high;\nmod other;\npub use high::High;\n"
+    texts = {"upper/mod.rs": face, "upper/other.rs": "use super::High;\n"}
+    house = crate(tmp_path, texts)
+    assert imports_of(house) == [
+        Import("lib.rs", 3, "upper/high.rs"),
+        Import("upper/other.rs", 1, "upper/high.rs"),
+    ]
+
+
+def test_a_name_from_above_cannot_be_handed_on(tmp_path: Path) -> None:
+    house = crate(tmp_path, {"ground/low.rs": "pub use crate::upper::high::High;\n"})
+    assert faults(house) == upwards(1, "rs")
 
 
 def test_what_lib_defines_is_above_every_room(tmp_path: Path) -> None:

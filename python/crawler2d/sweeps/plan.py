@@ -40,9 +40,17 @@ class Plan:
 
 
 def plan_runs(
-    base: Scenario, axes: Sequence[Axis], variation: Variation, *, repeats: int, seed: int
+    base: Scenario,
+    axes: Sequence[Axis],
+    variation: Variation,
+    *,
+    repeats: int,
+    seed: int,
+    like: _core.Passed | None = None,
 ) -> list[Plan]:
     """Make the scenario of every run: cell by cell, the repeats of a cell in order.
+
+    What a cell has in common with the one before it, the first with `like`, is not built again.
 
     Raises
     ------
@@ -51,7 +59,7 @@ def plan_runs(
     """
     streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
     plans: list[Plan] = []
-    last: _core.Passed | None = None
+    last = like
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
         cell_place = f"cell[{', '.join(names)}]"

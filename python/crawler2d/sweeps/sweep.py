@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
-from crawler2d._core import build_info, canonical
+from crawler2d._core import Passed, build_info
 from crawler2d.common.arrays import frozen_scalar
 from crawler2d.common.extras import extra
 from crawler2d.errors import Crawler2dError, ScenarioError
@@ -198,9 +198,9 @@ def tabulate(
     count = thread_count(threads)
     repeats = _whole(repeats, "repeats", 1, 10**6)
     seed = _whole(seed, "seed", 0, 2**64 - 1)
-    canonical(scenario.to_json())
+    base = Passed(scenario.to_json())
     variation = Variation.of(scenario, vary, [path for axis in axes for path in axis.paths])
-    plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed)
+    plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed, like=base)
     if on_error == "raise":
         _raise_first(plan.refused for plan in plans)
     runs = simulate_passed(

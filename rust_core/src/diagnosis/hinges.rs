@@ -1,18 +1,10 @@
 //! Arms in the statics of a stop: each hangs on its pivot, and its motor has a limit.
 
 use super::scene::Scene;
+use super::statics::Hinge;
 use crate::dynamics::Direction;
 use crate::geometry::{Pose, Vector, cross};
 use crate::robot::Mount;
-
-/// The pivot of the arms at one end.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Hinge {
-    /// [m] Moment of the arms' weight about it, over the weight of the robot; counter-clockwise held.
-    pub weight: f64,
-    /// [m] The largest torque of their motors over the weight of the robot.
-    pub torque: f64,
-}
 
 impl Scene<'_> {
     /// Those of the robot in a pose.

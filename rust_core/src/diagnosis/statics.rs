@@ -9,7 +9,6 @@
 mod tests;
 
 use super::forces::{Forces, Push, Source, WITHOUT_LIMIT};
-use super::hinges::Hinge;
 use crate::dynamics::{Direction, push_axis};
 use crate::robot::Model;
 
@@ -49,6 +48,15 @@ pub(super) struct Support {
     /// Sign of its slip along the tangent; 0 while it sticks.
     pub slides: f64,
     pub role: Role,
+}
+
+/// The pivot of the arms at one end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hinge {
+    /// [m] Moment of the arms' weight about it, over the weight of the robot; counter-clockwise held.
+    pub weight: f64,
+    /// [m] The largest torque of their motors over the weight of the robot.
+    pub torque: f64,
 }
 
 /// What a support is to the diagnosis.

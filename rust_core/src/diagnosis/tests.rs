@@ -4,7 +4,7 @@
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
 use crate::observe::{Bearing, DriveMean};
-use crate::robot::{Model, Mount, Running};
+use crate::robot::{Model, Mount};
 use crate::scenario::{Scenario, Terrain};
 use crate::terrain::Ground;
 
@@ -96,7 +96,7 @@ impl Stage {
             command: self.scenario.drive.speed,
             set_point: self.scenario.drive.speed,
             half_length: HALF,
-            running: Running::at_start(&self.model, 0.0),
+            running: self.model.running_at_start(0.0),
         };
         let seen = Seen {
             time: 3.0,

@@ -1,10 +1,10 @@
 //! What a robot's chains of shoes add to the equations of motion.
 
 use super::Dynamics;
+use super::arm::Arm;
 use super::chain::{Chain, Stand};
-use super::flippers::Arm;
+use super::phase::Phase;
 use super::row::{Link, Row};
-use super::solve::Phase;
 use super::state::{State, Twist};
 use crate::geometry::Vector;
 

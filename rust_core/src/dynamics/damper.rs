@@ -1,5 +1,8 @@
 //! An impulse that falls with a speed: what every constraint is to a solve.
 
+/// Compliance of the dampers, in units of the contact's own admittance.
+pub(super) const DAMPING: f64 = 1e-6;
+
 /// An impulse that falls with the speed along its direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Damper {

@@ -7,8 +7,9 @@
 
 use super::Dynamics;
 use super::damper::Damper;
+use super::phase::Phase;
 use super::row::Row;
-use super::solve::{AGREEMENT, Phase};
+use super::solve::AGREEMENT;
 use super::state::{State, Twist};
 
 /// Newton steps at most; a dozen contacts take three to six.

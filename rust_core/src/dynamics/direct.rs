@@ -12,13 +12,12 @@ use super::action::Action;
 use super::chain::Chain;
 use super::damper::Damper;
 use super::grip::Grip;
+use super::phase::Phase;
 use super::row::{Link, Row};
-use super::solve::{AGREEMENT, Phase, Push};
+use super::solve::AGREEMENT;
 use super::state::State;
 use super::system::{Acts, Spin};
 
-/// Compliance of the dampers, in units of the contact's own admittance.
-pub(super) const DAMPING: f64 = 1e-6;
 /// Solutions of the system in search of one that fits, with all misfits mended at once: they can chase each
 /// other for ever.
 const AT_ONCE: u32 = 4;
@@ -178,25 +177,5 @@ impl Dynamics {
             };
             self.system.add(along, along, acts, push.damper());
         }
-    }
-}
-
-impl Push {
-    pub(super) fn damper(&self) -> Damper {
-        Damper::new(self.center, 1.0 / (DAMPING * self.admittance))
-    }
-
-    /// [m/s] Of the rail that its axis runs on.
-    pub(super) fn slip(&self, state: &State) -> f64 {
-        let spin = state.drives[0].spin;
-        self.action
-            .speed(state.velocity, state.angular_velocity, spin)
-    }
-
-    /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
-    pub(super) fn follow_velocities(&mut self, state: &State) -> f64 {
-        let slip = self.slip(state);
-        self.impulse = self.damper().at(slip);
-        slip.abs()
     }
 }

@@ -10,107 +10,13 @@ mod tests;
 
 use super::Dynamics;
 use super::action::Action;
-use super::damper::Damper;
-use super::motors::{AT_LIMIT, Motor, PAST};
-use super::solve::Phase;
+use super::arm::Arm;
+use super::motor::{AT_LIMIT, Motor, PAST};
+use super::phase::Phase;
 use super::state::{State, Twist};
 use super::system::Acts;
 use crate::geometry::{Vector, left_of};
-use crate::robot::Flipper;
 use crate::scenario::End;
-
-/// The arms at one end in the equations of motion.
-pub(super) struct Arm {
-    rule: Flipper,
-    pub motor: Motor,
-    /// [rad/s] Turn over the chassis that is commanded in this step.
-    rate: f64,
-    /// [m] From the chassis' centre of mass to the pivot, ...
-    pivot: Vector,
-    /// [m] ... and from there to its own, in the middle of the step.
-    center: Vector,
-    /// Its velocity in this piece as it would be without the pivot.
-    free: Twist,
-}
-
-impl Arm {
-    pub(super) fn new(rule: Flipper) -> Self {
-        let has_motor = rule.torque_limit > 0.0;
-        Self {
-            rule,
-            motor: if has_motor { Motor::Holds } else { Motor::Free },
-            rate: 0.0,
-            pivot: Vector::ZERO,
-            center: Vector::ZERO,
-            free: Twist::default(),
-        }
-    }
-
-    /// [rad/s] Its turn over the chassis, if its motor holds it.
-    pub(super) fn held_rate(&self) -> Option<f64> {
-        self.motor.share().is_none().then_some(self.rate)
-    }
-
-    /// [kg m^2]
-    pub(super) fn inertia_about_pivot(&self) -> f64 {
-        self.rule.moment_of_inertia + self.rule.mass * self.rule.arm.length_squared()
-    }
-
-    /// [m/s] Velocity of its centre of mass.
-    fn velocity(&self, chassis: Twist, rate: f64) -> Vector {
-        chassis.at(self.pivot) + rate * left_of(self.center)
-    }
-
-    /// [N s] Momentum that it would have by itself.
-    pub(super) fn free_momentum(&self) -> Vector {
-        self.free.velocity * self.rule.mass
-    }
-
-    /// [N m s] What its motor has given at a share of its limit.
-    fn given(&self, share: f64, phase: &Phase) -> f64 {
-        share * self.rule.torque_limit * phase.elapsed
-    }
-
-    /// Its inertia along x, along y and in turn, and its motor: how velocities count, and the impulses
-    /// that belong to them.
-    fn dampers(&self, phase: &Phase) -> [(Action, Damper); 4] {
-        let [pivot, arm] = [self.pivot, self.center].map(left_of);
-        let Flipper {
-            mass,
-            moment_of_inertia: inertia,
-            ..
-        } = self.rule;
-        let action = |unit: Vector, lever: f64, flipper_lever: f64| {
-            let action = Action {
-                unit,
-                lever,
-                flipper_lever,
-                ..Action::default()
-            };
-            action.of_flipper(self.held_rate())
-        };
-        let free = self.free.velocity;
-        let share = self.motor.share().unwrap_or_default();
-        [
-            (
-                action(Vector::X, pivot.x, arm.x),
-                Damper::new(mass * free.x, mass),
-            ),
-            (
-                action(Vector::Y, pivot.y, arm.y),
-                Damper::new(mass * free.y, mass),
-            ),
-            (
-                action(Vector::ZERO, 0.0, 1.0),
-                Damper::new(inertia * self.free.turn, inertia),
-            ),
-            (
-                action(Vector::ZERO, -1.0, 1.0),
-                Damper::constant(self.given(share, phase)),
-            ),
-        ]
-    }
-}
 
 impl Dynamics {
     /// Commands the angles of the flippers [rad], upwards > 0, which they approach as fast as they may.

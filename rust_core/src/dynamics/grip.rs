@@ -2,11 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::damper::Damper;
-use super::direct::DAMPING;
-use super::row::Row;
-use super::state::State;
-
 /// What a contact does in a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Grip {
@@ -28,96 +23,5 @@ impl Grip {
             (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,
             _ => fitting,
         }
-    }
-}
-
-impl Row {
-    /// Makes its impulses the ones that it is damped about.
-    pub(super) fn settle(&mut self) {
-        self.center.0 = self.normal_impulse;
-        if self.give == 0.0 {
-            self.center.1 = self.friction_impulse;
-        }
-        self.place_dampers();
-    }
-
-    /// Takes these back.
-    pub(super) fn unsettle(&mut self) {
-        (self.normal_impulse, self.friction_impulse) = self.center;
-    }
-
-    /// Guesses its grip from its impulses.
-    pub(super) fn guess_grip(&mut self) {
-        let limit = self.friction * self.normal_impulse * (1.0 - 1e-9);
-        self.grip = if self.normal_impulse <= 0.0 {
-            Grip::Open
-        } else if self.friction_impulse >= limit {
-            Grip::Forwards
-        } else if self.friction_impulse <= -limit {
-            Grip::Backwards
-        } else {
-            Grip::Sticks
-        };
-    }
-
-    /// Finds its dampers, about the impulses that they are centred on.
-    pub(super) fn place_dampers(&mut self) {
-        let (normal, friction) = self.center;
-        let damping = DAMPING * self.admittance.normal;
-        let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
-        self.dampers = [
-            Damper::new(stiffness * (damping * normal - self.bias), stiffness),
-            Damper::new(
-                friction,
-                1.0 / ((self.give + DAMPING) * self.admittance.tangent),
-            ),
-        ];
-    }
-
-    /// [m/s] Along normal and tangent.
-    pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
-        let (shoe, spin) = (
-            |i: usize| state.shoes[i].twist,
-            |k: usize| state.drives[k].spin,
-        );
-        let idler = |k: usize| state.idlers[k].rate;
-        let flipper = |k: usize| state.flippers[k].rate;
-        let [n, t] = self.count(state.twist(), shoe, spin, idler, flipper);
-        [n + self.actions[0].offset, t + self.actions[1].offset]
-    }
-
-    /// Takes the impulses that belong to speeds along normal and tangent [m/s], and the grip that fits them; how
-    /// far the velocities are from what they should be [m/s].
-    pub(super) fn follow_speeds(&mut self, speeds: [f64; 2]) -> f64 {
-        let (grip, [normal, friction]) = self.law(speeds);
-        self.fitting = grip;
-        self.normal_impulse = normal;
-        self.friction_impulse = friction;
-        let off_normal = (normal - self.center.0).abs() * self.admittance.normal;
-        let off_tangent = (friction - self.center.1).abs() * self.admittance.tangent;
-        let off = match grip {
-            Grip::Open => 0.0,
-            Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
-            _ => off_normal,
-        };
-        DAMPING * off
-    }
-
-    /// What it does at such speeds, and its impulses along normal and tangent [N s].
-    pub(super) fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
-        let [n, t] = self.dampers;
-        let (normal, friction) = (n.at(approach), t.at(slip));
-        let limit = self.friction * normal;
-        let (grip, friction) = if normal <= 0.0 {
-            (Grip::Open, 0.0)
-        } else if friction > limit || limit == 0.0 {
-            // Which way it slides makes no difference without friction.
-            (Grip::Forwards, limit)
-        } else if friction < -limit {
-            (Grip::Backwards, -limit)
-        } else {
-            (Grip::Sticks, friction)
-        };
-        (grip, [normal.max(0.0), friction])
     }
 }

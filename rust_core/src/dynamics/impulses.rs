@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Dynamics;
 use super::LoadedContact;
 use super::chain::{Chain, ChainImpulses};
-use super::motors::Motor;
+use super::motor::Motor;
 use crate::geometry::plausible;
 use crate::terrain::Profile;
 

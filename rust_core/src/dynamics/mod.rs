@@ -7,6 +7,7 @@
 //! forces, so that the force limit of its motor acts on the net traction inside the step.
 
 mod action;
+mod arm;
 mod chain;
 mod chains;
 mod change;
@@ -17,22 +18,30 @@ mod effort;
 mod flippers;
 mod grip;
 mod impulses;
+mod law;
 mod levers;
 mod loaded;
+mod motor;
 mod motors;
 mod newton;
+mod phase;
+mod push;
 mod row;
+mod softness;
 mod solve;
 mod state;
 mod system;
 #[cfg(test)]
 mod tests;
+mod way;
 
+use arm::Arm;
 use chain::Chain;
-use flippers::Arm;
-use motors::Motor;
+use motor::Motor;
+use phase::Phase;
+use push::Push;
 use row::Row;
-use solve::{Phase, Push, Softness};
+use softness::Softness;
 use system::System;
 
 use crate::contact::Contact;
@@ -47,7 +56,7 @@ pub(crate) use grip::Grip;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
 pub(crate) use loaded::LoadedContact;
-pub(crate) use motors::push_axis;
+pub(crate) use push::push_axis;
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };

@@ -4,55 +4,10 @@
 //! wherever its wheel is, and nothing to solve for. Only drives at their limit, or without a motor, have
 //! a spin of their own.
 
-use serde::{Deserialize, Serialize};
-
 use super::Dynamics;
-use super::levers::Direction;
-use super::solve::Phase;
+use super::motor::{AT_LIMIT, Motor, PAST};
+use super::phase::Phase;
 use super::state::State;
-use crate::geometry::{Rotation, Vector, cross};
-use crate::robot::Model;
-
-/// What a motor does in a solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Motor {
-    /// Its force gives the surface the set-point.
-    Holds,
-    /// At its limit, forwards.
-    Pushes,
-    /// At its limit, backwards.
-    Brakes,
-    /// There is none.
-    Free,
-}
-
-/// Of the limit: less beyond it is rounding.
-pub(super) const AT_LIMIT: f64 = 1e-12;
-/// [m/s] A motor at its limit takes hold again when its surface is past the set-point by this.
-pub(super) const PAST: f64 = 1e-9;
-
-impl Motor {
-    /// Share of the limit with which it pushes; none if it holds.
-    pub(super) fn share(self) -> Option<f64> {
-        match self {
-            Self::Holds => None,
-            Self::Pushes => Some(1.0),
-            Self::Brakes => Some(-1.0),
-            Self::Free => Some(0.0),
-        }
-    }
-
-    /// One that holds with an impulse, if that is within its limit.
-    pub(super) fn within(impulse: f64, limit: f64) -> Self {
-        if impulse > limit {
-            Self::Pushes
-        } else if impulse < -limit {
-            Self::Brakes
-        } else {
-            Self::Holds
-        }
-    }
-}
 
 impl Dynamics {
     /// Lets motors beyond their limit go, and those past the set-point take hold; whether any did.
@@ -111,20 +66,5 @@ impl Dynamics {
         // What the contacts have not, the motor has changed of the spin.
         let change = self.model.drive_inertia(k) * (state.drives[k].spin - phase.spins[k]);
         (self.torques[k] - change) / self.model.drive_radius
-    }
-}
-
-/// Direction of a force along the chassis at axle height, at a chassis angle [rad].
-pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
-    let rotation = Rotation::new(angle);
-    let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
-    // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
-    let arm = model.drive_radius * up - rotation * model.center_of_mass;
-    Direction {
-        unit: axis,
-        lever: cross(arm, axis),
-        drive_lever: model.drive_radius,
-        back: 0.0,
-        flipper_lever: 0.0,
     }
 }

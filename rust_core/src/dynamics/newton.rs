@@ -9,8 +9,9 @@
 
 use super::Dynamics;
 use super::grip::Grip;
+use super::phase::Phase;
 use super::row::Row;
-use super::solve::{AGREEMENT, Phase};
+use super::solve::AGREEMENT;
 use super::state::{State, Twist};
 
 /// Steps at most; a typical solve takes three.
@@ -21,29 +22,6 @@ const LEAST: f64 = 1.0 / 16.0;
 const STALLS: u32 = 2;
 /// The least share of what a step promises that it has to keep.
 const PAYS: f64 = 0.1;
-
-/// A row on the way between two solutions: its speeds along normal and tangent [m/s], and the impulses
-/// along them that balance these velocities [N s].
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Way {
-    speeds: [f64; 2],
-    held: [f64; 2],
-    /// The same at its end.
-    to_speeds: [f64; 2],
-    to_held: [f64; 2],
-}
-
-impl Way {
-    /// Speeds and impulses after a share of it.
-    fn after(&self, share: f64) -> [[f64; 2]; 2] {
-        let between =
-            |from: [f64; 2], to: [f64; 2]| [0, 1].map(|i| from[i] + (to[i] - from[i]) * share);
-        [
-            between(self.speeds, self.to_speeds),
-            between(self.held, self.to_held),
-        ]
-    }
-}
 
 impl Dynamics {
     /// Finds the impulses that all constraints agree on, if steps lead there.

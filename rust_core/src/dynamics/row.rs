@@ -5,9 +5,9 @@ use super::action::Action;
 use super::damper::Damper;
 use super::grip::Grip;
 use super::levers::{Carried, Direction, Levers};
-use super::newton::Way;
-use super::solve::{Admittance, Softness};
+use super::softness::Softness;
 use super::state::{Carrier, State, Twist};
+use super::way::Way;
 use crate::contact::Contact;
 use crate::geometry::{Rotation, Vector};
 use crate::robot::{Model, Mount};
@@ -30,6 +30,13 @@ pub(super) enum Link {
     Flipper(usize),
     /// A pin of a shoe to a tooth: the sprocket takes the reaction, and the chassis at its axle.
     Tooth { shoe: usize, chain: usize },
+}
+
+/// [1/kg] Velocity along normal and tangent for a unit impulse along them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Admittance {
+    pub normal: f64,
+    pub tangent: f64,
 }
 
 /// One contact's constraint in one step.

@@ -3,11 +3,12 @@
 use super::Dynamics;
 use super::action::Action;
 use super::chain::Chain;
-use super::motors::{Motor, push_axis};
-use super::row::{Link, Row};
+use super::motor::Motor;
+use super::phase::Phase;
+use super::push::push_axis;
+use super::row::{Admittance, Link, Row};
 use super::state::State;
 use crate::geometry::Vector;
-use crate::robot::Model;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
 /// that is a force of 1e-5 of the weight, far below what any outcome turns on.
@@ -16,76 +17,6 @@ pub(super) const AGREEMENT: f64 = 1e-7;
 const ITERATIONS: u32 = 30;
 /// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
 const TOUCHING: f64 = 1e-10;
-
-/// What a solve starts from: the velocities as they would be without contacts and motors.
-#[derive(Default)]
-pub(super) struct Phase {
-    /// [m/s] Of the centre of mass, with the weight's push.
-    pub velocity: Vector,
-    /// [rad/s] Of the chassis.
-    pub angular_velocity: f64,
-    /// [rad/s] Of the drives.
-    pub spins: Vec<f64>,
-    /// [m/s] For the surfaces.
-    pub set_point: f64,
-    /// [s] Time in which motors can push.
-    pub elapsed: f64,
-    /// [m/s] Velocity over the ground of the frame that velocities are measured in.
-    pub frame: Vector,
-}
-
-impl Phase {
-    /// [N s] What a motor at that share of its limit has given so far, ...
-    pub(super) fn motor_impulse(&self, share: f64, model: &Model) -> f64 {
-        share * model.drive_force * self.elapsed
-    }
-
-    /// [N m s] ... and what that has turned its drive back with.
-    pub(super) fn motor_turn(&self, share: f64, model: &Model) -> f64 {
-        self.motor_impulse(share, model) * model.drive_radius
-    }
-}
-
-/// The push of a track that is modelled by a force alone: its axis runs on a rail without slip, and the
-/// motor limits it.
-#[derive(Default)]
-pub(super) struct Push {
-    /// [N] As it was last.
-    pub force: f64,
-    /// [N s] In this piece.
-    pub impulse: f64,
-    /// [N s] What a direct solve starts from.
-    pub center: f64,
-    pub action: Action,
-    pub admittance: f64,
-}
-
-/// [1/kg] Velocity along normal and tangent for a unit impulse along them.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Admittance {
-    pub normal: f64,
-    pub tangent: f64,
-}
-
-/// Coefficients of a damped spring integrated implicitly.
-#[derive(Clone, Copy)]
-pub(super) struct Softness {
-    /// [1/s] Share of a penetration that is pushed out in a second.
-    pub push_rate: f64,
-    /// Compliance in units of the contact's own admittance.
-    pub compliance: f64,
-}
-
-impl Softness {
-    pub(super) fn new(frequency: f64, damping_ratio: f64, h: f64) -> Self {
-        let omega = std::f64::consts::TAU * frequency;
-        let a1 = 2.0 * damping_ratio + h * omega;
-        Self {
-            push_rate: omega / a1,
-            compliance: 1.0 / (h * omega * a1),
-        }
-    }
-}
 
 impl Dynamics {
     /// Finds the impulses that all constraints agree on.

@@ -205,7 +205,7 @@ impl State {
             let rate = flipper.rate - self.angular_velocity;
             self.over_chassis(k) + rate * time
         });
-        running.set(model, drives, shoes, turns);
+        model.set_running(running, drives, shoes, turns);
     }
 
     /// [rad] Angle of a flipper over the chassis, counter-clockwise.
@@ -238,7 +238,7 @@ impl State {
     pub(super) fn run_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
         let run = self.drives[drive].position;
         match mount {
-            Mount::Flipper(k) => run + model.drive_radius * self.over_chassis(k),
+            Mount::Flipper(k) => run + Flipper::run(self.over_chassis(k), model.drive_radius),
             Mount::Chassis | Mount::Shoe(_) => run,
         }
     }

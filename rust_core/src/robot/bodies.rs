@@ -1,6 +1,6 @@
 //! Masses of the wheels that a model stands for, and what they leave to the chassis.
 
-use super::{Model, Mount, Running, Shape};
+use super::{Model, Mount, Shape};
 use crate::geometry::{Pose, Vector};
 use crate::scenario::End;
 
@@ -51,7 +51,7 @@ impl Model {
     ///
     /// Those of the chassis turn together with the inertia of its track, those of an arm with that of the arm's.
     pub fn wheels(&self) -> Vec<WheelBody> {
-        let start = Running::at_start(self, 0.0);
+        let start = self.running_at_start(0.0);
         let round = self.parts.iter().enumerate();
         let mut wheels: Vec<WheelBody> = round
             .filter_map(|(i, part)| {

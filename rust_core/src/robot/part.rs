@@ -1,6 +1,6 @@
 //! A part of the robot: its shape, what carries it, where it is, how its drive moves it.
 
-use super::{BodyKind, Running};
+use super::{BodyKind, Mount, Running};
 use crate::geometry::{Disc, Gear, Grouser, Motion, Pose, Rotation, Vector};
 
 /// A shape on a body of the robot that meets the ground.
@@ -18,27 +18,6 @@ pub struct Part {
     pub lane: usize,
     /// The body that it is fixed to.
     pub mount: Mount,
-}
-
-/// A body of the robot that carries parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mount {
-    /// The chassis.
-    Chassis,
-    /// The shoe of that number.
-    Shoe(usize),
-    /// The arms at one end, of that number.
-    Flipper(usize),
-}
-
-impl Mount {
-    /// The number of its shoe.
-    pub fn shoe(self) -> Option<usize> {
-        match self {
-            Self::Shoe(shoe) => Some(shoe),
-            Self::Chassis | Self::Flipper(_) => None,
-        }
-    }
 }
 
 /// Forms in the chassis frame.

@@ -1,6 +1,6 @@
 //! Where a robot stands at time 0.
 
-use super::{Model, Running, Shape};
+use super::{Model, Shape};
 use crate::geometry::{Disc, Pose, Vector, end_discs, lower_tangent};
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::{Ground, Profile};
@@ -17,7 +17,7 @@ pub(crate) fn start_position(
         center: turned(d.center),
         ..d
     };
-    let running = Running::at_start(model, scenario.start.track_phase);
+    let running = model.running_at_start(scenario.start.track_phase);
     // What touches each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
     for part in &model.parts {

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::needs::{self, STACK};
+use super::budget::{self, STACK};
 use super::simulate::{Run, simulate_within};
 use super::{Checked, Record};
 use crate::error::{Error, LimitError, caught};
@@ -55,7 +55,7 @@ pub fn simulate_many(
 
     let scenarios = scenarios.into();
     let threads = threads.clamp(1, scenarios.len().max(1));
-    let budget = needs::of_batch(&scenarios, record, threads)?;
+    let budget = budget::of_batch(&scenarios, record, threads)?;
     let work = Arc::new(Work {
         next: AtomicUsize::new(0),
         done: AtomicUsize::new(0),

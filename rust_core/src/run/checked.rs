@@ -102,12 +102,11 @@ impl Checked {
         };
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
         check_sizes(&scenario, lumped.map_or(&[], |model| &model.parts))?;
-        let ground = match other.filter(|other| other.has_ground_of(&scenario)) {
-            Some(other) => Arc::clone(&other.ground),
-            None => {
-                needs::ask_for_ground(&scenario.terrain)?;
-                Arc::new(Ground::new(&scenario.terrain, robot.gauge)?)
-            }
+        let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
+            Arc::clone(&other.ground)
+        } else {
+            needs::ask_for_ground(&scenario.terrain)?;
+            Arc::new(Ground::new(&scenario.terrain, robot.gauge)?)
         };
         let model = match (built, twin) {
             (Some(model), _) => Arc::new(model.placed_on(&ground)),
@@ -129,8 +128,9 @@ impl Checked {
     }
 
     fn has_ground_of(&self, scenario: &Scenario) -> bool {
-        self.scenario.terrain == scenario.terrain
-            && self.scenario.robot.gauge == scenario.robot.gauge
+        let [mine, other] =
+            [&self.scenario, scenario].map(|s| (&s.terrain, s.robot.gauge.to_bits()));
+        mine == other
     }
 }
 

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::trace::Columns;
+use super::record::Columns;
 use super::{Checked, Trace};
 use crate::error::Error;
 use crate::geometry::{Pose, Vector};
@@ -46,12 +46,8 @@ impl Sample<'_> {
         let back = self.chassis.inverse();
         let shoe = |[x, y, angle]: &[f64; 3]| back * Pose::new(Vector::new(*x, *y), *angle);
         let turns = (0..self.flippers.len()).map(|k| self.turn(model, k));
-        running.set(
-            model,
-            self.drives.iter().copied(),
-            self.shoes.iter().map(shoe),
-            turns,
-        );
+        let (drives, shoes) = (self.drives.iter().copied(), self.shoes.iter().map(shoe));
+        model.set_running(running, drives, shoes, turns);
     }
 
     /// [rad] How far a flipper was turned over the chassis, counter-clockwise.
@@ -78,14 +74,15 @@ pub fn poses(checked: &Checked, trace: &Trace, cancel: &Cancel) -> Result<Poses,
     let model = checked.model();
     let bodies = model.outlines();
     let samples = trace.chassis_angle.len();
-    let columns = Columns::of(model);
-    columns.check(trace)?;
+    Columns::of(model).check(trace)?;
     let numbers = samples * (4 * bodies.len() + 3 * model.flippers.len() + 2);
     ask("the poses of a run", 8 * numbers as u64)?;
     let mut found = Poses {
         samples,
         count: bodies.len(),
         flippers: model.flippers.len(),
+        bodies: Vec::with_capacity(3 * samples * bodies.len()),
+        travels: Vec::with_capacity(samples * bodies.len()),
         ..Poses::default()
     };
     let (shoes, _) = trace.shoe_poses.as_chunks();
@@ -133,12 +130,11 @@ impl Columns {
     /// Whether the columns that poses are made of have the entries of this robot.
     fn check(self, trace: &Trace) -> Result<(), ScenarioError> {
         let samples = trace.chassis_angle.len();
-        let (drives, shoes, flippers) = self.moving();
         for (name, column, entries) in [
             ("position", &trace.position, 2),
-            ("drive_positions", &trace.drive_positions, drives),
-            ("shoe_poses", &trace.shoe_poses, 3 * shoes),
-            ("flipper_angles", &trace.flipper_angles, flippers),
+            ("drive_positions", &trace.drive_positions, self.drives),
+            ("shoe_poses", &trace.shoe_poses, 3 * self.shoes),
+            ("flipper_angles", &trace.flipper_angles, self.flippers),
         ] {
             if column.len() != samples * entries {
                 let rule = format!("must have {entries} numbers for each of {samples} samples");

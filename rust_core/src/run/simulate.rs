@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
-use super::trace::{ContactTable, Record, Recorder, Trace};
-use super::{Checked, Metrics, Simulation, needs};
+use super::contact_table::ContactTable;
+use super::record::Record;
+use super::trace::{Recorder, Trace};
+use super::{Checked, Metrics, Simulation, budget};
 use crate::diagnosis::{Counterfactual, Diagnosis};
 use crate::error::Error;
 use crate::limits::Cancel;
@@ -44,7 +46,7 @@ pub struct Run {
 /// [`Error::Limit`] before anything runs or if more was recorded than memory holds, [`Error::Simulation`] if the
 /// state became non-finite.
 pub fn simulate(checked: &Checked, record: Record) -> Result<Run, Error> {
-    let budget = needs::of_batch(std::slice::from_ref(checked), record, 1)?;
+    let budget = budget::of_batch(std::slice::from_ref(checked), record, 1)?;
     simulate_within(checked, record, (&budget, &Cancel::default()))
 }
 
@@ -71,7 +73,7 @@ pub fn branch(
     cancel: &Cancel,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
-    let budget = needs::of_batch(std::slice::from_ref(variant), record, 1)?;
+    let budget = budget::of_batch(std::slice::from_ref(variant), record, 1)?;
     let trunk = replay(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant);
     let last = simulation.steps() + variant.scenario().step_count();

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use self::gait::Driver;
 use super::Checked;
-use super::trace::Columns;
+use super::record::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};

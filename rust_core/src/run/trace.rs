@@ -1,92 +1,11 @@
 //! The history of a run as columns.
 
-use std::collections::TryReserveError;
-
 use super::Simulation;
+use super::contact_table::ContactTable;
+use super::record::{Columns, Record};
 use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};
 use crate::observe::Readings;
-use crate::robot::Model;
-use crate::scenario::Scenario;
-
-/// What to keep of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record {
-    /// [s] Time between two samples, rounded to whole steps.
-    pub sample_interval: f64,
-    /// Keep the trace and the contact table; without it only outcome, metrics and events.
-    pub history: bool,
-    /// Try a closed belt at the stop that a run ends in.
-    pub counterfactual: bool,
-}
-
-impl Default for Record {
-    fn default() -> Self {
-        Self {
-            sample_interval: 0.01,
-            history: true,
-            counterfactual: false,
-        }
-    }
-}
-
-impl Record {
-    /// Only outcome, metrics and events.
-    pub fn summary() -> Self {
-        Self {
-            history: false,
-            ..Self::default()
-        }
-    }
-
-    /// Steps of the time step `dt` [s] between two samples.
-    fn steps_a_sample(&self, dt: f64) -> u64 {
-        (self.sample_interval / dt).round().max(1.0) as u64
-    }
-
-    /// Samples of a run that lasts as long as it may.
-    pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
-        scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
-    }
-}
-
-/// What a robot has that is recorded.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Columns {
-    pub parts: usize,
-    drives: usize,
-    shoes: usize,
-    flippers: usize,
-}
-
-impl Columns {
-    /// Bytes of a row of the contact table.
-    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
-
-    pub(crate) fn of(model: &Model) -> Self {
-        Self {
-            parts: model.parts.len(),
-            drives: model.drives,
-            shoes: model.shoes(),
-            flippers: model.flippers.len(),
-        }
-    }
-
-    /// Numbers of drives, shoes and ends with flippers.
-    pub(crate) fn moving(self) -> (usize, usize, usize) {
-        (self.drives, self.shoes, self.flippers)
-    }
-
-    /// Bytes of a sample without its contacts.
-    pub(crate) fn bytes(self) -> u64 {
-        let entries: usize = Trace::default()
-            .columns(self)
-            .iter()
-            .map(|(_, entries)| entries)
-            .sum();
-        8 * entries as u64
-    }
-}
 
 /// Samples of the state; every column has one entry a sample (two a sample for x, y pairs).
 #[derive(Clone, Debug, Default)]
@@ -161,94 +80,15 @@ impl Trace {
     }
 }
 
-/// Contacts of all samples.
-#[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // the columns are described in docs/conventions.md
-pub struct ContactTable {
-    pub time: Vec<f64>,
-    pub lane: Vec<i64>,
-    pub body: Vec<i64>,
-    pub body_kind: Vec<i64>,
-    pub segment: Vec<i64>,
-    pub edge: Vec<i64>,
-    pub x: Vec<f64>,
-    pub y: Vec<f64>,
-    pub normal_x: Vec<f64>,
-    pub normal_y: Vec<f64>,
-    pub normal_force: Vec<f64>,
-    pub friction_force: Vec<f64>,
-    pub surface_speed: Vec<f64>,
-    pub penetration: Vec<f64>,
-}
-
-impl Simulation {
-    /// Contacts of the last step.
-    pub fn contact_table(&self) -> ContactTable {
-        let mut readings = Readings::default();
-        readings.add(self.loaded());
-        let mut table = ContactTable::default();
-        table.append(self, &mut readings);
-        table
-    }
-}
-
-impl ContactTable {
-    /// Every column.
-    fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 5]) {
-        let numbers = [
-            &mut self.time,
-            &mut self.x,
-            &mut self.y,
-            &mut self.normal_x,
-            &mut self.normal_y,
-            &mut self.normal_force,
-            &mut self.friction_force,
-            &mut self.surface_speed,
-            &mut self.penetration,
-        ];
-        let codes = [
-            &mut self.lane,
-            &mut self.body,
-            &mut self.body_kind,
-            &mut self.segment,
-            &mut self.edge,
-        ];
-        (numbers, codes)
-    }
-
-    /// Room in every column for so many rows in all.
-    fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
-        let (numbers, codes) = self.columns();
-        numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
-        codes.into_iter().try_for_each(|c| reserve(c, rows))
-    }
-
-    /// Gives back the room that no row takes.
-    fn shrink(&mut self) {
-        let (numbers, codes) = self.columns();
-        numbers.into_iter().for_each(Vec::shrink_to_fit);
-        codes.into_iter().for_each(Vec::shrink_to_fit);
-    }
-
-    /// Writes the readings of an interval that ends now.
-    pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
-        for r in readings.drain() {
-            self.time.push(simulation.time());
-            self.lane.push(simulation.side(r.contact.part) as i64);
-            self.body.push(r.contact.part as i64);
-            self.body_kind
-                .push(simulation.part_kind(r.contact.part) as i64);
-            self.segment.push(r.contact.facet as i64);
-            self.edge.push(i64::from(r.contact.edge));
-            self.x.push(r.contact.point.x);
-            self.y.push(r.contact.point.y);
-            self.normal_x.push(r.contact.normal.x);
-            self.normal_y.push(r.contact.normal.y);
-            self.normal_force.push(r.normal_force);
-            self.friction_force.push(r.friction_force);
-            self.surface_speed.push(r.surface_speed);
-            self.penetration.push((-r.contact.distance).max(0.0));
-        }
+impl Columns {
+    /// Bytes of a sample without its contacts.
+    pub(crate) fn bytes(self) -> u64 {
+        let entries: usize = Trace::default()
+            .columns(self)
+            .iter()
+            .map(|(_, entries)| entries)
+            .sum();
+        8 * entries as u64
     }
 }
 

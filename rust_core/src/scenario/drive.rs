@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::ScenarioError;
+use super::drivetrain::Drivetrain;
 use super::fields::{Fields, Range, one_of};
 use super::flippers::ANGLE;
-use super::robot::Drivetrain;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
 /// Entries of a schedule at most.

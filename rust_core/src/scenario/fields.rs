@@ -57,6 +57,9 @@ impl Range {
     }
 }
 
+/// [kg] Masses a crawler and its arms can have.
+pub(super) const MASS: Range = Range::between(1e-3, 1e6, "kg");
+
 /// One JSON object being read; every field is asked for once, the rest are unknown.
 pub(crate) struct Fields<'a> {
     path: String,

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, Range};
-use super::robot::{LENGTH, MASS, Robot, TrackOutline};
+use super::fields::{Fields, MASS, Range};
+use super::outline::{LENGTH, TrackOutline};
 use super::track::Track;
 
 /// [rad] Of an arm over the chassis: a turn either way.
@@ -92,49 +92,6 @@ impl Flippers {
         }
         f.finish()?;
         Ok(flippers)
-    }
-
-    /// Rules that join them with the robot.
-    pub(super) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
-        let error = |field: &str, value: f64, rule: String| {
-            let path = format!("robot.flippers.{field}");
-            Err(ScenarioError::new(path, value, rule))
-        };
-        let height = robot.outline.grouser_height;
-        let smallest = self.root_radius.min(self.tip_radius);
-        if smallest <= height {
-            let rule = format!("must exceed robot.outline.grouser_height = {height} m");
-            return error("tip_radius", smallest, rule);
-        }
-        let of_arms = 2.0 * self.mass * self.ends().count() as f64;
-        if of_arms + robot.track_mass >= robot.mass {
-            let rule = format!(
-                "must leave a chassis: {of_arms} kg of arms and robot.track_mass exceed robot.mass = {} kg",
-                robot.mass
-            );
-            return error("mass", self.mass, rule);
-        }
-        let refused = |rule: &str| {
-            Err(ScenarioError::new(
-                "robot.flippers.track",
-                "this model",
-                rule,
-            ))
-        };
-        let is_force = |track: &Track| matches!(track, Track::Force(_));
-        match &self.track {
-            None if matches!(robot.track, Track::Hybrid(_)) => {
-                refused("must be given: the robot's own has its wheels placed by hand")
-            }
-            Some(Track::Segmental(_)) => refused(
-                "must not be segmental: chains run round the chassis only; grouser_belt comes nearest",
-            ),
-            Some(track) if is_force(track) != is_force(&robot.track) => {
-                refused("must be a force track where robot.track is one, and only there")
-            }
-            Some(track) => track.check(robot),
-            None => Ok(()),
-        }
     }
 
     /// The ends that have them, the front first.

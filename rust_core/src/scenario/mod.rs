@@ -2,9 +2,11 @@
 
 mod doubts;
 mod drive;
+mod drivetrain;
 mod error;
 mod fields;
 mod flippers;
+mod outline;
 mod robot;
 mod settings;
 mod terrain;
@@ -19,9 +21,11 @@ use sha2::{Digest, Sha256};
 
 pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
+pub use drivetrain::{Drivetrain, TorqueSharing};
 pub use error::ScenarioError;
 pub use flippers::{End, Ends, Flippers};
-pub use robot::{Drivetrain, Robot, TorqueSharing, TrackOutline};
+pub use outline::TrackOutline;
+pub use robot::Robot;
 pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub(crate) use text::parse;

@@ -3,15 +3,13 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, Range};
+use super::drivetrain::Drivetrain;
+use super::fields::{Fields, MASS, Range};
 use super::flippers::Flippers;
+use super::outline::{LENGTH, TrackOutline};
 use super::track::Track;
 
-/// [m] Sizes a crawler can have; a micrometre or a kilometre is a unit mistake.
-pub(super) const LENGTH: Range = Range::between(1e-3, 100.0, "m");
-const LENGTH_OR_ZERO: Range = Range::between(0.0, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
-pub(super) const MASS: Range = Range::between(1e-3, 1e6, "kg");
 
 /// A tracked robot with both its tracks, arms at angle 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,80 +38,6 @@ pub struct Robot {
     pub track: Track,
 }
 
-/// The closed outline of the track: two arcs and their outer tangents, to the grouser tips.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrackOutline {
-    /// [m] Distance of the end axles.
-    pub axle_distance: f64,
-    /// [m] Front radius to the grouser tips.
-    pub front_radius: f64,
-    /// [m] Rear radius to the grouser tips.
-    pub rear_radius: f64,
-    /// [m] Height of the grousers above the belt.
-    pub grouser_height: f64,
-    /// [m] Distance of the grousers along the belt.
-    pub grouser_pitch: f64,
-    /// [m] Thickness of a grouser along the belt.
-    pub grouser_thickness: f64,
-}
-
-/// What drives the track, and within which limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Drivetrain {
-    /// [m/s] Largest track speed.
-    pub max_speed: f64,
-    /// [m/s^2] Largest rate at which the commanded speed grows in magnitude.
-    pub max_acceleration: f64,
-    /// [m/s^2] Largest rate at which the commanded speed falls in magnitude.
-    pub max_deceleration: f64,
-    /// [N m] Largest torque of one sprocket at the belt radius; the robot has two.
-    pub max_torque: f64,
-    /// Who shares the torque.
-    pub torque_sharing: TorqueSharing,
-}
-
-/// How the torque of a track is shared by its wheels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TorqueSharing {
-    /// One motor a track: all surfaces keep one speed, the sum of their traction is limited.
-    Track,
-    /// Every wheel has its own servo and an equal share of the torque.
-    Wheel,
-}
-
-impl TrackOutline {
-    /// [m] Radius of the belt, where the sprocket's torque acts (the rear end drives).
-    pub fn belt_radius(&self) -> f64 {
-        self.rear_radius - self.grouser_height
-    }
-
-    /// How many grousers come nearest to the pitch along a belt of a length [m], at least `least`.
-    ///
-    /// # Errors
-    /// More than `most`: the bounds are those of a number that is given.
-    pub(crate) fn pitches_along(
-        &self,
-        length: f64,
-        [least, most]: [u32; 2],
-    ) -> Result<u32, ScenarioError> {
-        let count = (length / self.grouser_pitch).round();
-        if count <= f64::from(most) {
-            return Ok((count as u32).max(least));
-        }
-        let rule = format!("must leave at most {most} grousers on a belt of {length:.4} m");
-        let path = "robot.outline.grouser_pitch";
-        Err(ScenarioError::new(path, self.grouser_pitch, rule))
-    }
-}
-
-impl Drivetrain {
-    /// [N] Largest traction of both tracks together.
-    pub fn max_force(&self, outline: &TrackOutline) -> f64 {
-        2.0 * self.max_torque / outline.belt_radius()
-    }
-}
-
 impl Robot {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
         let robot = Self {
@@ -135,9 +59,9 @@ impl Robot {
             track: Track::read(f.child("track")?)?,
         };
         robot.check(&f)?;
-        robot.track.check(&robot)?;
+        robot.track.check(robot.drivetrain.torque_sharing)?;
         if let Some(flippers) = &robot.flippers {
-            flippers.check(&robot)?;
+            robot.check_flippers(flippers)?;
         }
         f.finish()?;
         Ok(robot)
@@ -163,6 +87,49 @@ impl Robot {
             ));
         }
         Ok(())
+    }
+
+    /// Rules that join it with its flippers.
+    fn check_flippers(&self, flippers: &Flippers) -> Result<(), ScenarioError> {
+        let error = |field: &str, value: f64, rule: String| {
+            let path = format!("robot.flippers.{field}");
+            Err(ScenarioError::new(path, value, rule))
+        };
+        let height = self.outline.grouser_height;
+        let smallest = flippers.root_radius.min(flippers.tip_radius);
+        if smallest <= height {
+            let rule = format!("must exceed robot.outline.grouser_height = {height} m");
+            return error("tip_radius", smallest, rule);
+        }
+        let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
+        if of_arms + self.track_mass >= self.mass {
+            let rule = format!(
+                "must leave a chassis: {of_arms} kg of arms and robot.track_mass exceed robot.mass = {} kg",
+                self.mass
+            );
+            return error("mass", flippers.mass, rule);
+        }
+        let refused = |rule: &str| {
+            Err(ScenarioError::new(
+                "robot.flippers.track",
+                "this model",
+                rule,
+            ))
+        };
+        let is_force = |track: &Track| matches!(track, Track::Force(_));
+        match &flippers.track {
+            None if matches!(self.track, Track::Hybrid(_)) => {
+                refused("must be given: the robot's own has its wheels placed by hand")
+            }
+            Some(Track::Segmental(_)) => refused(
+                "must not be segmental: chains run round the chassis only; grouser_belt comes nearest",
+            ),
+            Some(track) if is_force(track) != is_force(&self.track) => {
+                refused("must be a force track where robot.track is one, and only there")
+            }
+            Some(track) => track.check(self.drivetrain.torque_sharing),
+            None => Ok(()),
+        }
     }
 }
 
@@ -203,53 +170,4 @@ fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
         return Err(f.error("belly", format!("{n} points"), rule));
     }
     Ok(Some(points))
-}
-
-impl TrackOutline {
-    fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let outline = Self {
-            axle_distance: f.number("axle_distance", LENGTH)?,
-            front_radius: f.number("front_radius", LENGTH)?,
-            rear_radius: f.number("rear_radius", LENGTH)?,
-            grouser_height: f.number("grouser_height", LENGTH_OR_ZERO)?,
-            grouser_pitch: f.number("grouser_pitch", LENGTH)?,
-            grouser_thickness: f.number("grouser_thickness", LENGTH_OR_ZERO)?,
-        };
-        let smallest = outline.front_radius.min(outline.rear_radius);
-        if outline.grouser_height >= smallest {
-            let rule = format!("must be below the smaller radius, {smallest} m: no belt is left");
-            return Err(f.error("grouser_height", outline.grouser_height, rule));
-        }
-        if outline.grouser_thickness >= outline.grouser_pitch {
-            let rule = format!(
-                "must be below the pitch, {} m: grousers would overlap",
-                outline.grouser_pitch
-            );
-            return Err(f.error("grouser_thickness", outline.grouser_thickness, rule));
-        }
-        if (outline.front_radius - outline.rear_radius).abs() >= outline.axle_distance {
-            let rule = "must differ from rear_radius by less than the axle distance: one end would swallow the other";
-            return Err(f.error("front_radius", outline.front_radius, rule));
-        }
-        f.finish()?;
-        Ok(outline)
-    }
-}
-
-impl Drivetrain {
-    fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        let sharing = [
-            ("track", TorqueSharing::Track),
-            ("wheel", TorqueSharing::Wheel),
-        ];
-        let drivetrain = Self {
-            max_speed: f.number("max_speed", Range::above(0.0, 100.0, "m/s"))?,
-            max_acceleration: f.number("max_acceleration", Range::above(0.0, 1e6, "m/s^2"))?,
-            max_deceleration: f.number("max_deceleration", Range::above(0.0, 1e6, "m/s^2"))?,
-            max_torque: f.number("max_torque", Range::between(0.0, 1e6, "N m"))?,
-            torque_sharing: f.choice("torque_sharing", &sharing)?,
-        };
-        f.finish()?;
-        Ok(drivetrain)
-    }
 }

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::ScenarioError;
+use super::drivetrain::TorqueSharing;
 use super::fields::{Fields, Range, one_of};
-use super::robot::{Robot, TorqueSharing};
 use super::wheel::{MAX_GROUSERS, Wheel};
 
 /// Most wheels of one side.
@@ -203,9 +203,9 @@ impl Track {
         }
     }
 
-    /// Rules that join the model with the robot.
-    pub(super) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
-        if robot.drivetrain.torque_sharing == TorqueSharing::Wheel && self.wheel().is_none() {
+    /// Whether the motors can share their torque so.
+    pub(super) fn check(&self, sharing: TorqueSharing) -> Result<(), ScenarioError> {
+        if sharing == TorqueSharing::Wheel && self.wheel().is_none() {
             let rule = "must be \"track\" for a model without driven wheels";
             return Err(ScenarioError::new(
                 "robot.drivetrain.torque_sharing",

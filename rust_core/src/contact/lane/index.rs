@@ -7,8 +7,9 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use super::Corner;
 use super::roof::{Roof, roof};
-use super::{Corner, Face, ROUNDING};
+use super::touch::{Face, ROUNDING};
 use crate::geometry::{Vector, cross};
 use crate::terrain::Profile;
 

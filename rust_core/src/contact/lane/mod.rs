@@ -8,20 +8,20 @@ mod index;
 mod roof;
 #[cfg(test)]
 mod tests;
+mod touch;
 
 use corner::corners_of;
 use index::Index;
 use roof::Chord;
 
-use super::Contact;
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::Profile;
 
 pub(super) use corner::Corner;
 pub(super) use index::{Region, Stretch};
+use touch::Face;
+pub(super) use touch::{On, ROUNDING, Touch};
 
-/// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
-pub(super) const ROUNDING: f64 = 1e-9;
 /// Corners at either end of finely cut ground among which one that bears is looked for.
 const NEAR_END: usize = 16;
 /// [m] A contact this close to the end of a face touches the edge there.
@@ -32,61 +32,6 @@ pub(crate) struct Lane {
     faces: Vec<Face>,
     corners: Vec<Corner>,
     index: Index,
-}
-
-/// A straight piece of the ground; the solid lies on its right.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    /// [m] Its left end.
-    pub begin: Vector,
-    /// Unit vector to its right end.
-    pub along: Vector,
-    /// Unit vector out of the ground.
-    pub normal: Vector,
-    /// [m] Length; 0 between two arcs that adjoin.
-    pub length: f64,
-    /// Facet of the profile.
-    facet: usize,
-    /// Edges at both ends.
-    edges: [i32; 2],
-}
-
-/// Where something bears on the ground, or nearly.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
-    /// [m] The place on the ground.
-    pub place: Vector,
-    /// Unit vector out of the ground.
-    pub normal: Vector,
-    /// [m] Gap; negative in penetration.
-    pub distance: f64,
-    /// Facet of the profile.
-    pub facet: usize,
-    /// Edge that is touched, or -1 on a face.
-    pub edge: i32,
-    /// The face or the corner.
-    pub on: On,
-}
-
-/// What of the ground a touch is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum On {
-    Face(usize),
-    Corner(usize),
-}
-
-impl Touch {
-    /// The same as a contact of a part.
-    pub(super) fn contact(&self, part: usize) -> Contact {
-        Contact {
-            part,
-            facet: self.facet,
-            edge: self.edge,
-            point: self.place + self.normal * (0.5 * self.distance),
-            normal: self.normal,
-            distance: self.distance,
-        }
-    }
 }
 
 impl Lane {

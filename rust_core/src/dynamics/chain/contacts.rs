@@ -1,7 +1,7 @@
 //! Contacts of shoes as the solver sees them: with the ground, and with what they run on.
 
 use super::RestMemory;
-use super::rests::{Bearing, Rest};
+use super::rest::{Bearing, Rest};
 use crate::contact::Contact;
 use crate::dynamics::LoadedContact;
 use crate::dynamics::grip::Grip;

@@ -3,13 +3,14 @@
 mod contacts;
 mod pin;
 mod pull;
+mod rest;
 mod rests;
 mod system;
 mod wheels;
 
 use pin::Pin;
 use pull::{Grasp, Pull, PullImpulses};
-use rests::Rest;
+use rest::{Rest, of_a_shoe};
 use serde::{Deserialize, Serialize};
 use system::{Beside, ChainSystem};
 
@@ -20,7 +21,7 @@ use super::state::{Shoe, State, Twist};
 use crate::geometry::{Pose, Vector, plausible};
 use crate::robot::{ChainOfShoes, Tensioner};
 
-pub(super) use rests::Stand;
+pub(super) use rest::Stand;
 
 /// Stiffness of the stop of an idler in units of its tensioner's: harder ones hold, but a chain that an obstacle
 /// tightens meets them with blows of kilonewtons.
@@ -77,7 +78,7 @@ impl Chain {
             system: ChainSystem::new(count),
             alongs: Vec::with_capacity(count),
             places: Vec::with_capacity(count),
-            memory: vec![RestMemory::default(); count * rests::of_a_shoe(&rule)],
+            memory: vec![RestMemory::default(); count * of_a_shoe(&rule)],
             free: vec![Twist::default(); count],
             solved: vec![Twist::default(); count],
             idler_rate: 0.0,
@@ -156,7 +157,7 @@ impl Chain {
 
     /// What a rest did last.
     pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
-        self.memory[rest.shoe * rests::of_a_shoe(&self.rule) + rest.place]
+        self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.place]
     }
 
     /// Forgets what all of them did.
@@ -166,7 +167,7 @@ impl Chain {
 
     /// Keeps what a rest did.
     pub(super) fn remember_rest(&mut self, shoe: usize, row: &Row) {
-        let place = shoe * rests::of_a_shoe(&self.rule) + row.place;
+        let place = shoe * of_a_shoe(&self.rule) + row.place;
         self.memory[place] = RestMemory {
             force: row.normal_guess,
             grip: row.grip,

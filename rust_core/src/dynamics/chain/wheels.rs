@@ -1,7 +1,7 @@
 //! Where a chain bears on wheels: the drum of the sprocket, its teeth, idler, road wheels, rollers.
 
 use super::Chain;
-use super::rests::{Bearing, Rest, Stand};
+use super::rest::{Bearing, Rest, Stand};
 use crate::geometry::{Disc, Rotation, Vector};
 
 impl Chain {

@@ -3,6 +3,7 @@
 use approx::assert_relative_eq;
 
 use super::*;
+use crate::robot::Flipper;
 use crate::robot::Model;
 use crate::scenario::{Ends, Flippers, Scenario};
 

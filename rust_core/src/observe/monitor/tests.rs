@@ -97,7 +97,7 @@ impl Watched {
             command: scenario.drive.speed,
             loaded: Vec::new(),
             drives: Vec::new(),
-            running: Running::at_start(&model, 0.0),
+            running: model.running_at_start(0.0),
         }
     }
 

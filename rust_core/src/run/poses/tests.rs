@@ -4,8 +4,8 @@ use super::*;
 use crate::geometry::{Envelope, Rotation};
 use crate::limits::memory::Budget;
 use crate::robot::{BodyKind, Shape};
-use crate::run::trace::{Record, Recorder};
-use crate::run::{Checked, Simulation};
+use crate::run::trace::Recorder;
+use crate::run::{Checked, Record, Simulation};
 use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
 
 /// Robots with all kinds of bodies, before a step and with a step under one track alone.
@@ -167,7 +167,7 @@ fn tips_of_grousers_lie_on_the_envelope_of_the_tips() {
         .map(|d| d.0)
         .collect();
     let envelope = Envelope::new(&tips);
-    let mut running = Running::at_start(&model, 0.0);
+    let mut running = model.running_at_start(0.0);
     for step in 0..200 {
         running.drives[0] = 0.0131 * f64::from(step);
         for body in model.outlines() {

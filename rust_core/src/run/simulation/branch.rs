@@ -20,6 +20,7 @@ impl Simulation {
     /// What has not changed goes on as it was, with the same bits. Another robot or track takes the
     /// pose and the speeds over; ground that is inside it is let out without a push. Outcome,
     /// stops and progress are counted from here.
+    #[must_use]
     pub fn branch(&self, variant: &Checked) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();

@@ -1,0 +1,63 @@
+//! How many bytes a batch needs, from what its runs build and will record.
+
+use super::Checked;
+use super::needs::{BYTES_A_CORNER, corners};
+use super::record::{Columns, Record};
+use crate::error::LimitError;
+use crate::limits::memory::Budget;
+use crate::robot::Model;
+
+/// Bytes of the stack of a thread.
+pub(crate) const STACK: usize = 2 << 20;
+/// Bytes that the edges of a run take, a corner, as they are and as columns of a table.
+const BYTES_AN_EDGE: u64 = 128;
+/// Bytes of all else that a run builds and gives back.
+const BYTES_A_RUN: u64 = 64 << 10;
+/// Asks for what a batch needs, and hands on what its runs may record.
+///
+/// # Errors
+/// It is more than the batch may have; the message says what takes less.
+pub(crate) fn of_batch(
+    scenarios: &[Checked],
+    record: Record,
+    threads: usize,
+) -> Result<Budget, LimitError> {
+    let terrain_of = |checked: &Checked| corners(&checked.scenario().terrain);
+    let corners = scenarios.iter().map(terrain_of);
+    let largest = corners.clone().max().unwrap_or(0);
+    let built = threads as u64 * (STACK as u64 + largest * BYTES_A_CORNER);
+    let given_back = corners.map(|corners| BYTES_A_RUN + corners * BYTES_AN_EDGE);
+    let kept = built + given_back.sum::<u64>();
+    let mut recorded = 0;
+    if record.history {
+        for checked in scenarios {
+            recorded += record.samples(checked.scenario()) * bytes_of_sample(checked.model());
+        }
+    }
+    let budget = Budget::new()?;
+    budget.check(&described(scenarios, record), kept + recorded)?;
+    budget.take("a batch", kept)?;
+    Ok(budget)
+}
+
+fn described(scenarios: &[Checked], record: Record) -> String {
+    let runs = match scenarios.len() {
+        1 => "a run".to_owned(),
+        n => format!("a batch of {n} runs"),
+    };
+    if record.history {
+        let every = record.sample_interval;
+        format!(
+            "{runs} sampled every {every} s (a longer sample_interval, or \"summary\", takes less)"
+        )
+    } else {
+        runs
+    }
+}
+
+/// Bytes of a sample as the robot stands: half of its parts touch.
+fn bytes_of_sample(model: &Model) -> u64 {
+    let columns = Columns::of(model);
+    let touching = (columns.parts / 2).max(2);
+    columns.bytes() + touching as u64 * Columns::BYTES_A_CONTACT
+}

@@ -1,0 +1,68 @@
+//! What to keep of a run, and what that has.
+
+use crate::robot::Model;
+use crate::scenario::Scenario;
+
+/// What to keep of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// [s] Time between two samples, rounded to whole steps.
+    pub sample_interval: f64,
+    /// Keep the trace and the contact table; without it only outcome, metrics and events.
+    pub history: bool,
+    /// Try a closed belt at the stop that a run ends in.
+    pub counterfactual: bool,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            sample_interval: 0.01,
+            history: true,
+            counterfactual: false,
+        }
+    }
+}
+
+impl Record {
+    /// Only outcome, metrics and events.
+    pub fn summary() -> Self {
+        Self {
+            history: false,
+            ..Self::default()
+        }
+    }
+
+    /// Steps of the time step `dt` [s] between two samples.
+    pub(super) fn steps_a_sample(&self, dt: f64) -> u64 {
+        (self.sample_interval / dt).round().max(1.0) as u64
+    }
+
+    /// Samples of a run that lasts as long as it may.
+    pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
+        scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
+    }
+}
+
+/// What a robot has that is recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    pub parts: usize,
+    pub drives: usize,
+    pub shoes: usize,
+    pub flippers: usize,
+}
+
+impl Columns {
+    /// Bytes of a row of the contact table.
+    pub(crate) const BYTES_A_CONTACT: u64 = 14 * 8;
+
+    pub(crate) fn of(model: &Model) -> Self {
+        Self {
+            parts: model.parts.len(),
+            drives: model.drives,
+            shoes: model.shoes(),
+            flippers: model.flippers.len(),
+        }
+    }
+}

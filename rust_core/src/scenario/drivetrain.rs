@@ -1,0 +1,56 @@
+//! What drives the tracks.
+
+use serde::Serialize;
+
+use super::fields::{Fields, Range};
+use super::{ScenarioError, TrackOutline};
+
+/// What drives the track, and within which limits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drivetrain {
+    /// [m/s] Largest track speed.
+    pub max_speed: f64,
+    /// [m/s^2] Largest rate at which the commanded speed grows in magnitude.
+    pub max_acceleration: f64,
+    /// [m/s^2] Largest rate at which the commanded speed falls in magnitude.
+    pub max_deceleration: f64,
+    /// [N m] Largest torque of one sprocket at the belt radius; the robot has two.
+    pub max_torque: f64,
+    /// Who shares the torque.
+    pub torque_sharing: TorqueSharing,
+}
+
+/// How the torque of a track is shared by its wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TorqueSharing {
+    /// One motor a track: all surfaces keep one speed, the sum of their traction is limited.
+    Track,
+    /// Every wheel has its own servo and an equal share of the torque.
+    Wheel,
+}
+
+impl Drivetrain {
+    /// [N] Largest traction of both tracks together.
+    pub fn max_force(&self, outline: &TrackOutline) -> f64 {
+        2.0 * self.max_torque / outline.belt_radius()
+    }
+}
+
+impl Drivetrain {
+    pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let sharing = [
+            ("track", TorqueSharing::Track),
+            ("wheel", TorqueSharing::Wheel),
+        ];
+        let drivetrain = Self {
+            max_speed: f.number("max_speed", Range::above(0.0, 100.0, "m/s"))?,
+            max_acceleration: f.number("max_acceleration", Range::above(0.0, 1e6, "m/s^2"))?,
+            max_deceleration: f.number("max_deceleration", Range::above(0.0, 1e6, "m/s^2"))?,
+            max_torque: f.number("max_torque", Range::between(0.0, 1e6, "N m"))?,
+            torque_sharing: f.choice("torque_sharing", &sharing)?,
+        };
+        f.finish()?;
+        Ok(drivetrain)
+    }
+}
