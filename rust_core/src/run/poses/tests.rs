@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{Envelope, Rotation};
 use crate::limits::memory::Budget;
-use crate::robot::{BodyKind, Shape};
+use crate::robot::{BodyKind, Part, Shape};
 use crate::run::trace::Recorder;
 use crate::run::{Checked, Record, Simulation};
 use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
@@ -139,7 +139,7 @@ fn a_waypoint_of_a_belt_is_where_a_grouser_would_be() {
         "../../../../tests/scenarios/engineer_grouser_belt_step.json"
     ));
     let model = Model::new(&scenario.robot).expect("the robot is valid");
-    let belt = model.parts.iter().find_map(|part| part.circuit());
+    let belt = model.parts.iter().find_map(Part::circuit);
     let belt = belt.expect("it has a belt");
     let grouser = model.parts.iter().find_map(|part| match &part.shape {
         Shape::Grouser(grouser) => Some(grouser),
