@@ -37,6 +37,7 @@ from crawler2d.parameters.track import (
     SegmentalTrack,
 )
 from crawler2d.presets import robots, terrains
+from crawler2d.results.bodies import BodyKind, Lane
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -53,6 +54,7 @@ from crawler2d.sweeps.sweep import sweep
 __all__ = [
     "BatchInterrupted",
     "BeltTrack",
+    "BodyKind",
     "CircumferentialWheels",
     "Climb",
     "Crawler2dError",
@@ -66,6 +68,7 @@ __all__ = [
     "Hold",
     "HybridWheels",
     "InternalError",
+    "Lane",
     "LimitError",
     "LineOfWheels",
     "Mechanism",

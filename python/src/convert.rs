@@ -1,8 +1,11 @@
 //! From the core's plain data to dictionaries of `NumPy` arrays.
 
-use crawler2d_core::{ContactTable, Edge, Event, Intrusion, Model, Record, Run, Trace, WheelBody};
+use crawler2d_core::{
+    BodyKind, Condition, ContactTable, Edge, Event, Intrusion, Mechanism, Model, Outcome, Record,
+    Run, Side, Trace, WheelBody,
+};
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -180,6 +183,38 @@ fn trace(
         columns.set_item(name, values.into_pyarray(py).reshape([n, flippers])?)?;
     }
     Ok(columns)
+}
+
+/// What of a trace says where everything was.
+pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
+    let column = |name: &str| -> PyResult<Vec<f64>> {
+        let column = columns.as_any().get_item(name)?;
+        Ok(column
+            .extract::<PyReadonlyArrayDyn<'_, f64>>()?
+            .as_array()
+            .iter()
+            .copied()
+            .collect())
+    };
+    Ok(Trace {
+        position: column("position")?,
+        chassis_angle: column("chassis_angle")?,
+        drive_positions: column("drive_positions")?,
+        shoe_poses: column("shoe_poses")?,
+        flipper_angles: column("flipper_angles")?,
+        ..Trace::default()
+    })
+}
+
+/// Names of what tables hold, those with codes in the order of these.
+pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let names = PyDict::new(py);
+    names.set_item("body_kind", BodyKind::ALL.map(BodyKind::name))?;
+    names.set_item("lane", Side::ALL.map(Side::name))?;
+    names.set_item("outcome", Outcome::ALL.map(Outcome::name))?;
+    names.set_item("mechanism", Mechanism::ALL.map(Mechanism::name))?;
+    names.set_item("condition", Condition::ALL.map(Condition::name))?;
+    Ok(names)
 }
 
 pub(crate) fn contacts(py: Python<'_>, table: ContactTable) -> PyResult<Bound<'_, PyDict>> {

@@ -60,6 +60,29 @@ mod _core {
         pictures::of(py, &checked)
     }
 
+    /// Where the bodies of a robot were at every sample of a run, from columns of its trace.
+    #[pyfunction]
+    fn poses<'py>(
+        py: Python<'py>,
+        text: PyBackedStr,
+        columns: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let trace = convert::moved(columns)?;
+        let checked = built(py, text, Checked::from_json)?;
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::poses(&checked, &trace, &asked)
+        })?;
+        pictures::poses(py, found)
+    }
+
+    /// Names of what tables hold as codes or as text, by code.
+    #[pyfunction]
+    fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        convert::kinds(py)
+    }
+
     /// The wheels of a scenario's robot.
     #[pyfunction]
     fn wheels<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyDict>> {

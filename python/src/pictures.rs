@@ -1,128 +1,136 @@
 //! What pictures need of ground and robot, as arrays.
 
-use crawler2d_core::{ChainOfShoes, Checked, Model, Mount, Part, Shape, Vector};
-use numpy::{IntoPyArray, PyArray2};
+use crawler2d_core::{Body, Checked, Ground, Model, Mount, Part, Poses, Shape, Vector};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::convert::{edges, rows};
 
-/// Everything a picture needs; of two tracks the right one, which is in front in a side view.
+/// Ground, bodies of the robot, and what carries the track that is in front in a side view: of two the right one.
 pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
     let (model, ground) = (checked.model(), checked.ground());
-    let near = ground.tracks - 1;
-    let result = track(py, model, (Mount::Chassis, near))?;
-    let (shoes, belly) = (PyList::empty(py), PyList::empty(py));
-    for part in &model.parts {
-        let Shape::Polygon { corners } = &part.shape else {
-            continue;
-        };
-        match part.mount {
-            Mount::Shoe(shoe) if part.lane == near => shoes.append((shoe, points(py, corners)))?,
-            Mount::Chassis => belly.append(points(py, corners))?,
-            _ => {}
-        }
-    }
-    let flippers = PyList::empty(py);
-    for (k, flipper) in model.flippers.iter().enumerate() {
-        let drawn = track(py, model, (Mount::Flipper(k), near))?;
-        drawn.set_item("pivot", (flipper.pivot.x, flipper.pivot.y))?;
-        drawn.set_item("arm", (flipper.arm.x, flipper.arm.y))?;
-        drawn.set_item("sign", flipper.sign())?;
-        flippers.append(drawn)?;
-    }
     let lanes = PyList::empty(py);
     for lane in &ground.lanes {
         lanes.append((lane.side as i64, points(py, &lane.points)))?;
     }
+    let carriers = PyList::empty(py);
+    for mount in model.mounts_of_tracks() {
+        carriers.append(carrier(py, model, (mount, ground.tracks - 1))?)?;
+    }
+    let result = PyDict::new(py);
     result.set_item("lanes", lanes)?;
     result.set_item("edges", edges(py, &ground.edges())?)?;
-    result.set_item("shoes", shoes)?;
-    let sprocket = model.chains.last().map(|chain| sprocket(py, chain));
-    result.set_item("sprocket", sprocket.transpose()?.flatten())?;
-    let none = || points(py, &[]).into_any();
-    result.set_item("belly", belly.get_item(0).unwrap_or_else(|_| none()))?;
-    result.set_item("flippers", flippers)?;
-    result.set_item("drive_radius", model.drive_radius)?;
     result.set_item("goal", ground.goal_of(checked.scenario()))?;
+    result.set_item("bodies", bodies(py, model, ground)?)?;
+    result.set_item("carriers", carriers)?;
+    result.set_item("drive_radius", model.drive_radius)?;
     Ok(result)
 }
 
-/// What runs round the chassis or a flipper on a lane, in the frame of what carries it.
-fn track<'py>(
+/// The bodies as columns; what is no part has the number -1.
+fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Bound<'py, PyDict>> {
+    let found = model.outlines();
+    let codes = |code: &dyn Fn(&Body) -> i64| found.iter().map(code).collect::<Vec<i64>>();
+    let number = |body: &Body| body.part.and_then(|part| i64::try_from(part).ok());
+    let radius = |body: &Body| body.radius.unwrap_or(f64::NAN);
+    let carriers: Vec<&str> = found.iter().map(|body| model.carrier(body.mount)).collect();
+    let columns = PyDict::new(py);
+    columns.set_item(
+        "body",
+        codes(&|body| number(body).unwrap_or(-1)).into_pyarray(py),
+    )?;
+    columns.set_item("kind", codes(&|body| body.kind as i64).into_pyarray(py))?;
+    let lane = |body: &Body| ground.lanes[body.lane].side as i64;
+    columns.set_item("lane", codes(&lane).into_pyarray(py))?;
+    columns.set_item("carrier", carriers)?;
+    let shoe = |body: &Body| body.mount.shoe().and_then(|shoe| i64::try_from(shoe).ok());
+    columns.set_item(
+        "shoe",
+        codes(&|body| shoe(body).unwrap_or(-1)).into_pyarray(py),
+    )?;
+    let radii: Vec<f64> = found.iter().map(radius).collect();
+    columns.set_item("radius", radii.into_pyarray(py))?;
+    let outlines = PyList::empty(py);
+    for body in &found {
+        outlines.append(points(py, &body.outline))?;
+    }
+    columns.set_item("outline", outlines)?;
+    Ok(columns)
+}
+
+/// What carries a track of a lane: the taut belts round its bodies, and what a belt of its own carries along.
+fn carrier<'py>(
     py: Python<'py>,
     model: &Model,
     (mount, lane): (Mount, usize),
 ) -> PyResult<Bound<'py, PyDict>> {
-    /// Points of one root arc between two grousers.
-    const ARC_POINTS: usize = 12;
     /// [rad] Turn between two points of a belt.
     const BELT_TURN: f64 = 0.05;
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
-    let mut drives: Vec<usize> = Vec::new();
-    let mut bodies: Vec<usize> = Vec::new();
-    let mut hull = false;
-    let gears = PyList::empty(py);
-    let grousers = PyList::empty(py);
-    let shown = |part: &Part| part.lane == lane && part.mount == mount;
-    for (body, part) in model.parts.iter().enumerate().filter(|(_, p)| shown(p)) {
-        let before = circles.len();
+    let mut numbers: Vec<usize> = Vec::new();
+    let mut closed = false;
+    let circuit = PyDict::new(py);
+    let (mut grousers, mut starts): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
+    let of_track = |part: &Part| part.lane == lane && part.mount == mount;
+    for (number, part) in model.parts.iter().enumerate().filter(|(_, p)| of_track(p)) {
         match &part.shape {
             Shape::Disc { center, radius } => circles.push([center.x, center.y, *radius]),
+            Shape::Gear { center, gear } => circles.push([center.x, center.y, gear.radius]),
             Shape::Hull { discs, .. } => {
-                hull = true;
+                closed = true;
                 circles.extend(discs.iter().map(|d| [d.center.x, d.center.y, d.radius]));
             }
-            Shape::Gear { center, gear } => {
-                circles.push([center.x, center.y, gear.radius]);
-                let drawn = PyDict::new(py);
-                drawn.set_item("center", (center.x, center.y))?;
-                drawn.set_item("radius", gear.radius)?;
-                drawn.set_item("drive", part.drive)?;
-                drawn.set_item("outline", points(py, &gear.outline(ARC_POINTS)))?;
-                gears.append(drawn)?;
+            Shape::Grouser(grouser) => {
+                grousers.push(number);
+                starts.push(grouser.start());
             }
-            Shape::Grouser(grouser) => grousers.append(points(py, grouser.corners()))?,
             Shape::Polygon { .. } => {}
         }
-        // What no drive moves follows the first.
-        drives.resize(circles.len(), part.drive.unwrap_or(0));
-        bodies.resize(bodies.len() + circles.len() - before, body);
+        numbers.resize(circles.len(), number);
+        if let Some(found) = part.circuit() {
+            circuit.set_item("belt", number)?;
+            circuit.set_item("ways", found.ways.into_pyarray(py))?;
+            circuit.set_item("poses", rows(py, &found.poses))?;
+        }
     }
+    circuit.set_item("grousers", grousers.into_pyarray(py))?;
+    circuit.set_item("starts", starts.into_pyarray(py))?;
     let drawn = PyDict::new(py);
+    drawn.set_item("name", model.carrier(mount))?;
     drawn.set_item("circles", rows(py, &circles))?;
-    drawn.set_item("drives", drives.into_pyarray(py))?;
-    drawn.set_item("bodies", bodies.into_pyarray(py))?;
-    drawn.set_item("hull", hull)?;
-    drawn.set_item("gears", gears)?;
-    drawn.set_item("grousers", grousers)?;
+    drawn.set_item("bodies", numbers.into_pyarray(py))?;
+    drawn.set_item("closed", closed)?;
+    drawn.set_item("circuit", circuit.contains("belt")?.then_some(circuit))?;
     let [envelope, root_envelope] = model.envelopes(mount, BELT_TURN);
     drawn.set_item("envelope", points(py, &envelope))?;
     drawn.set_item("root_envelope", points(py, &root_envelope))?;
     Ok(drawn)
 }
 
+/// Where everything was, samples first.
+pub(crate) fn poses(py: Python<'_>, found: Poses) -> PyResult<Bound<'_, PyDict>> {
+    let (n, bodies, arms) = (found.samples, found.count, found.flippers);
+    let columns = PyDict::new(py);
+    columns.set_item(
+        "bodies",
+        found.bodies.into_pyarray(py).reshape([n, bodies, 3])?,
+    )?;
+    columns.set_item("arms", found.arms.into_pyarray(py).reshape([n, arms, 3])?)?;
+    columns.set_item(
+        "travels",
+        found.travels.into_pyarray(py).reshape([n, bodies])?,
+    )?;
+    columns.set_item(
+        "center_of_mass",
+        found.centers_of_mass.into_pyarray(py).reshape([n, 2])?,
+    )?;
+    Ok(columns)
+}
+
 /// Points as rows.
 fn points<'py>(py: Python<'py>, points: &[Vector]) -> Bound<'py, PyArray2<f64>> {
     let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
     rows(py, &points)
-}
-
-/// The toothed wheel of a chain as a gear is given: its outline when its drive has not run.
-fn sprocket<'py>(py: Python<'py>, chain: &ChainOfShoes) -> PyResult<Option<Bound<'py, PyDict>>> {
-    let Some(sprocket) = &chain.sprocket else {
-        return Ok(None);
-    };
-    let (sine, cosine) = sprocket.angle(0.0).sin_cos();
-    let turned = |p: &Vector| Vector::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
-    let outline = sprocket.teeth.outline(0.5 * chain.plate_thickness);
-    let outline: Vec<Vector> = outline.iter().map(turned).collect();
-    let center = chain.ends[0].center;
-    let drawn = PyDict::new(py);
-    drawn.set_item("center", (center.x, center.y))?;
-    drawn.set_item("radius", sprocket.teeth.drive_radius())?;
-    drawn.set_item("drive", chain.number)?;
-    drawn.set_item("outline", points(py, &outline))?;
-    Ok(Some(drawn))
 }

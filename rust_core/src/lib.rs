@@ -39,12 +39,12 @@ pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
 pub use robot::{
-    BodyKind, ChainOfShoes, ChassisBody, Flipper, Model, Mount, Part, Shape, Sprocket, Tensioner,
-    WheelBody,
+    Body, BodyKind, ChainOfShoes, ChassisBody, Circuit, Flipper, Model, Mount, Part, Shape,
+    Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    Checked, ContactTable, Metrics, Progress, Record, Run, Simulation, Trace, branch,
-    counterfactual, simulate, simulate_many,
+    Checked, ContactTable, Metrics, Poses, Progress, Record, Run, Simulation, Trace, branch,
+    counterfactual, poses, simulate, simulate_many,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Doubt, Drive,

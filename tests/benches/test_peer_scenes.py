@@ -103,14 +103,13 @@ def test_wheels_have_the_same_outline(name: str) -> None:
     if not wheel.polygons:
         assert wheel.radius == near(radius)
         return
-    (gear, *_) = _core.geometry(scenario.to_json())["gears"]
+    outline = _core.geometry(scenario.to_json())["bodies"]["outline"][0]
     grouser = cast("Any", scenario.robot.track).wheel
     assert wheel.radius == near(radius - grouser.grouser_height)
     # The corners of the tips; the scene's bases lie within the root circle.
     tips = [
         corner for part in wheel.polygons for corner in part if math.hypot(*corner) > wheel.radius
     ]
-    outline = np.asarray(gear["outline"], float)
     of_outline = outline[np.hypot(*outline.T) > radius - 1e-6]
     assert by_place(tips) == pytest.approx(by_place(of_outline), abs=CORNER)
     # Where the flanks meet the root circle.

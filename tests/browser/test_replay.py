@@ -13,8 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
 import crawler2d as c2d
-from crawler2d import _core
-from crawler2d.pictures.shapes import carriers, outlines
+from crawler2d.pictures.shapes import Scene
 from tests.shared import ROBOT, with_flippers
 
 STEP = c2d.terrains.step(0.075)
@@ -295,28 +294,29 @@ def test_a_chain_and_its_wheels_lie_where_the_run_has_them(open_page: Open, name
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
     for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
         assert has_frame(frames, place, angle)
-    geometry = _core.geometry(run.scenario.to_json())
-    sprocket, chassis = geometry["sprocket"], carriers(run, geometry)[0]
-    if sprocket:
-        way = run.drive_positions[sample, sprocket["drive"]]
-        radii = [sprocket["radius"], *geometry["circles"][1:, 2]]
-        places = chassis.placed(sample, geometry["circles"][:, :2])
-        for place, radius in zip(places, radii, strict=True):
-            assert has_frame(frames, place, run.chassis_angle[sample] - way / radius)
+    scene = Scene(run)
+    for row in scene.carriers[0].bodies:
+        # Those within the guide are drawn smaller.
+        if scene.kinds[row].is_in_chain and scene.bodies["body"][row] >= 0:
+            *place, angle = scene.poses[sample, row]
+            assert has_frame(frames, place, angle)
 
 
 @pytest.mark.parametrize("sample", [120, 200, 260])
 def test_the_flippers_of_the_page_lie_where_the_run_has_them(open_page: Open, sample: int) -> None:
     run = simulated("flippers with grousers")
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
-    _, *arms = carriers(run, _core.geometry(run.scenario.to_json()))
+    scene = Scene(run)
+    _, *arms = scene.carriers
     for arm in arms:
-        assert has_frame(frames, arm.origin[sample], arm.angle[sample])
-        corners = arm.track["grousers"][0]
-        seen = [corners @ frame[:, :2].T + frame[:, 2] for frame in frames]
-        for rib in outlines(arm, sample)[1:]:
-            # The belt's arcs are drawn in sides, of one or the next of which it is by a rounding.
-            assert min(np.abs(there - rib[:-1]).max() for there in seen) < 7e-4
+        *place, angle = arm.poses[sample]
+        assert has_frame(frames, place, angle)
+        assert arm.circuit is not None
+        for rib in arm.circuit.grousers:
+            corners = scene.bodies["outline"][rib]
+            seen = [corners @ frame[:, :2].T + frame[:, 2] for frame in frames]
+            line = scene.outline(rib, sample)[:-1]
+            assert min(np.abs(there - line).max() for there in seen) < 1e-4
 
 
 @pytest.mark.parametrize("layer", ["forces", "speeds", "envelope"])

@@ -55,6 +55,20 @@ class Loop:
     """That of what runs round bodies without a drive of their own, such as the shoes of a chain."""
 
 
+def shapes_of(geometry: dict[str, Any]) -> list[dict[str, Any]]:
+    """Shapes of each carrier with the outlines [m] of its gear wheels, and how many grousers."""
+    bodies = geometry["bodies"]
+    is_gear = (bodies["kind"] == c2d.BodyKind.WHEEL) & np.isnan(bodies["radius"])
+    return [
+        {
+            **carrier,
+            "gears": [bodies["outline"][body] for body in carrier["bodies"] if is_gear[body]],
+            "grousers": len(carrier["circuit"]["grousers"]) if carrier["circuit"] else 0,
+        }
+        for carrier in geometry["carriers"]
+    ]
+
+
 class Anatomy:
     """The bodies and drives of one robot on one ground."""
 
@@ -74,8 +88,9 @@ class Anatomy:
         self.loops: list[Loop] = []
         self.motors = 1
         self.free = 0
-        self._chassis(lumped)
-        for number, shapes in enumerate(lumped["flippers"], 1):
+        chassis, *arms = shapes_of(lumped)
+        self._chassis(chassis)
+        for number, shapes in enumerate(arms, 1):
             self._arm(number, shapes)
         self.is_split = any(label == 1 for label, _ in self.lanes)
         belt_radius = robot.outline.rear_radius - robot.outline.grouser_height
@@ -139,18 +154,17 @@ class Anatomy:
 
     def _driven(self, carrier: int, track: Any, shapes: dict[str, Any], first: int) -> int:
         """Wheels or a belt on drives from a number on; how many these are."""
-        each = self.with_own_motors and not shapes["hull"]
+        each = self.with_own_motors and not shapes["closed"]
         gears = shapes["gears"]
         count = len(set(shapes["bodies"]))
         for i in range(count):
             body = Body(carrier=carrier, lane=0, drive=first + i * each, form="round")
             if gears:
-                gear = gears[i]
-                center, radius = tuple(gear["center"]), gear["radius"]
-                body = replace(body, form="gear", center=center, radius=radius)
+                *center, radius = shapes["circles"][i].tolist()
+                body = replace(body, form="gear", center=tuple(center), radius=radius)
             self.bodies.append(body)
         grouser = Body(carrier=carrier, lane=0, drive=first, form="grouser")
-        self.bodies += [grouser] * len(shapes["grousers"])
+        self.bodies += [grouser] * shapes["grousers"]
         over = self.robot.outline.grouser_height if track.kind == "grouser_belt" else 0.0
         self._loop(carrier, shapes, over, first)
         return count if each else 1
@@ -159,7 +173,7 @@ class Anatomy:
         tips, roots = np.array(shapes["circles"]), np.array(shapes["circles"])
         tips[:, 2] += over
         for row, gear in zip(roots, shapes["gears"], strict=bool(shapes["gears"])):
-            row[2] = np.hypot(*gear["outline"].T).min()
+            row[2] = np.hypot(*gear.T).min()
         bodies = tuple(int(body) for body in shapes["bodies"])
         loop = Loop(carrier=carrier, lane=0, tips=tips, roots=roots, bodies=bodies, drive=drive)
         self.loops.append(loop)

@@ -20,11 +20,11 @@ TAPERED = dataclasses.replace(
 ARC_POINTS = 12
 
 
-def gears(robot: c2d.Robot) -> list[dict[str, Any]]:
-    gears: list[dict[str, Any]] = _core.geometry(Scenario(robot, c2d.terrains.flat()).to_json())[
-        "gears"
-    ]
-    return gears
+def gears(robot: c2d.Robot) -> list[Any]:
+    """[m] Outlines of the gear wheels."""
+    bodies = _core.geometry(Scenario(robot, c2d.terrains.flat()).to_json())["bodies"]
+    kinds, outlines = bodies["kind"], bodies["outline"]
+    return [o for kind, o in zip(kinds, outlines, strict=True) if kind == c2d.BodyKind.WHEEL]
 
 
 def of_one_side(robot: c2d.Robot) -> dict[str, np.ndarray[Any, Any]]:
@@ -192,7 +192,7 @@ def test_wheel_n_starts_ahead_by_its_share_of_n_grousers(model: Any, fraction: f
     wheel = c2d.GearWheel(grouser_count=9, phase_fraction=fraction)
     theta = 2.0 * math.pi / 9
     for n, gear in enumerate(gears(ROBOT.with_track(model(wheel))), start=1):
-        x, y = gear["outline"][ARC_POINTS : ARC_POINTS + 2].mean(axis=0)  # tip of the first grouser
+        x, y = gear[ARC_POINTS : ARC_POINTS + 2].mean(axis=0)  # tip of the first grouser
         beyond = (math.atan2(y, x) - fraction * theta * n) / theta
         assert beyond == pytest.approx(round(beyond), abs=1e-9)
 
@@ -203,7 +203,7 @@ def test_wheel_n_starts_ahead_by_its_share_of_n_grousers(model: Any, fraction: f
 )
 def test_a_gear_takes_its_grousers_from_the_robot(radius: float, height: float, count: int) -> None:
     track = c2d.LineOfWheels(2, wheel_radius=radius, wheel=c2d.GearWheel())
-    outline = gears(ROBOT.with_track(track))[0]["outline"]
+    outline = gears(ROBOT.with_track(track))[0]
     distance = np.hypot(*outline.T)
     assert len(outline) == count * (ARC_POINTS + 2)
     assert distance.max() == pytest.approx(radius, rel=1e-12)
@@ -243,8 +243,7 @@ def test_a_round_wheel_is_a_uniform_disc(name: str) -> None:
 def test_a_gear_is_as_large_and_heavy_as_its_outline(name: str) -> None:
     robot = ROBOT.with_track(MODELS[name])
     wheels = robot.wheels()
-    for index, gear in enumerate(gears(robot)):
-        a = gear["outline"]
+    for index, a in enumerate(gears(robot)):
         b = np.roll(a, -1, axis=0)
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         area = 0.5 * cross.sum()

@@ -26,6 +26,67 @@ def unpacked(column: dict[str, Any]) -> Any:
     return column["start"] + column["step"] * counts.astype(float)
 
 
+def placed(points: Any, pose: Any) -> Any:
+    """Points of a frame, shape (n, 2), where they are if that has a pose."""
+    *origin, angle = pose
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return points @ turn.T + origin
+
+
+class PageRobot:
+    """The robot of a page as its scripts place it."""
+
+    def __init__(self, page: Any) -> None:
+        self.robot, self.frames = page["robot"], page["frames"]
+        self.carriers = self.robot["carriers"]
+        self._columns = [unpacked(column) for column in self.robot["columns"]]
+        self._chassis = [unpacked(self.frames[name]) for name in ("x", "y", "angle")]
+        self._shapes = [unpacked(outline).reshape(-1, 2) for outline in self.robot["outlines"]]
+
+    def value(self, entry: Any, frame: int) -> float:
+        """As `value` of a moment in data.js."""
+        return float(self._columns[entry["column"]][frame] if isinstance(entry, dict) else entry)
+
+    def pose(self, carrier: Any, frame: int) -> list[Any]:
+        """Poses of the frames that lie within each other, the innermost first."""
+        names = ("x", "y", "angle")
+        of_chassis = [column[frame] for column in self._chassis]
+        return [[self.value(carrier[name], frame) for name in names], of_chassis]
+
+    def outlines(self, frame: int) -> list[Any]:
+        """[m] Outlines of all that is drawn, over ground, and the numbers of the bodies."""
+        found = []
+        for carrier in self.carriers:
+            frames = self.pose(carrier, frame)
+            for body in carrier["bodies"]:
+                own, _ = self.pose(body, frame)
+                for outline in body["outlines"]:
+                    line = _through(self._shapes[outline], [own, *frames])
+                    found.append((body["kind"], body["body"], line))
+            for outline, own in self.grousers(carrier["circuit"], frame):
+                line = _through(self._shapes[outline], [own, *frames])
+                found.append(("grouser", None, line))
+        return found
+
+    def grousers(self, circuit: Any, frame: int) -> list[Any]:
+        """Outlines and poses of what a belt carries, as `Circuit` of carrier.js."""
+        if circuit is None:
+            return []
+        poses = np.column_stack([unpacked(circuit[name]) for name in ("x", "y", "angle")])
+        ways, travel = unpacked(circuit["ways"]), self.value(circuit["travel"], frame)
+        found = []
+        for outline, start in zip(circuit["grousers"], circuit["starts"], strict=True):
+            way = (travel + start) % circuit["length"]
+            found.append((outline, [np.interp(way, ways, column) for column in poses.T]))
+        return found
+
+
+def _through(points: Any, frames: list[Any]) -> Any:
+    for frame in frames:
+        points = placed(points, frame)
+    return points
+
+
 def distance(point: Any, outline: Any) -> float:
     """[m] Of a point from a closed line."""
     start, way = outline[:-1], np.diff(outline, axis=0)

@@ -6,34 +6,28 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d import _core
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.pictures.shapes import grousers, placed
+from crawler2d.pictures.shapes import Scene
+from crawler2d.results.bodies import BodyKind
 from tests.pictures.reading import distance
 
 ROBOT = c2d.robots.engineer(flippers=None).with_track(c2d.GrouserBeltTrack())
-BELT, BELLY, GROUSER = 1, 3, 4
 
 
 def test_contacts_lie_on_the_grousers_that_pictures_show() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.step(0.06), start=c2d.Start(track_phase=0.013))
-    geometry = _core.geometry(run.scenario.to_json())
-    assert len(geometry["grousers"]) == 22
+    scene = Scene(run)
+    assert scene.kinds.count(BodyKind.GROUSER) == 22
     table = run.contacts
-    assert set(table["body_kind"]) <= {BELT, BELLY, GROUSER}
+    assert set(table["body_kind"]) <= {BodyKind.BELT, BodyKind.BELLY, BodyKind.GROUSER}
     seen = set()
     for sample in range(50, run.time.size, 40):
-        outlines = [
-            placed(run, sample, outline)
-            for outline in grousers(geometry, float(run.drive_positions[sample, 0]))
-        ]
-        now = (table["time"] == run.time[sample]) & (table["body_kind"] == GROUSER)
+        now = (table["time"] == run.time[sample]) & (table["body_kind"] == BodyKind.GROUSER)
         for row in np.flatnonzero(now):
             point = np.array([table["x"][row], table["y"][row]])
-            # Body 0 is the belt. In half a step a grouser moves by 0.2 mm, and an arc is drawn in
-            # sides of 3 degrees.
-            assert distance(point, outlines[table["body"][row] - 1]) < 5e-4
+            # In half a step a grouser moves by 0.2 mm, its tip round an end by twice that.
+            assert distance(point, scene.outline(table["body"][row], sample)) < 5e-4
             seen.add(int(table["body"][row]))
     assert len(seen) > 11
 

@@ -10,13 +10,12 @@ from matplotlib import pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import crawler2d as c2d
-from crawler2d import _core
 from crawler2d.common.table import Table
 from crawler2d.parameters.track import Track
-from crawler2d.pictures.shapes import carriers, outlines, pins, shoes
-from tests.pictures.reading import distance, page_of, unpacked
+from crawler2d.pictures.shapes import Scene
+from crawler2d.results.bodies import BodyKind
+from tests.pictures.reading import distance, page_of, placed, unpacked
 
-GROUSER, SHOE = 4, 5
 STEP = c2d.terrains.step(0.06)
 LANES = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.step(0.03))
 SPROCKET = c2d.SegmentalTrack(mechanism="sprocket")
@@ -55,21 +54,21 @@ def drawn_shoes(ax: Any) -> list[Any]:
 def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
     table = chain.contacts
     near = table["lane"].max()
-    # Of two tracks the right one is in front; after the shoes of each comes what they run on.
-    geometry = _core.geometry(chain.scenario.to_json())
-    pieces = len(geometry["shoes"])
-    first = int(geometry["bodies"][0]) - pieces
+    bodies = chain.bodies
+    pieces = np.flatnonzero((bodies["shoe"] >= 0) & (bodies["lane"] == near)).tolist()
     distances = []
     for sample in range(20, chain.time.size, 8):
         _, ax = plt.subplots()
         chain.plot(chain.time[sample], axes=ax)
         outlines = drawn_shoes(ax)
         plt.close("all")
-        assert len(outlines) == pieces
+        assert len(outlines) == len(pieces)
         now = (table["time"] == chain.time[sample]) & (table["lane"] == near)
-        for row in np.flatnonzero(now & np.isin(table["body_kind"], (GROUSER, SHOE))):
+        for row in np.flatnonzero(
+            now & np.isin(table["body_kind"], (BodyKind.GROUSER, BodyKind.SHOE))
+        ):
             point = np.array([table["x"][row], table["y"][row]])
-            distances.append(distance(point, outlines[table["body"][row] - first]))
+            distances.append(distance(point, outlines[pieces.index(table["body"][row])]))
     assert len(distances) > 100
     # Contacts are means over an interval, in which a shoe that is not at rest moves on, at twice
     # the speed of the robot at most.
@@ -84,36 +83,10 @@ def test_each_pose_has_its_shoes(chain: c2d.Run) -> None:
     assert len([c for c in ax.collections if type(c) is PolyCollection]) == 3
 
 
-def test_the_page_has_the_shoes_to_a_tenth_of_a_millimetre(chain: c2d.Run) -> None:
-    page = page_of(chain)
-    frames, robot = page["frames"], page["robot"]
-    pins = unpacked(frames["pins"]).reshape(frames["count"], frames["shoes"], 2)
-    ways = np.roll(pins, -1, axis=1) - pins
-    middles, angles = pins + 0.5 * ways, np.arctan2(ways[..., 1], ways[..., 0])
-    geometry = _core.geometry(chain.scenario.to_json())
-    for sample in range(0, frames["count"], 10):
-        turn = chain.chassis_angle[sample]
-        placed = [
-            (rotated(unpacked(piece).reshape(-1, 2), angle) + middle)
-            for pieces, middle, angle in zip(
-                robot["shoes"], middles[sample], angles[sample], strict=True
-            )
-            for piece in pieces
-        ]
-        for here, there in zip(placed, shoes(chain, geometry, sample), strict=True):
-            world = rotated(here, turn) + chain.position[sample]
-            assert np.abs(world - there[:-1]).max() < 1e-4
-
-
-def rotated(points: Any, angle: float) -> Any:
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return points @ np.array([[cosine, sine], [-sine, cosine]])
-
-
 def test_other_tracks_have_no_shoes() -> None:
     page = page_of(simulated(c2d.GrouserBeltTrack(), duration=0.5))
-    assert page["frames"]["shoes"] == 0
-    assert page["robot"]["shoes"] == []
+    (chassis,) = page["robot"]["carriers"]
+    assert "shoe" not in {body["kind"] for body in chassis["bodies"]}
 
 
 def test_fifteen_seconds_of_a_chain_take_less_than_500_kb() -> None:
@@ -139,13 +112,14 @@ def test_teeth_stand_between_the_pins_that_are_drawn(terrain: Any, flippers: boo
     bare = c2d.robots.engineer(flippers=None, track=SPROCKET)
     robot = c2d.robots.engineer(track=SPROCKET) if flippers else bare
     run = c2d.simulate(robot, terrain, duration=4.0)
-    geometry = _core.geometry(run.scenario.to_json())
-    chassis, *arms = carriers(run, geometry)
-    assert bool(arms) == flippers
-    rear = np.array(geometry["sprocket"]["center"])[None]
+    scene, poses = Scene(run), run.poses
+    assert (len(scene.carriers) > 1) == flippers
+    (sprocket,) = rows_of(scene, BodyKind.SPROCKET)
+    plates = rows_of(scene, BodyKind.SHOE)
+    rear_pin = np.array([[scene.bodies["outline"][plates[0]][:, 0].min(), 0.0]])
     for sample in range(100, run.time.size, 25):
-        teeth, places = outlines(chassis, sample)[0], pins(run, geometry)[sample]
-        axle = chassis.placed(sample, rear)[0]
+        teeth, axle = scene.outline(sprocket, sample), poses[sample, sprocket, :2]
+        places = np.concatenate([placed(rear_pin, poses[sample, plate]) for plate in plates])
         behind = (places - axle) @ directed(run.chassis_angle[sample]) < 0.0
         seated = places[behind & (np.hypot(*(places - axle).T) < 0.0575)]
         assert len(seated) >= 1
@@ -161,16 +135,17 @@ def directed(angle: float) -> Any:
 
 def test_the_picture_has_sprocket_idler_and_wheels_and_no_guide() -> None:
     run = simulated(SPROCKET, duration=0.5)
-    geometry = _core.geometry(run.scenario.to_json())
-    (chassis,) = carriers(run, geometry)
+    scene = Scene(run)
     _, ax = plt.subplots()
     run.plot(0.3, axes=ax)
     lines = [np.array(line.get_xydata()) for line in ax.get_lines()]
-    drawn = outlines(chassis, int(np.abs(run.time - 0.3).argmin()))
+    sample = int(np.abs(run.time - 0.3).argmin())
+    in_chain = [kind for kind in BodyKind if kind.is_in_chain]
+    drawn = [scene.outline(row, sample) for row in rows_of(scene, *in_chain)]
     assert len(drawn) == 2 + 7 + 3
     for outline in drawn:
         assert any(np.array_equal(outline, line) for line in lines)
-    corners = len(geometry["root_envelope"])
+    corners = len(scene.carriers[0].root_envelope)
     assert all(len(line) != corners + 1 for line in lines)
 
 
@@ -188,16 +163,24 @@ def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
 def test_the_page_has_sprocket_idler_and_wheels(terrain: Any) -> None:
     run = simulated(SPROCKET, terrain, duration=0.5)
-    robot, geometry = page_of(run)["robot"], _core.geometry(run.scenario.to_json())
-    sprocket = geometry["sprocket"]
-    first, *others = robot["wheels"]
-    assert len(others) == 1 + 7 + 3
-    assert (robot["hull"], robot["ends"], robot["envelope"]) == (None, [], None)
-    assert first["radius"] == sprocket["radius"]
-    assert np.abs(unpacked(first["outline"]).reshape(-1, 2) - sprocket["outline"]).max() < 1e-5
-    assert not any("outline" in wheel for wheel in others)
+    robot, scene = page_of(run)["robot"], Scene(run)
+    (chassis,) = robot["carriers"]
+    assert (chassis["envelope"], chassis["circuit"]) == (None, None)
+    kinds = [body["kind"] for body in chassis["bodies"]]
+    counts = {kind: kinds.count(kind) for kind in kinds}
+    wheels = {"sprocket": 1, "idler": 1, "road_wheel": 7, "roller": 3}
+    assert counts == {"shoe": 22, **wheels, "belly": 1}
     # Of two tracks the right one is in front.
-    assert {wheel["drive"] for wheel in robot["wheels"]} == {run.drive_positions.shape[1] - 1}
+    (row,) = rows_of(scene, BodyKind.SPROCKET)
+    sprocket = next(body for body in chassis["bodies"] if body["kind"] == "sprocket")
+    assert sprocket["body"] == row
+    outline = unpacked(robot["outlines"][sprocket["outlines"][0]]).reshape(-1, 2)
+    assert np.abs(outline - scene.bodies["outline"][row]).max() < 1e-5
+
+
+def rows_of(scene: Scene, *kinds: BodyKind) -> list[int]:
+    """Bodies of the chassis that are seen."""
+    return [row for row in scene.carriers[0].bodies.tolist() if scene.kinds[row] in kinds]
 
 
 def test_the_guide_is_called_by_its_name() -> None:
@@ -205,6 +188,6 @@ def test_the_guide_is_called_by_its_name() -> None:
     assert found is not None
     columns = {name: np.array(found.contacts[name]) for name in found.contacts}
     first = np.flatnonzero(columns["in_pocket"])[0]
-    columns["body_kind"][columns["body"] == columns["body"][first]] = 6
+    columns["body_kind"][columns["body"] == columns["body"][first]] = BodyKind.GUIDE
     told = str(dataclasses.replace(found, contacts=Table(columns)))
     assert re.search(r"the guide (bears on it )?with \d+ N", told)

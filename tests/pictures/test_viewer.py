@@ -17,7 +17,7 @@ import crawler2d as c2d
 from crawler2d import _core
 from crawler2d.pictures.page.packed import packed
 from crawler2d.pictures.page.recording import MOST_FRAMES
-from crawler2d.pictures.shapes import circle, inset
+from crawler2d.pictures.shapes import inset
 from tests.pictures.reading import unpacked
 from tests.shared import GEAR, ROBOT, VARIANTS
 
@@ -105,7 +105,6 @@ def test_the_page_holds_the_history_to_a_hundredth_of_a_millimetre(stopped: c2d.
         ("x", stopped.position[:, 0], 1e-5),
         ("y", stopped.position[:, 1], 1e-5),
         ("angle", stopped.chassis_angle, 1e-4),
-        ("ways", stopped.drive_positions.ravel(), 1e-4),
         ("speed", stopped.track_speed, 1e-4),
     ):
         assert np.abs(unpacked(frames[name]) - values).max() < tolerance, name
@@ -125,59 +124,48 @@ def test_every_kind_of_robot_and_ground_has_a_page(scenario: c2d.Scenario) -> No
     run = c2d.simulate(scenario.replace({"duration": 1.5}))
     recording = Page(run.to_html()).recording
     assert recording["frames"]["count"] == run.time.size
-    robot = recording["robot"]
-    assert bool(robot["hull"]) is (not robot["wheels"])
-    assert all(wheel["drive"] < recording["frames"]["drives"] for wheel in robot["wheels"])
+    (chassis, *_) = recording["robot"]["carriers"]
+    # Nothing gets inside what is closed, and only a belt carries something along.
+    kinds = {body["kind"] for body in chassis["bodies"]}
+    closed = kinds & {"belt", "skid", "guide", "shoe"}
+    assert bool(chassis["envelope"]) is not bool(closed)
+    assert bool(chassis["circuit"]) is ("belt" in kinds)
     corners = sum(len(lane["corners"]) for lane in recording["ground"]["lanes"])
-    assert corners == np.count_nonzero(run.edges["lane"] != 3)  # nothing rolls on the belly's
+    # Nothing rolls on the belly's.
+    assert corners == np.count_nonzero(run.edges["lane"] != c2d.Lane.MIDDLE)
 
 
-@pytest.mark.parametrize(
-    ("robot", "drives"),
-    [
-        (WHEELS, [0, 0, 0, 0]),
-        (ROBOT.with_track(c2d.ForceTrack(support="wheels")), [1, 2, 3, 4, 5]),
-    ],
-    ids=["one motor", "free wheels"],
-)
-def test_every_wheel_turns_with_its_own_drive(robot: c2d.Robot, drives: list[int]) -> None:
-    run = c2d.simulate(robot, c2d.terrains.flat(), duration=0.5)
-    wheels = Page(run.to_html()).recording["robot"]["wheels"]
-    assert [wheel["drive"] for wheel in wheels] == drives
-
-
-def test_wheels_with_motors_of_their_own_turn_by_themselves() -> None:
-    scenario = c2d.Scenario(WHEELS, c2d.terrains.flat(), duration=0.5)
-    run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": "wheel"}))
-    wheels = Page(run.to_html()).recording["robot"]["wheels"]
-    assert [wheel["drive"] for wheel in wheels] == [0, 1, 2, 3]
-
-
-def test_only_a_belt_has_a_surface_that_moves() -> None:
-    for track, moving in ((c2d.BeltTrack(), True), (c2d.ForceTrack(), False)):
-        run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.flat(), duration=0.5)
-        assert Page(run.to_html()).recording["robot"]["moving"] is moving
+def test_wheels_that_turn_alike_are_sent_once() -> None:
+    """One motor, and one a wheel before a step that only the first meets."""
+    columns = []
+    for sharing in ("track", "wheel"):
+        scenario = c2d.Scenario(WHEELS, c2d.terrains.step(0.075), duration=4.0)
+        run = c2d.simulate(scenario.replace({"robot.drivetrain.torque_sharing": sharing}))
+        columns.append(len(Page(run.to_html()).recording["robot"]["columns"]))
+    assert columns == [1, 4]
 
 
 def test_the_belt_round_wheels_comes_from_the_core(stopped: c2d.Run) -> None:
-    geometry = _core.geometry(stopped.scenario.to_json())
-    robot = Page(stopped.to_html()).recording["robot"]
-    assert np.allclose(unpacked(robot["envelope"]), geometry["envelope"].ravel(), atol=1e-5)
-    assert robot["root"] is None
-    inner = unpacked(robot["inner"]).reshape(-1, 2)
+    geometry = _core.geometry(stopped.scenario.to_json())["carriers"][0]
+    (chassis,) = Page(stopped.to_html()).recording["robot"]["carriers"]
+    assert np.allclose(unpacked(chassis["envelope"]), geometry["envelope"].ravel(), atol=1e-5)
+    assert chassis["root"] is None
+    inner = unpacked(chassis["inner"]).reshape(-1, 2)
     radius = geometry["circles"][0, 2] - stopped.scenario.criteria.intrusion_depth
     assert inner[:, 1].max() == pytest.approx(radius, abs=1e-5)
 
 
 def test_the_belt_round_the_roots_of_gears_runs_below_that_round_their_tips() -> None:
     run = c2d.simulate(GEARS, c2d.terrains.flat(), duration=0.5)
-    robot = Page(run.to_html()).recording["robot"]
-    top, root = (unpacked(robot[name])[1::2].max() for name in ("envelope", "root"))
+    (chassis,) = Page(run.to_html()).recording["robot"]["carriers"]
+    top, root = (unpacked(chassis[name])[1::2].max() for name in ("envelope", "root"))
     assert top - root == pytest.approx(GEAR.grouser_height, abs=1e-5)
 
 
 def test_an_inset_line_lies_inside_by_its_depth() -> None:
-    moved = inset(circle(1.0, 2.0, 0.5), 0.1)
+    angles = np.linspace(0.0, 2.0 * np.pi, 181)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    moved = inset([1.0, 2.0] + 0.5 * circle, 0.1)
     assert np.hypot(*(moved - [1.0, 2.0]).T) == pytest.approx(0.4, abs=1e-12)
 
 

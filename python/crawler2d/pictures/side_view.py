@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from crawler2d import _core
 from crawler2d.common.extras import extra
-from crawler2d.pictures.shapes import (
-    SLIVER,
-    carrier_of,
-    carriers,
-    closed,
-    extent,
-    inset,
-    mass_center,
-    outlines,
-    placed,
-    seen_lanes,
-    shoes,
-)
+from crawler2d.pictures.shapes import SLIVER, Scene, closed, inset, placed
+from crawler2d.results.bodies import BodyKind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,21 +42,20 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
 
     Parameters
     ----------
-    run : Record
+    run : Run
         A run with history.
     times : ndarray, shape (k,)
         [s] When to draw the robot; the nearest samples are taken.
     ax : Axes
         Where to draw.
     """
-    geometry = _core.geometry(run.scenario.to_json())
-    lanes = seen_lanes(geometry)
+    scene = Scene(run)
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
-    left, right, bottom, top = extent(run, geometry)
-    _draw_ground(lanes, bottom, ax)
+    left, right, bottom, top = scene.extent()
+    _draw_ground(scene.lanes, bottom, ax)
     for sample in samples:
         last = sample == samples[-1]
-        _draw_robot(run, geometry, int(sample), ax, alpha=1.0 if last else 0.3)
+        _draw_robot(scene, int(sample), ax, alpha=1.0 if last else 0.3)
     ax.plot(
         run.position[:, 0],
         run.position[:, 1],
@@ -79,13 +66,14 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
     )
     shown = int(samples[-1])
     _draw_contacts(run, shown, ax)
-    _draw_envelopes(run, geometry, shown, ax)
-    _draw_intrusions(run, geometry, shown, ax)
-    if left < geometry["goal"] < right:
-        ax.axvline(geometry["goal"], color=_GREEN, linestyle=":", label="goal for the rear end")
+    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
+    _draw_envelopes(scene, shown, ax, depth=depth)
+    _draw_intrusions(run, scene, shown, ax)
+    if left < scene.goal < right:
+        ax.axvline(scene.goal, color=_GREEN, linestyle=":", label="goal for the rear end")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
     # A raised flipper may be behind the rear end, in the corner that is else free.
-    corner: Literal["best", "upper left"] = "best" if geometry["flippers"] else "upper left"
+    corner: Literal["best", "upper left"] = "best" if len(scene.carriers) > 1 else "upper left"
     ax.legend(loc=corner, fontsize="small", framealpha=0.9)
 
 
@@ -106,42 +94,37 @@ def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax
         )
 
 
-def _draw_robot(
-    run: Record, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float
-) -> None:
-    if len(geometry["belly"]):  # first: the wheels lie before it
-        x, y = closed(placed(run, sample, geometry["belly"])).T
-        ax.fill(x, y, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
-        ax.plot(x, y, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
-    for carrier in carriers(run, geometry):
-        # What shoes run on is no more than a hint behind them, but for the sprocket.
-        usual = _GUIDE if carrier.track.get("shoes") else _BLACK
-        first = _BLACK if carrier.track.get("sprocket") else usual
-        for k, outline in enumerate(outlines(carrier, sample)):
-            color = usual if k else first
-            ax.plot(*outline.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
-    _draw_shoes(run, geometry, sample, ax, alpha=alpha)
-    center = placed(run, sample, mass_center(run, geometry, sample)[None])
-    ax.plot(*center.T, marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
-
-
-def _draw_shoes(
-    run: Record, geometry: dict[str, Any], sample: int, ax: Axes, *, alpha: float
-) -> None:
-    """Fill the shoes; a chain has hundreds of them in all poses, and one artist a pose is fast."""
-    pieces = shoes(run, geometry, sample)
-    if not pieces:
-        return
-    collections = extra("matplotlib.collections", "plot")
-    ax.add_collection(
-        collections.PolyCollection(
-            pieces,
-            facecolor=(_BLACK, 0.5 * alpha),
-            edgecolor=(_BLACK, alpha),
-            linewidth=0.6,
-            zorder=2,
+def _draw_robot(scene: Scene, sample: int, ax: Axes, *, alpha: float) -> None:
+    """Draw the bodies of each carrier, shoes last; those that meet nothing are left out."""
+    shoes = []
+    bodies = np.concatenate([carrier.bodies for carrier in scene.carriers])
+    # The wheels lie before the belly.
+    for body in sorted(bodies, key=lambda body: scene.kinds[body] != BodyKind.BELLY):
+        line, kind = scene.outline(body, sample), scene.kinds[body]
+        if scene.is_shoe(body):
+            shoes.append(line)
+        elif kind == BodyKind.BELLY:
+            ax.fill(*line.T, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
+            ax.plot(*line.T, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
+        elif scene.bodies["body"][body] >= 0:
+            # What shoes run on is no more than a hint behind them, but for the sprocket.
+            is_hint = kind.is_in_chain and kind != BodyKind.SPROCKET
+            color = _GUIDE if is_hint else _BLACK
+            ax.plot(*line.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
+    if shoes:
+        # A chain has hundreds of pieces in all poses, and one artist a pose is fast.
+        collections = extra("matplotlib.collections", "plot")
+        ax.add_collection(
+            collections.PolyCollection(
+                shoes,
+                facecolor=(_BLACK, 0.5 * alpha),
+                edgecolor=(_BLACK, alpha),
+                linewidth=0.6,
+                zorder=2,
+            )
         )
-    )
+    center = scene.center_of_mass[sample]
+    ax.plot(*center[:, None], marker="+", color=_BLACK, alpha=alpha, markersize=8, zorder=2)
 
 
 def _draw_contacts(run: Record, sample: int, ax: Axes) -> None:
@@ -199,17 +182,16 @@ def _draw_arrows(
     )
 
 
-def _draw_envelopes(run: Record, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
+def _draw_envelopes(scene: Scene, sample: int, ax: Axes, *, depth: float) -> None:
     """Draw the taut belts round the wheels, and fill what of the ground is inside them."""
     patches = extra("matplotlib.patches", "plot")
-    depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     label: str | None = "taut belt round the wheels"
-    for carrier in carriers(run, geometry):
-        if carrier.track["hull"]:  # nothing gets inside a belt
+    for carrier in scene.carriers:
+        if carrier.closed:
             continue
-        belt = carrier.track["envelope"]
+        pose = carrier.poses[sample]
         ax.plot(
-            *closed(carrier.placed(sample, belt)).T,
+            *placed(closed(carrier.envelope), pose).T,
             color=_PURPLE,
             linestyle="--",
             linewidth=0.9,
@@ -217,15 +199,15 @@ def _draw_envelopes(run: Record, geometry: dict[str, Any], sample: int, ax: Axes
             zorder=2.5,
         )
         label = None  # once is enough
-        inner = carrier.placed(sample, inset(belt, depth))
-        for _, profile in seen_lanes(geometry):
+        inner = placed(inset(carrier.envelope, depth), pose)
+        for _, profile in scene.lanes:
             x, y = profile.T
             below = float(inner[:, 1].min()) - 1.0
             soil = ax.fill_between(x, y, below, color=_PURPLE, alpha=0.5, linewidth=0.0, zorder=2.6)
             soil.set_clip_path(patches.Polygon(inner, transform=ax.transData))
 
 
-def _draw_intrusions(run: Record, geometry: dict[str, Any], sample: int, ax: Axes) -> None:
+def _draw_intrusions(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
     """Mark the edges that are inside the track at one sample."""
     events, time = run.events, run.time[sample]
     inside = events["kind"] == "intrusion"
@@ -241,9 +223,8 @@ def _draw_intrusions(run: Record, geometry: dict[str, Any], sample: int, ax: Axe
     most_loaded = rows[events["force"][rows].argmax()]
     depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
     label = f"edge inside the track: {1e3 * depth:.1f} mm"
-    # Not those in a chain: the edge is between two of its shoes.
-    in_chain = geometry["shoes"] and not carrier_of(geometry, one)
-    if one != other and not in_chain:
+    # Of those in a chain it is between two shoes.
+    if one != other and not scene.kinds[one].is_in_chain:
         label += f" between wheels {one} and {other}"
     ax.plot(
         run.edges["x"][edges],

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from crawler2d.common.frozen import Figures, read_only
 from crawler2d.common.table import Table
 from crawler2d.errors import Crawler2dError
+from crawler2d.results.bodies import bodies_of, moved
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -160,6 +161,53 @@ class Record:
     def flipper_torques(self) -> NDArray[np.float64]:
         """[N m] Of their motors, both sides together, upwards > 0, of the last step; (n, k)."""
         return self._recorded("flipper_torques")
+
+    @property
+    def bodies(self) -> Table:
+        """Bodies of the robot, one row each, in the order of `poses`; computed when asked for.
+
+        First come those that can meet the ground: row k is the `body` k of the contacts. After them
+        come the wheels within belts and guides, which meet nothing.
+
+        =========  ====  ==========================================================================
+        column     unit  meaning
+        =========  ====  ==========================================================================
+        `body`           as in the contacts; -1: it meets nothing
+        `kind`           code of a `BodyKind`
+        `lane`           code of the `Lane` of its track
+        `carrier`        "chassis", "front flipper" or "rear flipper"
+        `shoe`           number of the shoe that it belongs to, as in `shoe_poses`; -1: none
+        `radius`   m     of a circle; nan where it is none
+        `outline`  m     corners in its own frame, counter-clockwise, shape (m, 2)
+        =========  ====  ==========================================================================
+        """
+        return bodies_of(self.scenario)
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """[m, m, rad] Origin x, y and angle of the frame of each of k bodies, shape (n, k, 3).
+
+        They are computed from the history when asked for: keep them while you need them. Angles
+        count full turns, so poses may be interpolated between samples. Belts, skids, the guide and
+        the belly have the frame of what carries them; a belt's surface moves within its outline.
+        The idler of a chain is where it is built.
+
+        Examples
+        --------
+        Where the outline of the second wheel from the rear is in the end:
+
+        >>> import numpy as np
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> run = c2d.simulate(robot, c2d.terrains.flat(), duration=1.0)
+        >>> x, y, angle = run.poses[-1, 1]
+        >>> turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        >>> corners = run.bodies["outline"][1] @ turn.T + (x, y)
+        >>> bool(abs(corners[:, 1].min()) < 1e-4)  # it stands on the ground
+        True
+        """
+        self._recorded("time")
+        return read_only(moved(self.scenario, self._trace)["bodies"])
 
     @property
     def contacts(self) -> Table:

@@ -8,28 +8,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.results.bodies import BodyKind
+
 if TYPE_CHECKING:
     from crawler2d.results.findings import Findings, Intrusion
 
 __all__ = ["sentence"]
 
-_BELT, _BELLY, _GROUSER, _SHOE = 1, 3, 4, 5
-_IN_CHAIN = {
-    6: "the guide",
-    7: "the sprocket",
-    8: "the idler",
-    9: "a road wheel",
-    10: "a return roller",
-}
 _NAMES = {
-    _BELT: "the belt",
-    2: "the skid",
-    _BELLY: "the belly",
-    _GROUSER: "a grouser",
-    _SHOE: "a shoe",
-    **_IN_CHAIN,
+    BodyKind.BELT: "the belt",
+    BodyKind.SKID: "the skid",
+    BodyKind.BELLY: "the belly",
+    BodyKind.GROUSER: "a grouser",
+    BodyKind.SHOE: "a shoe",
+    BodyKind.GUIDE: "the guide",
+    BodyKind.SPROCKET: "the sprocket",
+    BodyKind.IDLER: "the idler",
+    BodyKind.ROAD_WHEEL: "a road wheel",
+    BodyKind.ROLLER: "a return roller",
 }
-"""What a reader calls the bodies that are no wheels, by their code in `body_kind`."""
+"""What a reader calls the bodies that are no wheels."""
 _LEAST_SHARE = 0.02
 """Smaller shares are noise to a reader."""
 _LEAST_DEPTH = 5e-4
@@ -71,13 +69,13 @@ def _inside(d: Findings) -> str:
     if piece is None:
         return ""
     rear, front = sorted(piece.bodies)
-    kind = piece.body_kinds[0]
+    kind = BodyKind(piece.body_kinds[0])
     has_grousers = piece.depth - piece.root_depth > _LEAST_DEPTH
-    if rear != front and kind in _IN_CHAIN:
+    if rear != front and kind.is_in_chain:
         where = f"under the shoes between {' and '.join(_in_chain(piece))}"
     elif rear != front:
         where = f"between wheels {rear} and {front}"
-    elif kind in _IN_CHAIN:
+    elif kind.is_in_chain:
         where = "between two shoes"
     elif has_grousers:
         where = f"between two grousers of {_NAMES.get(kind, f'wheel {rear}')}"
@@ -94,7 +92,7 @@ def _inside(d: Findings) -> str:
 
 def _in_chain(piece: Intrusion) -> list[str]:
     """Name the wheels that a chain runs on, on either side of an intrusion."""
-    names = [_NAMES[kind] for kind in piece.body_kinds]
+    names = [_NAMES[BodyKind(kind)] for kind in piece.body_kinds]
     return [names[0], "the next"] if names[0] == names[1] else names
 
 
@@ -129,20 +127,22 @@ def _on_it(d: Findings) -> str:
 
 def _name(d: Findings, body: int) -> str:
     kinds = d.contacts["body_kind"][d.contacts["body"] == body]
-    return _NAMES.get(int(kinds[0]) if len(kinds) else 0, f"wheel {body}")
+    kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
+    return _NAMES.get(kind, f"wheel {body}")
 
 
 def _is_belt(d: Findings) -> bool:
     """Tell a belt, with grousers or without, by what is inside of it, or by what bears."""
     if d.intrusion is not None:
-        return d.intrusion.body_kinds[0] == _BELT
+        return d.intrusion.body_kinds[0] == BodyKind.BELT
     kinds = d.contacts["body_kind"]
-    is_chain = np.isin(kinds, (_SHOE, *_IN_CHAIN)).any()
-    return bool(np.isin(kinds, (_BELT, _GROUSER)).any() and not is_chain)
+    of_chain = [kind for kind in BodyKind if kind == BodyKind.SHOE or kind.is_in_chain]
+    is_chain = np.isin(kinds, of_chain).any()
+    return bool(np.isin(kinds, (BodyKind.BELT, BodyKind.GROUSER)).any() and not is_chain)
 
 
 def _belly(d: Findings) -> str:
-    on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == _BELLY)
+    on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == BodyKind.BELLY)
     if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != "hung_up"):
         return ""
     return f"{_percent(d.belly_share)} of the load rests on the belly"
@@ -153,7 +153,7 @@ def _drives(d: Findings) -> str:
     if d.stalled_share > 0.0:
         of = "" if d.stalled_share == 1.0 else f"{d.stalled_share:.0%} of ".replace("%", " %")
         return f"{of}its motors stand at their torque limit"
-    track = d.contacts["body_kind"] != _BELLY
+    track = d.contacts["body_kind"] != BodyKind.BELLY
     forces = d.contacts["normal_force"][track]
     if d.outcome not in ("slipping", "cycling") or forces.sum() == 0.0:
         return ""

@@ -24,6 +24,17 @@ pub enum Mechanism {
 }
 
 impl Mechanism {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Straddled,
+        Self::Undercut,
+        Self::Bellied,
+        Self::Blocked,
+        Self::Interlocked,
+        Self::Pinched,
+        Self::Fouled,
+    ];
+
     /// Name as in tables.
     pub fn name(self) -> &'static str {
         match self {

@@ -85,7 +85,7 @@ pub enum Condition {
 
 impl Condition {
     /// All of them.
-    pub(super) const ALL: [Self; 4] = [Self::Pocket, Self::Belly, Self::Torque, Self::Friction];
+    pub const ALL: [Self; 4] = [Self::Pocket, Self::Belly, Self::Torque, Self::Friction];
 
     /// Name as in tables.
     pub fn name(self) -> &'static str {

@@ -196,23 +196,18 @@ impl State {
     pub(crate) fn running_after(&self, time: f64, model: &Model, running: &mut Running) {
         let speeds = (0..self.drives.len()).map(|k| self.track_speed(model, k));
         let drives = self.drives.iter().zip(speeds);
-        running.drives.clear();
-        running
-            .drives
-            .extend(drives.map(|(d, speed)| d.position + speed * time));
-        running.shoes.clear();
-        if !self.shoes.is_empty() {
-            let back = self.pose_after(time, model).inverse();
-            let places = self.shoes.iter().map(|shoe| back * shoe.after(time).pose());
-            running.shoes.extend(places);
-        }
-        let mounted = |(k, arm): (usize, &Flipper)| {
-            let rate = self.flippers[k].rate - self.angular_velocity;
-            arm.mounted(self.over_chassis(k) + rate * time, model.drive_radius)
-        };
-        let flippers = model.flippers.iter().enumerate().map(mounted);
-        running.flippers.clear();
-        running.flippers.extend(flippers);
+        let drives = drives.map(|(d, speed)| d.position + speed * time);
+        let has_shoes = !self.shoes.is_empty();
+        let back = has_shoes.then(|| self.pose_after(time, model).inverse());
+        let shoes = back.iter().flat_map(|back| {
+            let shoes = self.shoes.iter();
+            shoes.map(|shoe| *back * shoe.after(time).pose())
+        });
+        let turns = self.flippers.iter().enumerate().map(|(k, flipper)| {
+            let rate = flipper.rate - self.angular_velocity;
+            self.over_chassis(k) + rate * time
+        });
+        model.set_running(running, drives, shoes, turns);
     }
 
     /// [rad] Angle of a flipper over the chassis, counter-clockwise.
@@ -245,7 +240,7 @@ impl State {
     pub(super) fn run_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
         let run = self.drives[drive].position;
         match mount {
-            Mount::Flipper(k) => run + model.drive_radius * self.over_chassis(k),
+            Mount::Flipper(k) => run + Flipper::run(self.over_chassis(k), model.drive_radius),
             Mount::Chassis | Mount::Shoe(_) => run,
         }
     }

@@ -161,15 +161,24 @@ impl Envelope {
 
     /// Points along the hull, an arc cut every `turn` [rad]; the last is not the first again.
     pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
-        let cut = |stretch: &Stretch| {
+        let points = self.cuts(turn);
+        points.map(|(s, inner)| s.point_at(inner)).collect()
+    }
+
+    /// [m] Ways along the hull to these points.
+    pub(crate) fn ways(&self, turn: f64) -> impl Iterator<Item = f64> {
+        self.cuts(turn)
+            .map(|(stretch, inner)| stretch.start + inner)
+    }
+
+    fn cuts(&self, turn: f64) -> impl Iterator<Item = (&Stretch, f64)> {
+        self.stretches.iter().flat_map(move |stretch| {
             let cuts = match stretch.shape {
-                Form::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0),
-                Form::Run { .. } => 1.0,
+                Form::Arc { sweep, .. } => (sweep / turn).ceil().max(1.0) as usize,
+                Form::Run { .. } => 1,
             };
-            let (stretch, cuts) = (*stretch, cuts as usize);
-            (0..cuts).map(move |i| stretch.point_at(stretch.length * i as f64 / cuts as f64))
-        };
-        self.stretches.iter().flat_map(cut).collect()
+            (0..cuts).map(move |i| (stretch, stretch.length * i as f64 / cuts as f64))
+        })
     }
 
     /// The outward normal of the hull where it lies nearest to a point.

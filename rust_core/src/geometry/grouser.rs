@@ -68,6 +68,16 @@ impl Grouser {
         Pose::from_parts(point, rotation)
     }
 
+    /// [m] Way along the belt's line at which it starts.
+    pub fn start(&self) -> f64 {
+        self.way
+    }
+
+    /// [rad] Angle of that frame; it counts full turns.
+    pub(crate) fn angle(&self, run: f64) -> f64 {
+        self.belt.angle_at(self.way + run)
+    }
+
     /// How the belt moves what it carries at a point [m] of the chassis frame when it has run so far [m]: this
     /// grouser, unless it is elsewhere.
     pub(crate) fn motion_where(&self, run: f64, point: Vector) -> Motion {

@@ -1,5 +1,7 @@
 //! What a belt along an envelope carries: where it is, and how it moves.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use super::envelope::Envelope;
 use super::stretch::{Form, Stretch};
 use super::{Pose, Vector, right_of};
@@ -72,6 +74,25 @@ impl Envelope {
             Form::Run { outward, .. } => outward,
         };
         (point, outward)
+    }
+
+    /// [rad] Direction of belt travel a way [m] along the hull; it counts full turns.
+    pub(crate) fn angle_at(&self, way: f64) -> f64 {
+        let inside = way.rem_euclid(self.length());
+        // Not of the quotient, which may be rounded up to the next round.
+        let rounds = ((way - inside) / self.length()).round();
+        let turned = |stretch: &Stretch| match stretch.shape {
+            Form::Arc { sweep, .. } if inside > stretch.start => {
+                sweep * ((inside - stretch.start) / stretch.length).min(1.0)
+            }
+            _ => 0.0,
+        };
+        let turns: f64 = self.stretches.iter().map(turned).sum();
+        let outward = match self.stretches[0].shape {
+            Form::Arc { from, .. } => from,
+            Form::Run { outward, .. } => libm::atan2(outward.y, outward.x),
+        };
+        outward - FRAC_PI_2 - turns - TAU * rounds
     }
 
     /// The mean motion of what a belt carries within `reach` [m] of a way along the hull: where an arc

@@ -33,6 +33,20 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// All of them; where several apply, the first counts.
+    pub const ALL: [Self; 10] = [
+        Self::Detracked,
+        Self::TippedOver,
+        Self::LeftTerrain,
+        Self::Cleared,
+        Self::Cycling,
+        Self::Seized,
+        Self::HungUp,
+        Self::Stalled,
+        Self::Slipping,
+        Self::TimedOut,
+    ];
+
     /// Name as in tables.
     pub fn name(self) -> &'static str {
         match self {

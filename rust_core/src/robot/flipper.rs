@@ -86,8 +86,13 @@ impl Flipper {
     pub(crate) fn mounted(&self, angle: f64, drive_radius: f64) -> Mounted {
         Mounted {
             pose: Pose::new(self.pivot, angle) * Pose::from_translation(self.arm),
-            // The sprocket turns with the chassis: over the arm it turns back.
-            run: drive_radius * angle,
+            run: Self::run(angle, drive_radius),
         }
+    }
+
+    /// [m] How far a belt has run along it because it has turned by `angle` [rad] over the chassis.
+    pub(crate) fn run(angle: f64, drive_radius: f64) -> f64 {
+        // The sprocket turns with the chassis: over the arm it turns back.
+        drive_radius * angle
     }
 }

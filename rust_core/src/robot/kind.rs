@@ -28,6 +28,38 @@ pub enum BodyKind {
 }
 
 impl BodyKind {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 11] = [
+        Self::Wheel,
+        Self::Belt,
+        Self::Skid,
+        Self::Belly,
+        Self::Grouser,
+        Self::Shoe,
+        Self::Guide,
+        Self::Sprocket,
+        Self::Idler,
+        Self::RoadWheel,
+        Self::Roller,
+    ];
+
+    /// Name as in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wheel => "wheel",
+            Self::Belt => "belt",
+            Self::Skid => "skid",
+            Self::Belly => "belly",
+            Self::Grouser => "grouser",
+            Self::Shoe => "shoe",
+            Self::Guide => "guide",
+            Self::Sprocket => "sprocket",
+            Self::Idler => "idler",
+            Self::RoadWheel => "road_wheel",
+            Self::Roller => "roller",
+        }
+    }
+
     /// Whether a chain of shoes runs round it.
     pub(crate) fn is_in_chain(self) -> bool {
         match self {
@@ -36,5 +68,16 @@ impl BodyKind {
                 false
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_listed_by_their_codes() {
+        let codes = BodyKind::ALL.map(|kind| kind as usize);
+        assert_eq!(codes, std::array::from_fn(|code| code));
     }
 }

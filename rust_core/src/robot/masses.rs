@@ -77,6 +77,19 @@ impl Model {
 
     /// The same with all that moves over the chassis fixed to it where it is.
     pub(crate) fn as_one_body(&self, running: &Running) -> Self {
+        let (mass, center_of_mass) = self.mass_center(running);
+        Self {
+            mass,
+            center_of_mass,
+            ..self.clone()
+        }
+    }
+
+    /// [kg] Mass of chassis, chains and flippers and [m] centre of it in the chassis frame.
+    pub(crate) fn mass_center(&self, running: &Running) -> (f64, Vector) {
+        if self.is_one_body() {
+            return (self.mass, self.center_of_mass);
+        }
         let (mut mass, mut moment) = (self.mass, self.center_of_mass * self.mass);
         for chain in &self.chains {
             for place in &running.shoes[chain.shoes.clone()] {
@@ -88,15 +101,7 @@ impl Model {
             mass += flipper.mass;
             moment += mounted.pose.translation * flipper.mass;
         }
-        Self {
-            mass,
-            center_of_mass: if self.is_one_body() {
-                self.center_of_mass
-            } else {
-                moment / mass
-            },
-            ..self.clone()
-        }
+        (mass, moment / mass)
     }
 
     /// The same robot with the mass of its chains at the drives, as where no shoes are simulated.

@@ -1,7 +1,7 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, the drives.
 
 use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
-use crate::geometry::{Disc, Envelope, Vector};
+use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::scenario::{Robot, ScenarioError};
 
 /// Everything about a robot that does not change during a run.
@@ -97,13 +97,32 @@ impl Model {
 
     /// Where what moves over the chassis is at time 0, when its tracks have run by `track_phase` [m].
     pub(crate) fn running_at_start(&self, track_phase: f64) -> Running {
+        let mut running = Running::default();
+        let drives = std::iter::repeat_n(track_phase, self.drives);
         let places = |chain: &ChainOfShoes| chain.path.places(track_phase);
-        let mounted = |arm: &Flipper| arm.mounted(arm.sign() * arm.start_angle, self.drive_radius);
-        Running {
-            drives: vec![track_phase; self.drives],
-            shoes: self.chains.iter().flat_map(places).collect(),
-            flippers: self.flippers.iter().map(mounted).collect(),
-        }
+        let shoes = self.chains.iter().flat_map(places);
+        let turns = self.flippers.iter().map(|arm| arm.sign() * arm.start_angle);
+        self.set_running(&mut running, drives, shoes, turns);
+        running
+    }
+
+    /// The same when its drives have run so far [m], its shoes have these frames in that of the chassis and its
+    /// flippers are turned so far over it [rad], counter-clockwise: the start, a step, a sample of a trace.
+    pub(crate) fn set_running(
+        &self,
+        running: &mut Running,
+        drives: impl Iterator<Item = f64>,
+        shoes: impl Iterator<Item = Pose>,
+        turns: impl Iterator<Item = f64>,
+    ) {
+        running.drives.clear();
+        running.drives.extend(drives);
+        running.shoes.clear();
+        running.shoes.extend(shoes);
+        let flippers = self.flippers.iter().zip(turns);
+        let mounted = flippers.map(|(arm, turn)| arm.mounted(turn, self.drive_radius));
+        running.flippers.clear();
+        running.flippers.extend(mounted);
     }
 
     /// [kg m^2] Moment of inertia of one drive.

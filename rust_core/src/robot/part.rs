@@ -102,14 +102,22 @@ impl Part {
         self.drive.map_or(0.0, |k| running.run(self.mount, k))
     }
 
-    /// Its own frame in that of its mount.
+    /// [rad] How far it has turned over its mount when its surface has run so far [m]; it counts full turns.
+    pub(crate) fn turn(&self, run: f64) -> f64 {
+        match &self.shape {
+            Shape::Disc { radius, .. } => -run / radius,
+            Shape::Gear { gear, .. } => -run / gear.radius,
+            Shape::Grouser(grouser) => grouser.angle(run),
+            Shape::Hull { .. } | Shape::Polygon { .. } => 0.0,
+        }
+    }
+
+    /// Its own frame in that of its mount; that of a disc does not turn, which looks the same.
     pub(crate) fn place(&self, running: &Running) -> Pose {
         let run = self.run(running);
         match &self.shape {
             Shape::Disc { center, .. } => Pose::from_translation(*center),
-            Shape::Gear { center, gear } => {
-                Pose::from_parts(*center, Rotation::new(-run / gear.radius))
-            }
+            Shape::Gear { center, .. } => Pose::from_parts(*center, Rotation::new(self.turn(run))),
             Shape::Grouser(grouser) => grouser.place(run),
             Shape::Hull { .. } | Shape::Polygon { .. } => Pose::IDENTITY,
         }

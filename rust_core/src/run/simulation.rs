@@ -18,6 +18,8 @@ use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
 use crate::error::{Error, SimulationError};
+#[cfg(test)]
+use crate::geometry::Pose;
 use crate::geometry::Vector;
 use crate::observe::{Event, Monitor, Outcome, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
@@ -147,6 +149,13 @@ impl Simulation {
         self.state
             .running_after(0.0, self.dynamics.model(), &mut running);
         running
+    }
+
+    /// The robot, where its moving parts are now, and its chassis.
+    #[cfg(test)]
+    pub(crate) fn placed(&self) -> (&Model, Running, Pose) {
+        let model = self.dynamics.model();
+        (model, self.running(), self.state.pose(model))
     }
 
     fn advance(&mut self) -> Result<(), SimulationError> {

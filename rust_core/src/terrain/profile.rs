@@ -28,6 +28,21 @@ pub enum Side {
     Middle = 3,
 }
 
+impl Side {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::Both, Self::Left, Self::Right, Self::Middle];
+
+    /// Name as in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Middle => "middle",
+        }
+    }
+}
+
 /// One lane: a polyline from left to right with the rounded edges cut into facets.
 #[derive(Clone, Debug)]
 pub struct Profile {

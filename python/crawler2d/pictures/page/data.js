@@ -16,17 +16,24 @@ function outlineOf(points, close = true) {
   return path;
 }
 
+// [m] Distance of the farthest of some points.
+function reachOf(points) {
+  let reach = 0;
+  for (let i = 0; i < points.length; i += 2) {
+    reach = Math.max(reach, Math.hypot(points[i], points[i + 1]));
+  }
+  return reach;
+}
+
 class Recording {
   constructor(data) {
     const { frames, contacts } = data;
     this.count = frames.count;
-    this.drives = frames.drives;
-    this.shoes = frames.shoes;
-    this.arms = data.robot.flippers.length;
     this.events = data.events;
-    for (const name of ["time", "x", "y", "angle", "speed", "commanded", "ways", "pins", "flippers"]) {
+    for (const name of ["time", "x", "y", "angle", "speed", "commanded"]) {
       this[name] = unpacked(frames[name]);
     }
+    this.columns = data.robot.columns.map(unpacked);
     this.contacts = {};
     for (const name of ["x", "y", "normal", "normal_force", "friction_force", "surface_speed"]) {
       this.contacts[name] = unpacked(contacts[name]);
@@ -63,18 +70,14 @@ class Recording {
     const before = Math.max(frame - 1, 0);
     const span = this.time[frame] - this.time[before];
     const share = span > 0 ? Math.min(1, Math.max(0, (time - this.time[before]) / span)) : 1;
-    const mixed = (values, width = 1, index = 0) => {
-      const first = values[before * width + index];
-      return first + share * (values[frame * width + index] - first);
-    };
+    const mixed = (values) => values[before] + share * (values[frame] - values[before]);
+    // What does not change is a number.
+    const value = (entry) => (entry.column === undefined ? entry : mixed(this.columns[entry.column]));
     return {
-      time, frame,
+      time, frame, value,
       x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle), speed: mixed(this.speed),
-      way: (drive) => mixed(this.ways, this.drives, drive),
-      // [rad] Of a flipper over the chassis, upwards > 0.
-      flipper: (arm) => mixed(this.flippers, this.arms, arm),
-      // The rear pin of a shoe, in the chassis frame.
-      pin: (shoe) => [0, 1].map((axis) => mixed(this.pins, 2 * this.shoes, 2 * shoe + axis)),
+      // Of a carrier in the chassis frame, or of a body in that of its carrier.
+      pose: ({ x, y, angle }) => ({ x: value(x), y: value(y), angle: value(angle) }),
     };
   }
 

@@ -24,7 +24,7 @@ _SCRIPTS = (
     "data.js",
     "camera.js",
     "marks.js",
-    "track.js",
+    "carrier.js",
     "robot.js",
     "lane.js",
     "scene.js",

@@ -17,7 +17,7 @@ class Scene {
 
   // Whether this run has something to draw.
   has(what) {
-    if (what === "envelope") return this.robot.tracks.some((track) => track.envelope);
+    if (what === "envelope") return this.robot.carriers.some((carrier) => carrier.envelope);
     const { normal_force: normal, friction_force: friction, surface_speed: speed } =
       this.recording.contacts;
     if (what === "contacts") return normal.length > 0;
@@ -57,8 +57,8 @@ class Scene {
     ctx.strokeStyle = colors.groundLine;
     ctx.lineWidth = 1.8 * pixel;
     ctx.stroke(this.lanes.at(-1).surface);
-    const belted = this.layers.envelope ? robot.carriers(moment).filter((c) => c.track.envelope) : [];
-    for (const carrier of belted) this.drawEnvelope(ctx, colors, pixel, carrier, floor);
+    const belted = this.layers.envelope ? robot.placed(moment).filter((p) => p.carrier.envelope) : [];
+    for (const placed of belted) this.drawEnvelope(ctx, colors, pixel, placed, floor);
 
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawGoal(ctx, colors);
@@ -85,10 +85,10 @@ class Scene {
     }
   }
 
-  drawEnvelope(ctx, colors, pixel, carrier, floor) {
-    const { envelope, inner, root, reach } = carrier.track;
+  drawEnvelope(ctx, colors, pixel, placed, floor) {
+    const { envelope, inner, root, reach } = placed.carrier;
     ctx.save();
-    place(ctx, carrier);
+    place(ctx, placed);
     ctx.strokeStyle = colors.intrusion;
     ctx.lineWidth = 1.3 * pixel;
     ctx.setLineDash([6 * pixel, 4 * pixel]);
@@ -101,13 +101,13 @@ class Scene {
     ctx.setLineDash([]);
     // Clips are kept from one transform to the next: the soil is cut by the belt.
     ctx.clip(inner.path);
-    unplace(ctx, carrier);
+    unplace(ctx, placed);
     for (const lane of this.lanes) {
       const pieces = new Path2D();
       for (const edge of lane.edges) {
-        if (!edge.convex || !(depthIn(carrier, edge) > 0)) continue;
-        const [left, right] = lane.piece(edge.corner, (point) => depthIn(carrier, point));
-        pieces.rect(left - pixel, carrier.y - reach, right - left + 2 * pixel, 2 * reach);
+        if (!edge.convex || !(depthIn(placed, edge) > 0)) continue;
+        const [left, right] = lane.piece(edge.corner, (point) => depthIn(placed, point));
+        pieces.rect(left - pixel, placed.y - reach, right - left + 2 * pixel, 2 * reach);
       }
       ctx.save();
       ctx.clip(pieces);
@@ -126,15 +126,15 @@ class Scene {
     let deepest = null;
     for (const edge of this.lanes.flatMap((lane) => lane.edges)) {
       const [x, y] = this.camera.screen(edge.x, edge.y);
-      for (const carrier of edge.convex ? belted : []) {
-        const depth = depthIn(carrier, edge);
-        if (depth > (deepest?.depth ?? 0)) deepest = { depth, x, y, carrier };
+      for (const placed of edge.convex ? belted : []) {
+        const depth = depthIn(placed, edge);
+        if (depth > (deepest?.depth ?? 0)) deepest = { depth, x, y, k: placed.k };
       }
       diamond(ctx, x, y, 4.5, edge.convex ? colors.groundLine : colors.ground, colors.groundLine);
     }
     if (!deepest) return;
     diamond(ctx, deepest.x, deepest.y, 6.5, colors.halo, colors.intrusion);
-    const jam = jams.filter((event) => event.carrier === deepest.carrier.k).at(-1);
+    const jam = jams.filter((event) => event.carrier === deepest.k).at(-1);
     const millimetres = (1e3 * deepest.depth).toFixed(1);
     const where = jam && jam.bodies.length === 2 && jam.bodies[0] !== jam.bodies[1]
       ? `between wheels ${Math.min(...jam.bodies)} and ${Math.max(...jam.bodies)}` : "";
@@ -219,8 +219,8 @@ class Scene {
 }
 
 // [m] How deep a point is inside the envelope of a carrier, 0 where it is not; it is convex.
-function depthIn({ track, ...frame }, point) {
-  const { envelope, inner, reach } = track;
+function depthIn({ carrier, ...frame }, point) {
+  const { envelope, inner, reach } = carrier;
   const away = [point.x - frame.x, point.y - frame.y];
   if (Math.hypot(...away) > reach) return 0;
   const [x, y] = rotated(away, -frame.angle);

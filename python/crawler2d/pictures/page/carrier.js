@@ -1,0 +1,166 @@
+// The chassis, or the flippers at one end: the bodies that it carries, in its own frame, in metres.
+
+const HULLS = ["belt", "skid", "guide"];
+const SHOE = "shoe";
+const BELLY = "belly";
+
+class Carrier {
+  constructor(data, outlines) {
+    Object.assign(this, data);
+    const bodies = data.bodies.map((body) => new Body(body, outlines));
+    const are = (test) => bodies.filter(test);
+    this.bellies = are((body) => body.kind === BELLY);
+    this.hulls = are((body) => HULLS.includes(body.kind));
+    this.shoes = are((body) => body.kind === SHOE);
+    const round = are((body) => ![...HULLS, SHOE, BELLY].includes(body.kind));
+    this.wheels = round.filter((wheel) => wheel.body >= 0);
+    this.within = round.filter((wheel) => wheel.body < 0); // a belt runs round them
+    this.circuit = data.circuit && new Circuit(data.circuit, outlines);
+    for (const name of ["envelope", "inner", "root"]) {
+      if (!data[name]) continue;
+      const points = unpacked(data[name]);
+      this[name] = { points, path: outlineOf(points) };
+    }
+    this.reach = this.envelope ? reachOf(this.envelope.points) : 0;
+  }
+
+  // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
+  draw(ctx, colors, pixel, moment, jammed) {
+    const each = (bodies, draw) => bodies.forEach((body) => {
+      ctx.save();
+      place(ctx, moment.pose(body));
+      draw(body);
+      ctx.restore();
+    });
+    each(this.bellies, ({ path }) => fillAndStroke(ctx, path, colors.chassisFill, colors.chassis, 1.3 * pixel));
+    this.drawBar(ctx, colors, pixel);
+    each(this.hulls, ({ path }) => {
+      ctx.fillStyle = colors.trackFill;
+      ctx.fill(path);
+    });
+    each(this.within, (wheel) => {
+      ctx.scale(WITHIN, WITHIN);
+      wheel.drawRound(ctx, colors.track, colors.chassisFill, pixel / WITHIN);
+    });
+    const travel = this.circuit && moment.value(this.circuit.travel);
+    if (this.circuit) this.circuit.drawMarks(ctx, colors, pixel, travel, this.within[0].reach);
+    each(this.hulls, ({ kind, path }) => {
+      // What shoes slide on is no more than a hint behind them.
+      const isHint = kind === "guide";
+      ctx.strokeStyle = isHint ? colors.chassis : colors.track;
+      ctx.lineWidth = (isHint ? 1 : 2) * pixel;
+      ctx.stroke(path);
+    });
+    if (this.circuit) this.circuit.drawGrousers(ctx, colors, travel);
+    each(this.wheels, (wheel) => {
+      // Without an envelope the wheels are in a chain: the edge is between its shoes.
+      const isJammed = this.envelope && jammed.includes(wheel.body);
+      wheel.drawRound(ctx, isJammed ? colors.intrusion : colors.track, colors.trackFill, pixel);
+    });
+    // So wide that a thin plate is seen from afar.
+    each(this.shoes, ({ path }) => fillAndStroke(ctx, path, colors.track, colors.track, 0.8 * pixel));
+    each(this.shoes, ({ pin, pin_radius: radius }) => {
+      ctx.fillStyle = colors.halo;
+      ctx.beginPath();
+      ctx.arc(pin, 0, Math.min(1.6 * pixel, radius), 0, 2 * Math.PI);
+      ctx.fill();
+    });
+  }
+
+  // From axle to axle.
+  drawBar(ctx, colors, pixel) {
+    ctx.strokeStyle = colors.chassis;
+    ctx.lineWidth = 1.3 * pixel;
+    ctx.beginPath();
+    ctx.moveTo(-this.half, 0);
+    ctx.lineTo(this.half, 0);
+    ctx.stroke();
+  }
+}
+
+// Wheels within a belt are drawn smaller, so that the belt is seen.
+const WITHIN = 0.8;
+
+class Body {
+  constructor(data, outlines) {
+    Object.assign(this, data);
+    this.path = new Path2D();
+    this.reach = 0; // [m] of what is farthest from the middle
+    for (const index of data.outlines) {
+      this.path.addPath(outlines[index].path);
+      this.reach = Math.max(this.reach, outlines[index].reach);
+    }
+  }
+
+  // The spoke shows how far it has turned.
+  drawRound(ctx, color, fill, pixel) {
+    fillAndStroke(ctx, this.path, fill, color, 1.4 * pixel);
+    ctx.fillStyle = color;
+    ctx.beginPath();
+    ctx.moveTo(0, 0);
+    ctx.lineTo(0, 0.82 * this.reach);
+    ctx.stroke();
+    ctx.beginPath();
+    ctx.arc(0, 0, Math.min(2.4 * pixel, 0.25 * this.reach), 0, 2 * Math.PI);
+    ctx.fill();
+  }
+}
+
+// What a belt carries along: at any way along it there is a pose.
+class Circuit {
+  constructor(data, outlines) {
+    Object.assign(this, data);
+    for (const name of ["ways", "x", "y", "angle"]) this[name] = unpacked(data[name]);
+    this.grousers = data.grousers.map((index) => outlines[index].path);
+    this.marks = 6 * Math.max(2, Math.min(12, Math.round(data.length / data.pitch / 6)));
+  }
+
+  // The last pose is the first, a turn on.
+  pose(way) {
+    const { ways, length } = this;
+    const there = way - length * Math.floor(way / length);
+    let [i, after] = [0, ways.length - 1];
+    while (after - i > 1) {
+      const middle = (i + after) >> 1;
+      if (ways[middle] <= there) i = middle;
+      else after = middle;
+    }
+    const share = (there - ways[i]) / (ways[after] - ways[i]);
+    const mixed = (values) => values[i] + share * (values[after] - values[i]);
+    return { x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle) };
+  }
+
+  // Inwards of the belt, every sixth longer.
+  drawMarks(ctx, colors, pixel, travel, radius) {
+    for (let i = 0; i < this.marks; i++) {
+      const isLong = i % 6 === 0;
+      ctx.save();
+      place(ctx, this.pose(travel + (i / this.marks) * this.length));
+      ctx.strokeStyle = isLong ? colors.speed : colors.track;
+      ctx.lineWidth = Math.max((isLong ? 3 : 1.6) * pixel, 0.003);
+      ctx.beginPath();
+      ctx.moveTo(0, 0);
+      ctx.lineTo(0, -(isLong ? 0.2 : 0.11) * radius);
+      ctx.stroke();
+      ctx.restore();
+    }
+  }
+
+  drawGrousers(ctx, colors, travel) {
+    ctx.fillStyle = colors.track;
+    this.grousers.forEach((path, i) => {
+      ctx.save();
+      place(ctx, this.pose(travel + this.starts[i]));
+      ctx.fill(path);
+      ctx.restore();
+    });
+  }
+}
+
+function fillAndStroke(ctx, path, fill, stroke, width) {
+  ctx.fillStyle = fill;
+  ctx.fill(path);
+  ctx.strokeStyle = stroke;
+  ctx.lineWidth = width;
+  ctx.stroke(path);
+}

@@ -1,0 +1,146 @@
+//! Where every body of a robot was, at every sample of a run: what pictures draw, from the trace.
+
+#[cfg(test)]
+mod tests;
+
+use super::record::Columns;
+use super::{Checked, Trace};
+use crate::error::Error;
+use crate::geometry::{Pose, Vector};
+use crate::limits::Cancel;
+use crate::limits::memory::ask;
+use crate::robot::{Body, Model, Mount, Running};
+use crate::scenario::ScenarioError;
+
+/// Places at every sample of a run; angles count full turns.
+#[derive(Clone, Debug, Default)]
+pub struct Poses {
+    /// Number of samples.
+    pub samples: usize,
+    /// Number of bodies, those of [`Model::outlines`].
+    pub count: usize,
+    /// Number of ends with flippers.
+    pub flippers: usize,
+    /// [m, m, rad] Of each body.
+    pub bodies: Vec<f64>,
+    /// [m, m, rad] Of the flippers at each end: midway between their axles.
+    pub arms: Vec<f64>,
+    /// [m] How far the surface of each body has run over what carries it.
+    pub travels: Vec<f64>,
+    /// [m, m] Centre of mass of all that moves.
+    pub centers_of_mass: Vec<f64>,
+}
+
+/// One sample of a trace.
+struct Sample<'a> {
+    chassis: Pose,
+    angle: f64,
+    drives: &'a [f64],
+    shoes: &'a [[f64; 3]],
+    flippers: &'a [f64],
+}
+
+impl Sample<'_> {
+    /// Where all that moves over the chassis was.
+    fn set(&self, model: &Model, running: &mut Running) {
+        let back = self.chassis.inverse();
+        let shoe = |[x, y, angle]: &[f64; 3]| back * Pose::new(Vector::new(*x, *y), *angle);
+        let turns = (0..self.flippers.len()).map(|k| self.turn(model, k));
+        let (drives, shoes) = (self.drives.iter().copied(), self.shoes.iter().map(shoe));
+        model.set_running(running, drives, shoes, turns);
+    }
+
+    /// [rad] How far a flipper was turned over the chassis, counter-clockwise.
+    fn turn(&self, model: &Model, flipper: usize) -> f64 {
+        model.flippers[flipper].sign() * self.flippers[flipper]
+    }
+
+    /// [rad] Angle of a mount over ground.
+    fn angle_of(&self, model: &Model, mount: Mount) -> f64 {
+        match mount {
+            Mount::Chassis => self.angle,
+            Mount::Shoe(shoe) => self.shoes[shoe][2],
+            Mount::Flipper(k) => self.angle + self.turn(model, k),
+        }
+    }
+}
+
+/// Where the bodies of a scenario's robot were, from the columns of its trace: positions, chassis angles, drive
+/// positions, shoe poses, flipper angles.
+///
+/// # Errors
+/// Columns that are not those of the scenario; more samples than fit in the memory; the caller's wish.
+pub fn poses(checked: &Checked, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
+    let model = checked.model();
+    let bodies = model.outlines();
+    let samples = trace.chassis_angle.len();
+    Columns::of(model).check(trace)?;
+    let numbers = samples * (4 * bodies.len() + 3 * model.flippers.len() + 2);
+    ask("the poses of a run", 8 * numbers as u64)?;
+    let mut found = Poses {
+        samples,
+        count: bodies.len(),
+        flippers: model.flippers.len(),
+        bodies: Vec::with_capacity(3 * samples * bodies.len()),
+        travels: Vec::with_capacity(samples * bodies.len()),
+        ..Poses::default()
+    };
+    let (shoes, _) = trace.shoe_poses.as_chunks();
+    let (positions, _) = trace.position.as_chunks::<2>();
+    let (drives, shoe_count) = (model.drives, model.shoes());
+    let mut running = Running::default();
+    for (i, (position, angle)) in positions.iter().zip(&trace.chassis_angle).enumerate() {
+        cancel.check()?;
+        let sample = Sample {
+            chassis: Pose::new(Vector::from(*position), *angle),
+            angle: *angle,
+            drives: &trace.drive_positions[i * drives..][..drives],
+            shoes: &shoes[i * shoe_count..][..shoe_count],
+            flippers: &trace.flipper_angles[i * found.flippers..][..found.flippers],
+        };
+        sample.set(model, &mut running);
+        found.add(model, &bodies, &sample, &running);
+    }
+    Ok(found)
+}
+
+impl Poses {
+    fn add(&mut self, model: &Model, bodies: &[Body], sample: &Sample<'_>, running: &Running) {
+        for body in bodies {
+            let mount = running.mounted(body.mount, sample.chassis);
+            let (origin, angle) = body.place(model, running);
+            let origin = mount.transform_point(origin);
+            let angle = sample.angle_of(model, body.mount) + angle;
+            self.bodies.extend([origin.x, origin.y, angle]);
+            self.travels.push(body.run(model, running));
+        }
+        for k in 0..model.flippers.len() {
+            let mount = Mount::Flipper(k);
+            let origin = running.mounted(mount, sample.chassis).translation;
+            let angle = sample.angle_of(model, mount);
+            self.arms.extend([origin.x, origin.y, angle]);
+        }
+        let (_, center) = model.mass_center(running);
+        let center = sample.chassis.transform_point(center);
+        self.centers_of_mass.extend([center.x, center.y]);
+    }
+}
+
+impl Columns {
+    /// Whether the columns that poses are made of have the entries of this robot.
+    fn check(self, trace: &Trace) -> Result<(), ScenarioError> {
+        let samples = trace.chassis_angle.len();
+        for (name, column, entries) in [
+            ("position", &trace.position, 2),
+            ("drive_positions", &trace.drive_positions, self.drives),
+            ("shoe_poses", &trace.shoe_poses, 3 * self.shoes),
+            ("flipper_angles", &trace.flipper_angles, self.flippers),
+        ] {
+            if column.len() != samples * entries {
+                let rule = format!("must have {entries} numbers for each of {samples} samples");
+                return Err(ScenarioError::new(name, column.len() as f64, rule));
+            }
+        }
+        Ok(())
+    }
+}

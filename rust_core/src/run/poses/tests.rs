@@ -1,0 +1,182 @@
+//! Poses of a trace are those at which the contacts of that instant are found.
+
+use super::*;
+use crate::geometry::{Envelope, Rotation};
+use crate::limits::memory::Budget;
+use crate::robot::{BodyKind, Part, Shape};
+use crate::run::trace::Recorder;
+use crate::run::{Checked, Record, Simulation};
+use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
+
+/// Robots with all kinds of bodies, before a step and with a step under one track alone.
+fn scenarios() -> Vec<(String, Scenario)> {
+    let texts = [
+        include_str!("../../../../tests/scenarios/engineer_belt_step.json"),
+        include_str!("../../../../tests/scenarios/engineer_grouser_belt_step.json"),
+        include_str!("../../../../tests/scenarios/engineer_chain_step.json"),
+        include_str!("../../../../tests/scenarios/engineer_sprocket_step.json"),
+        include_str!("../../../../tests/scenarios/engineer_flippers_step.json"),
+    ];
+    let mut found: Vec<Scenario> = texts.map(read).into();
+    let mut gears = found[0].clone();
+    gears.robot.track = Track::Line(LineOfWheels {
+        count: 4,
+        wheel_radius: None,
+        wheel: Wheel::Gear(GearWheel {
+            grouser_count: None,
+            grouser_height: None,
+            tip_thickness: None,
+            base_thickness: None,
+            phase_fraction: 1.0 / 3.0,
+        }),
+    });
+    found.push(gears);
+    // A gait that turns the arms from the first step on.
+    if found[4].robot.flippers.is_some() {
+        found[4].drive.gait = Some(Gait::Hold(Hold {
+            angle: 0.7,
+            schedule: None,
+        }));
+    }
+    let lanes = found.clone().into_iter().map(|mut scenario| {
+        let left = Box::new(scenario.terrain.clone());
+        let right = Box::new(Terrain::Flat {
+            length: 3.0,
+            friction: 0.9,
+        });
+        scenario.terrain = Terrain::Lanes {
+            left,
+            right,
+            middle: None,
+        };
+        scenario
+    });
+    let lanes: Vec<Scenario> = lanes.collect();
+    let named = |(i, scenario)| (format!("scenario {i}"), scenario);
+    found
+        .into_iter()
+        .chain(lanes)
+        .enumerate()
+        .map(named)
+        .collect()
+}
+
+fn read(text: &str) -> Scenario {
+    Scenario::from_json(text).expect("the shared scenario is valid")
+}
+
+/// A simulation after so many steps, and the trace of that instant.
+fn after(scenario: &Scenario, steps: usize) -> (Simulation, Trace) {
+    let mut simulation = Simulation::new(&Checked::new(scenario).expect("it is valid"));
+    for _ in 0..steps {
+        simulation.step().expect("the state stays finite");
+    }
+    let budget = Budget::new().expect("there is memory");
+    let recorder = Recorder::new(&simulation, Record::default(), &budget);
+    let (trace, _) = recorder
+        .and_then(|recorder| recorder.finish(&simulation))
+        .expect("one sample fits");
+    (simulation, trace)
+}
+
+fn poses_of(scenario: &Scenario, trace: &Trace) -> Poses {
+    let checked = Checked::new(scenario).expect("the scenario is valid");
+    poses(&checked, trace, &Cancel::default()).expect("the trace is the scenario's")
+}
+
+#[test]
+fn bodies_are_where_the_contacts_have_their_parts() {
+    for (name, scenario) in scenarios() {
+        for steps in [0, 700] {
+            let (simulation, trace) = after(&scenario, steps);
+            let found = poses_of(&scenario, &trace);
+            let (model, running, chassis) = simulation.placed();
+            let bodies = model.outlines();
+            for (i, part) in model.parts.iter().enumerate() {
+                assert_eq!(bodies[i].part, Some(i), "{name}");
+                let place = running.mounted(part.mount, chassis) * part.place(&running);
+                let [x, y, angle] = found.bodies[3 * i..][..3] else {
+                    unreachable!("three numbers a body");
+                };
+                if part.kind.is_in_chain() && part.kind != BodyKind::Guide {
+                    // The ground meets it as a disc in the frame of the chassis.
+                    let Shape::Hull { discs, .. } = &part.shape else {
+                        unreachable!("wheels in a chain are hulls");
+                    };
+                    let gap = place.transform_point(discs[0].center) - Vector::new(x, y);
+                    assert!(gap.length() < 1e-12, "{name}, part {i}: {gap}");
+                    continue;
+                }
+                let gap = place.translation - Vector::new(x, y);
+                assert!(gap.length() < 1e-12, "{name}, part {i}: {gap}");
+                if !matches!(part.shape, Shape::Disc { .. }) {
+                    let off = (place.rotation.inverse() * Rotation::new(angle)).angle();
+                    assert!(off.abs() < 1e-9, "{name}, part {i}: {off}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_centre_of_mass_of_a_sample_is_that_of_the_whole_robot() {
+    for (name, scenario) in scenarios() {
+        let (simulation, trace) = after(&scenario, 700);
+        let found = poses_of(&scenario, &trace);
+        let (model, running, chassis) = simulation.placed();
+        let whole = model.as_one_body(&running);
+        let center = chassis.transform_point(whole.center_of_mass);
+        let [x, y] = found.centers_of_mass[..] else {
+            unreachable!("one sample");
+        };
+        assert!((center - Vector::new(x, y)).length() < 1e-12, "{name}");
+    }
+}
+
+#[test]
+fn a_waypoint_of_a_belt_is_where_a_grouser_would_be() {
+    let scenario = read(include_str!(
+        "../../../../tests/scenarios/engineer_grouser_belt_step.json"
+    ));
+    let model = Model::new(&scenario.robot).expect("the robot is valid");
+    let belt = model.parts.iter().find_map(Part::circuit);
+    let belt = belt.expect("it has a belt");
+    let grouser = model.parts.iter().find_map(|part| match &part.shape {
+        Shape::Grouser(grouser) => Some(grouser),
+        _ => None,
+    });
+    let grouser = grouser.expect("the belt has grousers");
+    for (way, [x, y, angle]) in belt.ways.iter().zip(&belt.poses) {
+        let place = grouser.place(way - grouser.start());
+        assert!((place.translation - Vector::new(*x, *y)).length() < 1e-12);
+        let off = (place.rotation.inverse() * Rotation::new(*angle)).angle();
+        assert!(off.abs() < 1e-9, "at {way}: {off}");
+    }
+    let turns = belt.poses[belt.poses.len() - 1][2] - belt.poses[0][2];
+    assert!((turns + std::f64::consts::TAU).abs() < 1e-12);
+}
+
+#[test]
+fn tips_of_grousers_lie_on_the_envelope_of_the_tips() {
+    let scenario = read(include_str!(
+        "../../../../tests/scenarios/engineer_grouser_belt_step.json"
+    ));
+    let model = Model::new(&scenario.robot).expect("the robot is valid");
+    let tips: Vec<_> = model
+        .discs_of_track(0, Mount::Chassis)
+        .map(|d| d.0)
+        .collect();
+    let envelope = Envelope::new(&tips);
+    let mut running = model.running_at_start(0.0);
+    for step in 0..200 {
+        running.drives[0] = 0.0131 * f64::from(step);
+        for body in model.outlines() {
+            if body.kind == BodyKind::Grouser {
+                let (origin, angle) = body.place(&model, &running);
+                let height = scenario.robot.outline.grouser_height;
+                let tip = origin + Rotation::new(angle) * (Vector::Y * height);
+                assert!(envelope.depth(tip).abs() < 1e-9);
+            }
+        }
+    }
+}
