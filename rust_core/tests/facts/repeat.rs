@@ -126,28 +126,28 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0x4b52_4fd5_95f1_31ab),
+        ("line of 5", engineer_on(line(5)), 0xd0f2_7a0b_11ba_d15a),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0xe639_051e_7527_c3fb,
+            0x9293_76d2_8cb6_8eaa,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0x76d4_12a0_9462_2314,
+            0xf545_8806_6c78_fc0f,
         ),
-        ("chain", engineer_on(segmental(None)), 0x433a_4f91_e408_dc50),
+        ("chain", engineer_on(segmental(None)), 0xfd50_91ca_135b_ae92),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0xd070_b4b8_126f_49d0,
+            0x118d_da33_f54f_0fec,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0xd802_3795_3cc5_8dab),
+        ("belt, arms", on_arms(0.5, belt()), 0xdb2f_a9f2_b2e8_1736),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xb6d5_ae71_36f2_bb92,
+            0x39f7_1ca6_7b79_40d6,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {
