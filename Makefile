@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz map mutants soak tools
+.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz map mutants picture soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -68,6 +68,9 @@ fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other
 
 map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 	$(BIN)/python -m tests.walls.map
+
+picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
+	$(BIN)/python docs/readme_picture.py
 
 soak: $(VENV)/.built ## the long tests, minutes to hours
 	CRAWLER2D_SOAK=1 $(CARGO) test --release -- --include-ignored

@@ -23,10 +23,11 @@ def render(result: dict[str, Any]) -> str:
         [
             "## A chain of shoes",
             """
-A robot of 20 kg on a chain, as `benches/peers/chain_robot.py` has it: in pymunk shoes on pivot
-joints round two sprockets with teeth, carried by the hull and two discs; in crawler2d
-`SegmentalTrack` with as many shoes on the same outline, with the same weights, torque and friction,
-on its guide with a tensioner. The pitch follows from the counts of shoes and teeth. {machine}
+A robot of 20 kg on a chain, defined in `benches/peers/chain_robot.py`. In pymunk it has shoes on
+pivot joints round two sprockets with teeth, carried by the hull and two discs; in crawler2d it is a
+`SegmentalTrack` with the same number of shoes on the same outline, with the same weights, torque
+and friction, on its guide with a tensioner. The pitch follows from the numbers of shoes and teeth.
+{machine}
 """.strip().format(machine=machine.sentence(result["machine"], result["wall"])),
             _side_by_side(result["side_by_side"]),
             _equal_gaps(result["equal_gaps"]),
@@ -47,10 +48,10 @@ def _side_by_side(rows: Rows) -> str:
         [
             "### All at steps of 1 ms",
             "pymunk with 10 iterations, at its defaults and tuned, crawler2d at its defaults; the"
-            " least of several rounds of the lower quartile of blocks of half a second. Cells: us a"
-            " step; widest gap of a pin [mm] and runs of three starts whose chain stayed on; how"
-            " far the chassis got and, on flat ground, the error of its mean speed; how far the"
-            " path gets from that with half the step [mm].",
+            " time is the lower quartile over blocks of half a second, and the shortest of several"
+            " rounds. Cells: us per step; widest gap of a pin [mm], and how many of three starts"
+            " kept the chain on; how far the chassis got and, on flat ground, the error of its mean"
+            " speed; how far the path deviates from the one with half the step [mm].",
             markdown.table(["shoes, ground", *engines], table),
             _standing(rows),
         ]
@@ -71,9 +72,9 @@ def _standing(rows: Rows) -> str:
     }
     dearer, tighter, nearer = figures["per_step"], figures["gap"], figures["distance"]
     return (
-        f"Beside pymunk at its defaults a step of crawler2d's costs {min(dearer):.1f} to"
+        f"Compared with pymunk at its defaults, a step of crawler2d costs {min(dearer):.1f} to"
         f" {max(dearer):.1f} times as much; its pins open {1.0 / max(tighter):.0f} to"
-        f" {1.0 / min(tighter):.0f} times less, and half the step moves its path"
+        f" {1.0 / min(tighter):.0f} times less, and halving the step changes its path"
         f" {1.0 / max(nearer):.1f} to {1.0 / min(nearer):.0f} times less."
     )
 
@@ -104,9 +105,9 @@ def _equal_gaps(rows: Rows) -> str:
         [
             "### At equal gaps",
             "The cheapest setting of a grid (steps of 2 to 0.125 ms, 10 to 160 iterations, tuned or"
-            " not) with which no pin of pymunk's opens wider, over three starts, than the 0.2 mm"
-            " that the other scenes allow, and than crawler2d's pins do at its defaults. What a"
-            " simulated second costs then, and how many times as much as crawler2d's.",
+            " not) with which, over three starts, no pin in pymunk opens wider than the 0.2 mm that"
+            " the other scenes allow, or than crawler2d's pins at its defaults. The cells have the"
+            " cost of a simulated second, and how many times that of crawler2d it is.",
             markdown.table(
                 ["shoes, ground", "crawler2d", "pymunk, 0.2 mm", "pymunk, as crawler2d"], table
             ),
@@ -138,8 +139,8 @@ def _engineer(rows: Rows) -> str:
     return "\n\n".join(
         [
             "### The Engineer's own tracks",
-            "crawler2d alone, at its defaults: us a step of 1 ms, measured as above. The aims were"
-            " set before the models were written, from trials with a general engine.",
+            "crawler2d alone, at its defaults: us per step of 1 ms, measured as above. The aims"
+            " were set before the models were written, from trials with a general engine.",
             markdown.table(["track", *grounds, "aim", "met"], table),
         ]
     )

@@ -30,24 +30,25 @@ def render(result: dict[str, Any]) -> str:
 
 def _head(result: dict[str, Any]) -> str:
     return f"""
-# The same job in other engines
+# The same task in other engines
 
-What `make bench-peers` measures: a robot of 20 kg with 0.6 m between its end axles drives at 0.4
-m/s against a step of 0.15 m, or over 20 blocks up to 0.15 m high, on a line of 5 wheels (`lwa5`)
-or on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The scenes are files in
-no engine's own terms, in `benches/peers/scenes`; `tests/benches/test_peer_scenes.py` checks that
-crawler2d's own form of them describes the same robots and grounds.
+What `make bench-peers` measures. A robot of 20 kg with 0.6 m between its end axles drives at 0.4
+m/s towards a step of 0.15 m, or over 20 blocks up to 0.15 m high, on a line of 5 wheels (`lwa5`) or
+on 24 small ones all round (`cwa24`), round or with grousers (`gear`). The scenes are files in
+`benches/peers/scenes` that do not depend on any engine; `tests/benches/test_peer_scenes.py` checks
+that crawler2d's own form of them describes the same robots and grounds.
 
 {machine.sentence(result["machine"], result["wall"])}
 
-- Times are the least of several rounds in which all engines took turns, on one thread. *RTF* is
-  the simulated time over the wall time. The loop is each engine's fastest from Python (rapier2d's
-  is in Rust), nothing is recorded, and building the world is not counted, but for crawler2d, where
-  one call does it all.
-- Errors come from recorded poses, sampled every 2 ms or every step, by one geometry for all
-  engines. *Overlap* is the deepest of any part with the ground, *gap* the widest that a pin opens.
-- *Cleared* means that the rear axle got beyond the last edge, within 10 s (step) or 15 s (field).
-- Every engine has a docstring in `benches/peers` that says what it was given, and why.
+- Times are the shortest of several rounds in which all engines took turns, on one thread. *RTF*
+  (real-time factor) is the simulated time divided by the wall time. Each engine runs the fastest
+  loop that it offers from Python (rapier2d's is in Rust), nothing is recorded, and building the
+  world does not count, except for crawler2d, where one call does everything.
+- Errors come from recorded poses, sampled every 2 ms or every step, with the same geometry code for
+  all engines. *Overlap* is the deepest overlap of any part with the ground, *gap* the widest
+  opening of a pin.
+- *Cleared* means that the rear axle got past the last edge, within 10 s (step) or 15 s (field).
+- Every engine has a docstring in `benches/peers` that says how it was set up, and why.
 """
 
 
@@ -58,9 +59,9 @@ def _defaults(rows: Rows) -> str:
     }
     text = [
         "## At the engines' defaults",
-        "These times come with very different errors: read each with its outcome. Chipmunk's slop"
-        " is scaled to metres, and sleeping is off; nothing would work otherwise. Cells: us a step,"
-        " RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
+        "These times come with very different errors: read each one together with its outcome."
+        " Chipmunk's slop is scaled to metres, and sleeping is off; otherwise nothing would work."
+        " Cells: us per step, RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
     ]
     for kind, title in titles.items():
         text.append(f"### {title}")
@@ -84,26 +85,26 @@ def _accuracy(rows: Rows) -> str:
         [
             "## At equal accuracy",
             f"""
-For each engine and scene the cheapest setting of a grid that keeps: overlap at most
-{_millimetres(PENETRATION)} mm, gaps at most {_millimetres(JOINT_GAP)} mm, and the engine's own
-limit. The limit is its finest setting. Where its path differs by at most {_millimetres(PATH)} mm
-from that of the next finest, coarser by a factor of two in every respect, the setting's path must
-be as close to it, at equal times and in each of the first draws. Elsewhere the scene is *chaotic*
-for the engine: over all draws the Wilson interval (95 %) of the setting's rate of clearing must
-hold the limit's rate. The draws of approach (over 50 mm), speed and friction (2 % either way) are
-the same for all. Settings are tried in the order of their cost over the first {COST_SPAN:g} s;
-`out/peers.json` lists all that were tried, and why they were not taken. A robot that flies off
-counts as an overlap without bound.
+For each engine and scene, the cheapest setting of a grid that keeps these limits: overlap at most
+{_millimetres(PENETRATION)} mm, gaps at most {_millimetres(JOINT_GAP)} mm, and agreement with the
+engine's own converged result, its *limit*. The limit is its finest setting. Where its path differs
+by at most {_millimetres(PATH)} mm from that of the next finest, coarser by a factor of two in every
+respect, the setting's path must be as close to it, at equal times and in each of the first draws.
+Otherwise the scene is *chaotic* for the engine: over all draws, the Wilson interval (95 %) of the
+setting's rate of clearing must contain the rate of the limit. The draws of approach (over 50 mm),
+speed and friction (2 % either way) are the same for all. Settings are tried in the order of their
+cost over the first {COST_SPAN:g} s; `out/peers.json` lists all that were tried, and why they were
+rejected. A robot that flies off counts as infinite overlap.
 
-Cells: RTF, us a step, the setting; for chaotic scenes the setting's rate; how far its paths get
-from the limit's in the first draws.
+Cells: RTF, us per step, the setting; for chaotic scenes the rate of the setting; how far its paths
+deviate from those of the limit in the first draws.
 """.strip(),
             _by_scene(rows, _accuracy_cell),
             _standing(rows),
             """
 The engines' limits: how far the two finest settings are apart [mm], how many runs cleared, last x
 of the nominal run [m], overlap / gap [mm]. A chaotic scene is the *easier* case for the engine,
-since no path has to be met; what converges is held to its path.
+because no path has to be matched; an engine that converges has to match its path.
 """.strip(),
             _by_scene(rows, _limit_cell),
         ]
@@ -129,7 +130,7 @@ def _standing(rows: Rows) -> str:
             lines.append(
                 f"- {scene}: crawler2d runs at {own / found[best]:.2f} times the speed of {best}."
             )
-    return "\n".join(["Beside the fastest of the others:", "", *lines])
+    return "\n".join(["Compared with the fastest of the others:", "", *lines])
 
 
 def _accuracy_cell(row: dict[str, Any]) -> str:
@@ -169,9 +170,10 @@ def _yardstick(rows: Rows) -> str:
     return "\n\n".join(
         [
             "## Grousers against round wheels in the bare engine",
-            "What crawler2d's gear wheels cost beside round wheels on cuboids in a plain loop of"
-            " rapier2d, all with steps of 1 ms and 4 substeps, us a step. The bare engine has its"
-            " default tolerances, or (*tuned*) those that suit grousers. `lwa3` is `lwa5` without"
+            "The cost of crawler2d's gear wheels compared with round wheels on cuboids in a plain"
+            " loop of rapier2d, all with steps of 1 ms and 4 substeps, in us per step. The bare"
+            " engine has its default tolerances or, where it says *tuned*, tolerances suitable for"
+            " grousers. `lwa3` is `lwa5` without"
             " its second and fourth wheel. The aim is a ratio of at most 1.25.",
             markdown.table(head, table),
         ]
@@ -190,8 +192,8 @@ def _batches(rows: Rows) -> str:
         [
             "## Batches",
             "Worlds with different draws, steps of 1 ms, tuned: on one thread and on two, or one"
-            " process and two (pymunk, Box2D, rapier2d). *spin* is a loop that only counts: what"
-            " the machine itself gained in the same sitting.",
+            " process and two (pymunk, Box2D, rapier2d). *spin* is a loop that only counts: it"
+            " shows what the machine itself gains at the same time.",
             markdown.table(head, table),
         ]
     )
@@ -200,17 +202,17 @@ def _batches(rows: Rows) -> str:
 _LIMITS = """
 ## What cannot be compared
 
-- **Accuracy is against an engine's own limit.** No engine is the truth here; the limits themselves
-  differ, see the table of limits.
-- **Mechanics.** crawler2d solves one body and the spins of its wheels: but for a chain's it has no
+- **Accuracy is measured against an engine's own limit.** No engine is taken as the truth here; the
+  limits themselves differ, see the table of limits.
+- **Mechanics.** crawler2d solves one body and the spins of its wheels: except in chains it has no
   pins that could open, and its wheels cannot shake on them. MuJoCo has no gaps either, but is a 3D
-  engine held in the plane. Box2D works in single precision.
-- **Chains.** pymunk's has teeth, lugs and play; crawler2d's drive has no teeth, and its guide a
-  tensioner. Both are one robot but for that.
-- **Work done besides.** crawler2d's time includes building the model and watching for stops.
-- **The grid is coarse**, a factor of two a step. A cheaper setting may lie between its points, and
-  costs that differ by less than the noise of a shared machine may change places.
-- **Rates of few runs** have wide intervals: the rule for chaotic scenes refuses gross errors alone.
+  engine constrained to the plane. Box2D works in single precision.
+- **Chains.** pymunk's chain has teeth, lugs and play; crawler2d's drive has no teeth, and its guide
+  has a tensioner. Apart from that, the robots are the same.
+- **Additional work.** crawler2d's time includes building the model and monitoring for stops.
+- **The grid is coarse**, with a factor of two between settings. A cheaper setting may lie between
+  its points, and costs that differ by less than the noise of a shared machine may change places.
+- **Rates of few runs** have wide intervals: the rule for chaotic scenes only rejects gross errors.
 """
 
 

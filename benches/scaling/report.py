@@ -39,21 +39,23 @@ def render(result: dict[str, Any]) -> str:
 
 def _head(result: dict[str, Any]) -> str:
     return f"""
-# What a step costs, and how that grows
+# What a step costs, and how the cost grows
 
-What `make bench-scaling` measures. One robot throughout, the Servosila Engineer without flippers,
+What `make bench-scaling` measures. The robot is always the Servosila Engineer without flippers. It
 drives at 0.4 m/s over flat ground (4 m, 11 s) or over a step of 50 mm (6 s); one number grows along
-each curve. Neither a goal nor a stop ends a run: all of a panel take the same simulated time.
-`python -m benches.scaling --quick` tries all of it in half a minute.
+each curve. Runs do not end at a goal or a stop: all runs of a panel take the same simulated time.
+`python -m benches.scaling --quick` tries everything in half a minute.
 
 {machine.sentence(result["machine"], result["wall"])}
 
-- *A step* is the wall time of `Simulation.advance` over its steps: reading the scenario and
-  building the model do not count, and nothing is recorded. The solver's settings are the defaults,
-  with steps of 1 ms.
-- Each time is the least of several rounds in which all points of a panel took turns, on one thread.
+- *A step* is the wall time of `Simulation.advance` divided by its number of steps: reading the
+  scenario and building the model do not count, and nothing is recorded. The solver's settings are
+  the defaults, with steps of 1 ms.
+- Each time is the shortest of several rounds in which all points of a panel took turns, on one
+  thread.
 - An *exponent* is the slope of a curve on logarithmic scales: 0 costs the same, 1 grows in
-  proportion. The first is fitted to all points, the second is that between the last two.
+  proportion. The first exponent is fitted to all points, the second is the one between the last
+  two.
 """
 
 
@@ -62,16 +64,17 @@ _WHEELS = """
 
 ![What a step costs against the number of wheels](scaling/wheels.svg)
 
-Only the number changes: wheels of a line keep the outline's radius of 64 mm and overlap from 4 on,
-circumferential ones keep 16 mm, are spaced equally and overlap from 33 on. Three circumferential
-wheels carry the robot just so: two stand on the ground.
+Only the number changes: wheels of a line keep the outline's radius of 64 mm and overlap if there
+are 4 or more; circumferential wheels keep a radius of 16 mm, are spaced equally and overlap if
+there are 33 or more. Three circumferential wheels only just carry the robot: two of them stand on
+the ground.
 """
 
 _WHEELS_MEAN = """
-- Cost grows about in proportion to the wheels that bear: all of a line, the lower third of
-  circumferential ones. Those in the air are passed over quickly.
-- Where many grousers bear at once, as in a line of 96 gear wheels, the solver takes longer to find
-  which of them grip.
+- The cost grows roughly in proportion to the number of wheels that carry load: all of a line, the
+  lower third of circumferential ones. Wheels in the air are skipped quickly.
+- Where many grousers carry load at the same time, as in a line of 96 gear wheels, the solver takes
+  longer to find which of them stick.
 """
 
 _GROUSERS = """
@@ -79,9 +82,9 @@ _GROUSERS = """
 
 ![What a step costs against the number of grousers](scaling/grousers.svg)
 
-Gear wheels alone: a line of 3, and 24 circumferential ones of 16 mm with tips 1 mm thick, for 48
-must fit on them. Only grousers near the ground are looked at, but the more there are the more of
-them bear at once.
+Gear wheels only: a line of 3, and 24 circumferential ones of 16 mm with tips 1 mm thick, so that 48
+grousers fit on them. Only grousers near the ground are checked, but the more there are, the more of
+them carry load at the same time.
 """
 
 _POINTS = """
@@ -89,20 +92,21 @@ _POINTS = """
 
 ![What a step costs against the pieces of the ground](scaling/points.svg)
 
-Ground 6 m long, cut into pieces of one length, the heights of all their ends drawn within 0.1 um up
-and down: points that lie level to 1 nm would be read as one straight piece. 100,000 pieces are
-0.06 mm long each. The blocks are 0.2 m long and up to 30 mm high, their tops cut the same way.
-Runs of 2 s; the first point is whole ground.
+Ground 6 m long, cut into pieces of equal length, with random heights of all their ends within 0.1
+um up and down: points that are level to within 1 nm would be joined into one straight piece.
+100,000 pieces are 0.06 mm long each. The blocks are 0.2 m long and up to 30 mm high, and their tops
+are cut in the same way. Runs of 2 s; the first point is uncut ground.
 """
 
 _POINTS_MEAN = """
-- Finding contacts is a small share of it: a hierarchy leads to the pieces that face a wheel, and
-  below a belt to those that rise above the chord of its first and last contact. Pieces that lie
-  level are joined when the scenario is read.
-- What costs is that the contacts change: with a few pieces passed in each step other corners bear
-  each time, and who bears, grips and slides is solved anew.
-- Between two grousers flat ground reaches up to 2.6 mm into the taut belt round gear wheels. Every
-  time that the monitor looks for ground inside the track it visits all pieces there.
+- Finding contacts is a small part of the cost: a hierarchy leads to the pieces that face a wheel
+  and, below a belt, to those that rise above the chord between its first and last contact. Level
+  pieces are joined when the scenario is read.
+- The expensive part is that the contacts change: with a few pieces passed in each step, different
+  corners carry load each time, and the solver has to find anew which contacts are open, stick or
+  slide.
+- Between two grousers, flat ground reaches up to 2.6 mm into the taut belt round gear wheels.
+  Whenever the monitor looks for ground inside the track, it visits all the pieces there.
 """
 
 _THREADS = """
@@ -110,9 +114,9 @@ _THREADS = """
 
 ![Speed-up against threads](scaling/threads.svg)
 
-`simulate_many` with 64 lines of 3 gear wheels over the step, from the scenarios to the runs, and as
-a yardstick loops that only count, one process a core: what the machine itself gained in the same
-sitting. Where these gain little either, other jobs had the rest of the cores.
+`simulate_many` with 64 lines of 3 gear wheels over the step, from the scenarios to the runs. For
+comparison, loops that only count, one process per core: they show what the machine itself gains at
+the same time. If these gain little either, other jobs were using the cores.
 """
 
 _TIME_STEPS = """
@@ -121,7 +125,7 @@ _TIME_STEPS = """
 ![What a step and a simulated second cost against the time step](scaling/time_step.svg)
 
 A line of 3 gear wheels. More happens in a longer step, which is cut where a part strikes the
-ground; a simulated second is the cheaper all the same.
+ground; a simulated second still becomes cheaper.
 """
 
 
@@ -132,7 +136,7 @@ def _exponents(drawn: Sequence[Curve], panels: tuple[str, str]) -> str:
         [name, *(_ends(found.get((panel, name))) for panel in panels)]
         for name in dict.fromkeys(curve.name for curve in drawn)
     ]
-    cells = "us a step at the first and the last point; exponent of all, of the last two"
+    cells = "us per step at the first and last point; exponent over all points, over the last two"
     return f"Cells: {cells}.\n\n" + markdown.table(["curve", *panels], table)
 
 
@@ -150,7 +154,7 @@ def _stopped(rows: Sequence[dict[str, Any]]) -> str:
         if row["figure"] == "wheels" and row["panel"] == STEP and row["final_x"] < 0.0:
             held.setdefault(row["curve"], []).append(f"{row['x']:g}")
     names = [f"{curve}, {', '.join(counts)}" for curve, counts in held.items()]
-    return f"Still before the step at the end: {'; '.join(names) or 'none'}."
+    return f"Still in front of the step at the end: {'; '.join(names) or 'none'}."
 
 
 def _ratios(rows: Sequence[dict[str, Any]]) -> str:
@@ -167,8 +171,8 @@ def _ratios(rows: Sequence[dict[str, Any]]) -> str:
         table.append([name, *(_short(cost * 1e6) for cost in (whole, *costs)), *ratios])
     head = ["track", "whole", *cuts, *(f"{kind} / whole" for kind in cuts)]
     text = f"""
-Flat ground in {most:,} pieces, us a step: *level* are pieces of one height, *rough* those of the
-figure. The aim is a ratio of at most {AIM}.
+Flat ground in {most:,} pieces, us per step: *level* means pieces of equal height, *rough* those of
+the figure. The aim is a ratio of at most {AIM}.
 """
     return text + "\n" + markdown.table(head, table)
 
