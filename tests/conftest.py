@@ -1,5 +1,6 @@
 """What the tests are given: how long to test, a scenario, a run."""
 
+import signal
 from collections.abc import Callable
 
 import hypothesis
@@ -8,6 +9,9 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.shared import ROBOT, SOAK
+
+# A process that a shell starts in the background ignores Ctrl-C, and so would those that it starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 hypothesis.settings.register_profile("test", max_examples=100, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("soak", max_examples=10_000, deadline=None)

@@ -82,13 +82,9 @@ except KeyboardInterrupt:
 SLACK = 1.0
 
 
-# A process that a shell starts in the background inherits a SIGINT that is ignored.
-AS_IN_THE_FOREGROUND = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-
-
 def interrupted(program: str, delay: float) -> tuple[float, list[str]]:
     """Run a program, interrupt it, and return its latency [s] and what it said after that."""
-    command = [sys.executable, "-c", AS_IN_THE_FOREGROUND + program]
+    command = [sys.executable, "-c", program]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
