@@ -283,7 +283,7 @@ def test_a_table_shows_its_first_rows_in_a_notebook() -> None:
     assert shown.count("<tr>") == 1 + 10
     assert "&lt;x&gt;" in shown
     assert "(1, 2)" in shown
-    assert "25 rows, 10 shown" in shown
+    assert "25 rows, first 10 shown" in shown
     assert "shown" not in Table({"x": [1.5]})._repr_html_()
 
 

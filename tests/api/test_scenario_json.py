@@ -202,7 +202,7 @@ def test_a_text_that_is_no_scenario_is_refused(text: str) -> None:
 
 @pytest.mark.parametrize("text", [None, b"{}", 5, {}, Path("scenario.json")])
 def test_what_is_no_text_is_refused(text: Any) -> None:
-    with pytest.raises(c2d.ScenarioError, match="scenario must be a text"):
+    with pytest.raises(c2d.ScenarioError, match="scenario must be a string"):
         Scenario.from_json(text)
 
 

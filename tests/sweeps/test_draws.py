@@ -261,7 +261,7 @@ def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> No
     assert refused == [plan.drawn["terrain.friction"] > 100.0 for plan in plans]
     assert 0 < sum(refused) < 10
     lanes = VARIANTS["belt-lanes"]
-    with pytest.raises(c2d.ScenarioError, match="must name a field of Lanes"):
+    with pytest.raises(c2d.ScenarioError, match="must be a known field: Lanes has"):
         Variation.of(lanes, vary, []).draw(lanes, dict.fromkeys(vary, 0.5))
 
 

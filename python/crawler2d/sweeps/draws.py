@@ -136,7 +136,7 @@ class Scaled:
 
 
 Distribution = Uniform | UniformInt | Scaled
-"""Every distribution."""
+"""Any distribution."""
 
 uniform = Uniform
 uniform_int = UniformInt
