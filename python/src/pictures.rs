@@ -1,4 +1,4 @@
-//! What pictures need of ground and robot, as arrays.
+//! Arrays of ground and robot that pictures need.
 
 use crawler2d_core::{ChainOfShoes, Checked, Model, Mount, Part, Shape, Vector};
 use numpy::{IntoPyArray, PyArray2};
@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::convert::{edges, rows};
 
-/// Everything a picture needs; of two tracks the right one, which is in front in a side view.
+/// Everything a picture needs; of two tracks, the right one, which is in front in a side view.
 pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
     let (model, ground) = (checked.model(), checked.ground());
     let near = ground.tracks - 1;
@@ -48,15 +48,15 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py,
     Ok(result)
 }
 
-/// What runs round the chassis or a flipper on a lane, in the frame of what carries it.
+/// The track round the chassis or a flipper on a lane, in the frame of its carrier.
 fn track<'py>(
     py: Python<'py>,
     model: &Model,
     (mount, lane): (Mount, usize),
 ) -> PyResult<Bound<'py, PyDict>> {
-    /// Points of one root arc between two grousers.
+    /// Number of points of one root arc between two grousers.
     const ARC_POINTS: usize = 12;
-    /// [rad] Turn between two points of a belt.
+    /// [rad] Turn between two points on a belt.
     const BELT_TURN: f64 = 0.05;
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
@@ -86,7 +86,7 @@ fn track<'py>(
             Shape::Grouser(grouser) => grousers.append(points(py, grouser.corners()))?,
             Shape::Polygon { .. } => {}
         }
-        // What no drive moves follows the first.
+        // Parts without a drive are drawn with the first drive.
         drives.resize(circles.len(), part.drive.unwrap_or(0));
         bodies.resize(bodies.len() + circles.len() - before, body);
     }
@@ -109,7 +109,7 @@ fn points<'py>(py: Python<'py>, points: &[Vector]) -> Bound<'py, PyArray2<f64>> 
     rows(py, &points)
 }
 
-/// The toothed wheel of a chain as a gear is given: its outline when its drive has not run.
+/// The sprocket of a chain, in the form of a gear wheel: its outline at the start.
 fn sprocket<'py>(py: Python<'py>, chain: &ChainOfShoes) -> PyResult<Option<Bound<'py, PyDict>>> {
     let Some(sprocket) = &chain.sprocket else {
         return Ok(None);

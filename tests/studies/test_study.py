@@ -300,7 +300,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
     for replay in replays:
         assert (out / "replays" / replay["file"]).exists()
         assert f"{out}/replays/{replay['file']}" in text
-    assert "Gear wheels against round ones on steps" in text
+    assert "Gear wheels beside round ones on steps" in text
     for picture in ("rates.png", "phases.png", "posts.png"):
         assert (out / picture).stat().st_size > 10_000
 

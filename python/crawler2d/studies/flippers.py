@@ -124,7 +124,7 @@ def _highest(
     heights, shares, table = climbs
     cleared = np.flatnonzero(shares >= 0.5)
     last = int(cleared[-1]) if cleared.size else -1
-    limit = "none up to this height"
+    limit = "none up to here"
     if last + 1 < len(heights):
         above = table.isel(height=last + 1)
         ends = zip(
