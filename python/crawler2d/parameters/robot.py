@@ -339,7 +339,7 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     ends = places[flippers.ends]
     mass = robot.mass + pair * len(ends)
     if not mass > 0.0:
-        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave the chassis a mass")
+        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave mass for the chassis")
     x, y = robot.center_of_mass
     center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
     inertia = robot.moment_of_inertia

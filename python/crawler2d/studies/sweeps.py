@@ -68,7 +68,7 @@ QUICK = Design(
 
 
 def robots_of_the_study() -> dict[str, Robot]:
-    """List the robots: the preset, and variants within the uncertainty of its estimates.
+    """List the robots: the preset, and variants that test its estimates.
 
     The centre of mass moves up with a raised arm, and forward with an arm or flippers stretched
     out. The belly hangs lower, or is removed. The motors are twice as strong: a gear wheel that

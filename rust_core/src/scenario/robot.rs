@@ -104,7 +104,7 @@ impl Robot {
         let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
         if of_arms + self.track_mass >= self.mass {
             let rule = format!(
-                "must leave the chassis a mass: the arms, {of_arms} kg, and robot.track_mass reach robot.mass = {} kg",
+                "must leave mass for the chassis: arms ({of_arms} kg) and robot.track_mass together reach robot.mass = {} kg",
                 self.mass
             );
             return error("mass", flippers.mass, rule);

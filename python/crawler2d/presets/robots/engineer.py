@@ -89,7 +89,7 @@ def engineer(
 
     The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer".
     eng.xacro and the CAD meshes are from the package eng_description in GimpelZhang's
-    Robot_Engineer. The tests do not read the meshes; their figures were measured by hand.
+    Robot_Engineer. The tests do not read the meshes, on which their figures were measured.
 
     Nothing but the wheels is taken from that model: it has motors of 100 N m per wheel
     (eng.xacro:115), tracks 0.55 m apart (eng.xacro:144) and no manipulator. Its flippers have no

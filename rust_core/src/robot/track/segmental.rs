@@ -154,7 +154,7 @@ fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
         }
         format!("must be from {least} to {most} here")
     } else {
-        format!("must be more than {most} here, which is the maximum")
+        format!("must be more than {most} here, but that is the maximum")
     };
     let rule = format!(
         "{allowed}: a shoe must not be longer than the diameter of the smaller end, half the axle distance or a straight run"
