@@ -189,7 +189,8 @@ def _moved_by(d: Findings) -> str:
         in_vain.append("any push")
     if ways:
         no_help = "no push would" if wedged else f"{in_vain[0]} would not" if in_vain else ""
-        return f"{_listed(ways)} would free it{no_help and f', but {no_help}'}"
+        but = f", but {no_help}" if no_help else ""
+        return f"{_listed(ways)} would free it{but}"
     if len(in_vain) == 2:
         return f"neither {in_vain[0]} nor {in_vain[1]} would free it"
     if wedged:
