@@ -88,7 +88,7 @@ def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
         rule = f"must be a known field: {place} = {reprlib.repr(node)} has no elements"
         raise ScenarioError(path, value, rule)
     if not 0 <= step < len(node):
-        rule = f"must be an element that exists: {place} has {len(node)}, counted from 0"
+        rule = f"must be an element that exists: {place} has {len(node)} elements, counted from 0"
         raise ScenarioError(path, value, rule)
     return node[step]
 

@@ -178,8 +178,7 @@ fn check_turn(time_step: f64, name: &str, rate: f64) -> Result<(), ScenarioError
     if turn <= FARTHEST {
         return Ok(());
     }
-    let rule =
-        format!("must keep {name} x time_step <= {FARTHEST} rad (here {turn:.3} rad)");
+    let rule = format!("must keep {name} x time_step <= {FARTHEST} rad (here {turn:.3} rad)");
     Err(ScenarioError::new("solver.time_step", time_step, rule))
 }
 

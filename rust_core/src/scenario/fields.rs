@@ -99,7 +99,10 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn value(&mut self, name: &'static str) -> Result<&'a Value, ScenarioError> {
-        self.known.push(name);
+        // A field is read twice where null has a meaning of its own.
+        if !self.known.contains(&name) {
+            self.known.push(name);
+        }
         let map = self.map;
         map.get(name)
             .ok_or_else(|| ScenarioError::new(self.path(name), "nothing", "must be given"))
