@@ -1,4 +1,4 @@
-//! Steps in the middle of a climb, and whole runs; the bare engine's loop of the same scene beside.
+//! Times steps in the middle of a climb, and whole runs, beside the bare engine's loop on the same scene.
 
 use std::hint::black_box;
 
@@ -6,7 +6,7 @@ use crawler2d_benches::{SCENES, Scene};
 use crawler2d_core::{Record, Simulation, simulate};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 
-/// Steps of one measurement; a single one is shorter than the clock is fine.
+/// Steps per measurement; a single step is too short for the clock.
 const STEPS: u64 = 200;
 
 fn simulation(scene: &Scene) -> Simulation {

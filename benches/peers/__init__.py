@@ -1,1 +1,1 @@
-"""The same job in five engines: what a step costs, at their defaults and at equal accuracy."""
+"""The same job in five engines: cost per step, at their defaults and at equal accuracy."""

@@ -1,4 +1,4 @@
-"""Run the benchmark: progress on stderr, tables on the screen, `out/peers.json`, the report.
+"""Run the benchmark; it writes progress to stderr, tables, `out/peers.json` and the report.
 
 Usage, from the repository root: ``python -m benches.peers [--quick] [--sections SECTION ...]``.
 """
@@ -41,7 +41,7 @@ def main() -> None:
         choices=scenes.NAMES,
         default=scenes.NAMES,
         metavar="SCENE",
-        help="these alone, and no report",
+        help="only these scenes, and no report",
     )
     parser.add_argument(
         "--sections",
@@ -49,7 +49,7 @@ def main() -> None:
         choices=_SECTIONS,
         default=_SECTIONS,
         metavar="SECTION",
-        help=f"these alone, the others as they were: {', '.join(_SECTIONS)}",
+        help=f"only these sections; the others stay as they are: {', '.join(_SECTIONS)}",
     )
     parser.add_argument("--render", action="store_true", help="only write the report again")
     arguments = parser.parse_args()
@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def quick() -> Iterator[dict[str, Any]]:
-    """Try everything on a small scale, in less than a minute."""
+    """Run everything on a small scale, in less than a minute."""
     names = ["lwa5-round-step", "lwa5-gear-step"]
     yield {"defaults": sections.defaults(names, engines(), 1)}
     yield {"yardstick": sections.yardstick(["lwa3", "lwa5"], ["step"], 2)}
@@ -81,7 +81,7 @@ def quick() -> Iterator[dict[str, Any]]:
 
 
 def full(names: Sequence[str], chosen: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Run the chosen sections; `names` are the scenes of the defaults and of equal accuracy."""
+    """Run the chosen sections; `names` are the scenes for the first two sections."""
     robots, terrains = ["lwa3", "lwa5", "cwa24"], ["step", "field"]
     lines = ["lwa5-gear-step", "lwa3-gear-step"]
     if "chains" in chosen:
@@ -104,7 +104,7 @@ def of_chains(
     repeats: int,
     grid: Sequence[Setting] = chains.GRID,
 ) -> dict[str, Any]:
-    """Run the section of chains; it names its own machine, since it can be run alone."""
+    """Run the section on chains; it names its own machine, because it can be run alone."""
     versions = {name: engine(name).version for name in ("pymunk", "crawler2d")}
     found: dict[str, Any] = {"machine": machine.describe(versions)}
     start = time.perf_counter()
@@ -120,7 +120,7 @@ def _begun() -> dict[str, Any]:
 
 
 def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, Any]]:
-    """Search each engine's cheapest accurate setting on a scene, then time these together."""
+    """Find each engine's cheapest accurate setting on a scene, then time them together."""
     progress(f"equal accuracy: {name}")
     scene, draws = scenes.load(name), scenes.draws(effort.ensemble)
     found = {each.name: accuracy.search(each, scene, draws, effort) for each in engines()}

@@ -1,18 +1,18 @@
-"""Equal accuracy: each engine's cheapest setting that keeps the same errors.
+"""Equal accuracy: each engine's cheapest setting within the same error limits.
 
 The rule, for one engine on one scene:
 
-1. Its *limit* is its finest setting. Its path over the first draws is compared at equal times with
-   the next finest's, which is coarser in every respect by a factor of two. Where they differ by
-   more than 1 cm in any draw, the scene is *chaotic* for it.
-2. Settings are tried in the order of their measured cost. One is rejected as soon as a draw breaks
-   1 mm of overlap with the ground or 0.2 mm of a pin's gap, or the robot flies off its course.
-3. Where the scene is not chaotic, the path must stay within 1 cm of the limit's in each of the
-   first draws. Where it is, the Wilson interval of 95 % of the setting's rate of clearing, over
-   all draws, must hold the limit's rate over the same draws.
+1. Its *limit* is its finest setting. Its path over the first draws is compared, at equal times,
+   with that of the next finest setting, which is coarser in every respect by a factor of two. If
+   they differ by more than 1 cm in any draw, the scene is *chaotic* for the engine.
+2. Settings are tried in the order of their measured cost. One is rejected as soon as a draw exceeds
+   1 mm of overlap with the ground or a pin gap of 0.2 mm, or the robot flies off.
+3. If the scene is not chaotic, the path must stay within 1 cm of the limit's in each of the first
+   draws. If it is, the 95 % Wilson interval of the setting's rate of clearing, over all draws, must
+   contain the limit's rate over the same draws.
 
-What is accepted first is the cheapest. If nothing is, the engine has no setting of that accuracy in
-the grid.
+The first accepted setting is the cheapest. If there is none, the engine has no setting of that
+accuracy in the grid.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from benches.peers.timing import progress
 from crawler2d.sweeps.statistics import wilson
 
 COST_SPAN = 2.5
-"""[s] Simulated time of the first measure of cost: the way to the obstacle and on to it."""
+"""[s] Simulated time of the first measurement of cost: up to the obstacle and onto it."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Effort:
     Attributes
     ----------
     paths : int
-        Draws whose path is compared.
+        Number of draws whose paths are compared.
     ensemble : int
-        Draws of a rate.
+        Number of draws for a rate.
     finest_step : float
         [s] Time steps below this are not tried.
     """
@@ -52,18 +52,18 @@ class Effort:
 
 @dataclass(frozen=True)
 class Limit:
-    """What an engine tends to.
+    """What an engine converges to.
 
     Attributes
     ----------
     spread : float
-        [m] Largest distance of the paths of the two finest settings.
+        [m] Largest distance between the paths of the two finest settings.
     paths : list of Motion
-        Of the first draws.
+        Paths of the first draws.
     cleared, count : int
-        Over the ensemble, or over the first draws where nothing is chaotic.
+        Over the ensemble, or over the first draws if the scene is not chaotic.
     penetration, gap : float
-        [m] Of the finest setting itself.
+        [m] Errors of the finest setting.
     """
 
     spread: float
@@ -85,7 +85,7 @@ def search(engine: Engine, scene: Scene, draws: list[Draw], effort: Effort) -> d
     Returns
     -------
     dict
-        `limit`, `tried` in the order of cost, and `found`, a setting's fields or None.
+        `limit`, `tried` in the order of cost, and `found`: a setting's fields or None.
     """
     variants = [scene.vary(draw) for draw in draws[: effort.ensemble]]
     limit = find_limit(engine, variants, effort)
@@ -105,7 +105,7 @@ def search(engine: Engine, scene: Scene, draws: list[Draw], effort: Effort) -> d
 
 
 def find_limit(engine: Engine, variants: list[Scene], effort: Effort) -> Limit:
-    """Run the two finest settings; the ensemble only where they differ."""
+    """Run the two finest settings, and the ensemble only if they differ."""
     first = [judge(engine, scene, engine.finest) for scene in variants[: effort.paths]]
     spread = max(
         judge(engine, scene, engine.next_finest).motion.distance(run.motion)
@@ -134,7 +134,7 @@ def by_cost(engine: Engine, scene: Scene, effort: Effort) -> list[tuple[float, S
 def _verdict(
     engine: Engine, variants: list[Scene], setting: Setting, limit: Limit, effort: Effort
 ) -> dict[str, Any]:
-    """Judge a setting; what follows the first broken rule is not run."""
+    """Judge a setting; stop at the first broken rule."""
     penetration = gap = distance = 0.0
     cleared = 0
     count = effort.ensemble if limit.is_chaotic else effort.paths

@@ -1,7 +1,7 @@
-"""Many worlds on one thread and on two: the way each engine offers from Python.
+"""Many worlds on one thread and on two, in the way that each engine offers from Python.
 
-crawler2d and MuJoCo have thread pools of their own; the others get a process a world at a time. A
-loop that only counts shows what the machine itself gains by a second thread.
+crawler2d and MuJoCo have thread pools of their own; the others get one process per world at a time.
+A loop that only counts shows what the machine itself gains with a second thread.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from benches.peers.engines import NAMES, at, engine
 from benches.peers.scenes import Draw, Scene
 from benches.peers.timing import interleaved, progress
 
-# [s] Of every world.
+# [s] Time step of every world.
 _TIME_STEP = 1e-3
 
 

@@ -1,7 +1,7 @@
 """The chain in crawler2d: `SegmentalTrack` on its guide, the same robot and ground.
 
 The outer faces of the shoes run along the same outline. The drive pulls along the shoes of the rear
-end with the force of the same torque; the weights of hull, sprockets and shoes are the robot's.
+end, with the force of the same torque; hull, sprockets and shoes have the same weights.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
 from crawler2d.parameters.terrain import Points
 from crawler2d.parameters.track import SegmentalTrack
 
-# [s] No run is as long: nothing ends it.
+# [s] Longer than any run, so that nothing ends it.
 _NEVER = 1000.0
-# [m/s^2] The other's motor has no ramp.
+# [m/s^2] The motor in pymunk has no ramp.
 _AT_ONCE = 100.0
 
 
 def scenario(
     robot: ChainRobot, profile: Array, setting: Setting, duration: float, shift: float
 ) -> Scenario:
-    """Take the robot over a ground, from `shift` [m] further back.
+    """Make the scenario of the robot on a ground, starting `shift` [m] further back.
 
     Parameters
     ----------
     robot : ChainRobot
         The robot.
     profile : ndarray, shape (n, 2)
-        [m] The ground from left to right; the robot stands before its second point.
+        [m] The ground from left to right; the robot stands in front of its second point.
     setting : Setting
         Time step and substeps.
     duration, shift : float
@@ -76,7 +76,7 @@ def _robot(robot: ChainRobot) -> Robot:
             max_speed=1.0,
             max_acceleration=_AT_ONCE,
             max_deceleration=_AT_ONCE,
-            # Of one of two sprockets.
+            # Torque of one of two sprockets.
             max_torque=chain_robot.TORQUE / 2.0,
         ),
         track=SegmentalTrack(shoe_count=robot.shoe_count, plate_thickness=robot.plate_thickness),

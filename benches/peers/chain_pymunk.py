@@ -1,4 +1,4 @@
-"""The chain in pymunk: shoes on pivot joints, teeth that push lugs, a hull and discs that carry.
+"""The chain in pymunk: shoes on pivot joints, teeth that push lugs, a hull and discs as guides.
 
 One sprocket has the motor, the other turns freely. Plates meet ground, hull and discs, lugs meet
 teeth; shoes do not meet each other. Chipmunk's slop and decay are those of `engine_pymunk`.
@@ -37,15 +37,15 @@ class World(NamedTuple):
     shoes: list[pymunk.Body]
 
     def chassis_pose(self) -> tuple[float, float, float]:
-        """Read the pose [m], [m], [rad]."""
+        """Read the pose of the chassis [m], [m], [rad]."""
         return (*self.chassis.position, self.chassis.angle)
 
     def shoe_poses(self) -> Array:
-        """Read the poses [m], [m], [rad], shape (shoes, 3)."""
+        """Read the poses of the shoes [m], [m], [rad], shape (shoes, 3)."""
         return np.array([(*shoe.position, shoe.angle) for shoe in self.shoes])
 
     def advance(self, steps: int, time_step: float) -> float:
-        """[s] Step on, and take the time of it."""
+        """[s] Advance, and return the wall time."""
         step = self.space.step
         start = time.perf_counter()
         for _ in range(steps):
@@ -76,7 +76,7 @@ def build(robot: ChainRobot, ground: Iterable[Array], setting: Setting, shift: f
             _add(pymunk.Poly(sprocket, tooth.tolist()), space, _TOOTH, chain_robot.TOOTH_FRICTION)
         _pin(pymunk.PivotJoint(chassis, sprocket, (x, 0.0), (0.0, 0.0)), space, setting)
         if is_driven:
-            # Chipmunk counts the rate of a relative to b.
+            # Chipmunk's rate is that of a relative to b.
             motor = pymunk.SimpleMotor(chassis, sprocket, -robot.sprocket_speed)
             motor.max_force = chain_robot.TORQUE
             space.add(motor)

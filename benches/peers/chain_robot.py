@@ -1,9 +1,9 @@
-"""A robot on a chain of shoes, in no engine's own terms: two toothed ends, a hull, shoes on pins.
+"""A robot on a chain of shoes, engine-neutral: two toothed ends, a hull, shoes on pins.
 
 The pins of the straight runs lie one radius below and above the axles, a whole number of pitches
-apart; round an end they are the corners of a polygon with as many corners as the sprocket has
-teeth. So the pitch follows from the counts and the distance of the axles, and the chain closes
-without slack. Hull and discs leave it one millimetre.
+apart. Round an end they are the corners of a polygon with as many corners as the sprocket has
+teeth. So the pitch follows from the counts and the axle distance, and the chain closes without
+slack. Hull and discs leave it a clearance of one millimetre.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ import numpy as np
 from benches.peers.motion import Array
 
 TEETH = {22: 8, 36: 12, 44: 16}
-"""Of one sprocket, by the number of shoes."""
+"""Teeth of one sprocket, by the number of shoes."""
 SPEED = 0.4
-"""[m/s] Of the chain."""
+"""[m/s] Speed of the chain."""
 TORQUE = 30.0
-"""[N m] Limit of the one motor, at the rear sprocket."""
+"""[N m] Limit of the only motor, at the rear sprocket."""
 FRICTION = 0.9
-"""[-] Of shoes and ground; those on hull, discs and teeth are below."""
+"""[-] Between shoes and ground."""
 HULL_FRICTION, DISC_FRICTION, TOOTH_FRICTION = 0.1, 0.3, 0.1
-"""[-] Of shoes and the robot."""
+"""[-] Between shoes and the robot."""
 DROP = 0.002
-"""[m] From which the robot falls at the start."""
+"""[m] Height from which the robot falls at the start."""
 
 _AXLE_DISTANCE = 0.576
 # [kg]
 _HULL_MASS, _SPROCKET_MASS, _CHAIN_MASS = 13.0, 1.5, 3.96
-# [kg m^2] Of a box 0.6 m long, and of a disc.
+# [kg m^2] Inertia of a box 0.6 m long, and of a disc.
 _HULL_INERTIA, _SPROCKET_INERTIA = 0.4008, 0.0048
 # [m]
 _THICKNESS, _SLACK = 0.0146, 0.001
-# [m] How far the teeth begin and end below the pins, and the lugs end.
+# [m] Depth below the pins at which the teeth begin and end, and the lugs end.
 _TOOTH_ROOT, _TOOTH_TIP, _LUG_TIP = 0.0396, 0.0146, 0.0253
 # [-] Widths, in pitches.
 _TOOTH_BASE, _TOOTH_END, _LUG_BASE, _LUG_END = 0.333, 0.229, 0.292, 0.167
@@ -58,7 +58,7 @@ class ChainRobot:
     hull_mass, hull_inertia = _HULL_MASS, _HULL_INERTIA
     """[kg], [kg m^2]"""
     sprocket_mass, sprocket_inertia = _SPROCKET_MASS, _SPROCKET_INERTIA
-    """[kg], [kg m^2] Of each of the two."""
+    """[kg], [kg m^2] Of each sprocket."""
     chain_mass = _CHAIN_MASS
     """[kg]"""
     plate_thickness = _THICKNESS
@@ -66,42 +66,42 @@ class ChainRobot:
 
     @property
     def tooth_count(self) -> int:
-        """Of one sprocket."""
+        """Number of teeth of one sprocket."""
         return TEETH[self.shoe_count]
 
     @property
     def pitch(self) -> float:
-        """[m] From pin to pin."""
+        """[m] Distance from pin to pin."""
         return 2.0 * _AXLE_DISTANCE / (self.shoe_count - self.tooth_count)
 
     @property
     def pin_radius(self) -> float:
-        """[m] From an axle to the pins round it."""
+        """[m] Distance from an axle to the pins round it."""
         return self.pitch / (2.0 * math.sin(math.pi / self.tooth_count))
 
     @property
     def radius(self) -> float:
-        """[m] From an axle to the ground."""
+        """[m] Distance from an axle to the ground."""
         return self.pin_radius + _THICKNESS / 2.0
 
     @property
     def mass(self) -> float:
-        """[kg] Of all."""
+        """[kg] Mass of the whole robot."""
         return _HULL_MASS + 2.0 * _SPROCKET_MASS + _CHAIN_MASS
 
     @property
     def shoe_mass(self) -> float:
-        """[kg] Of one."""
+        """[kg] Mass of one shoe."""
         return _CHAIN_MASS / self.shoe_count
 
     @property
     def shoe_inertia(self) -> float:
-        """[kg m^2] Of a plate."""
+        """[kg m^2] Moment of inertia of a shoe, taken as a plate."""
         return self.shoe_mass * (self.pitch**2 + _THICKNESS**2) / 12.0
 
     @property
     def moment_of_inertia(self) -> float:
-        """[kg m^2] Of all, about the middle."""
+        """[kg m^2] Moment of inertia of the whole robot about its middle."""
         x, y, _ = self.shoes().T
         ends = 2.0 * (_SPROCKET_INERTIA + _SPROCKET_MASS * (_AXLE_DISTANCE / 2.0) ** 2)
         shoes = self.shoe_count * self.shoe_inertia + self.shoe_mass * float((x**2 + y**2).sum())
@@ -109,11 +109,11 @@ class ChainRobot:
 
     @property
     def sprocket_speed(self) -> float:
-        """[rad/s] At which the teeth count shoes of the commanded speed."""
+        """[rad/s] Speed at which the teeth move the chain at the commanded speed."""
         return -SPEED * 2.0 * math.pi / (self.tooth_count * self.pitch)
 
     def pins(self) -> Array:
-        """[m] From the middle of the robot, shape (shoes, 2), each at the rear end of its shoe."""
+        """[m] Pins relative to the robot's middle, each at the rear end of a shoe; (shoes, 2)."""
         half, count = _AXLE_DISTANCE / 2.0, self.tooth_count // 2
         straight = (self.shoe_count - self.tooth_count) // 2
         lower = [(-half + i * self.pitch, -self.pin_radius) for i in range(straight)]
@@ -125,29 +125,29 @@ class ChainRobot:
         return np.concatenate([ahead, -ahead])
 
     def shoes(self) -> Array:
-        """[m], [m], [rad] Pose of each from the middle of the robot, shape (shoes, 3)."""
+        """[m], [m], [rad] Poses relative to the middle of the robot, shape (shoes, 3)."""
         rear = self.pins()
         front = np.roll(rear, -1, axis=0)
         angle = np.arctan2(*(front - rear).T[::-1])
         return np.column_stack([(rear + front) / 2.0, angle])
 
     def plate(self) -> Array:
-        """[m] Corners in the frame of a shoe; 6 % short, so that neighbours do not touch."""
+        """[m] Corners of a plate in the shoe's frame; 6 % short, so neighbours do not touch."""
         x, y = 0.47 * self.pitch, _THICKNESS / 2.0
         return np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
 
     def lug(self) -> Array:
-        """[m] What goes between the teeth, in the frame of a shoe."""
+        """[m] Corners of the lug that goes between the teeth, in the shoe's frame."""
         base, tip = 0.5 * _LUG_BASE * self.pitch, 0.5 * _LUG_END * self.pitch
         low = _THICKNESS / 4.0
         return np.array([(base, low), (tip, _LUG_TIP), (-tip, _LUG_TIP), (-base, low)])
 
     def disc_radius(self) -> float:
-        """[m] What carries the plates round an end."""
+        """[m] Radius of the disc that carries the plates round an end."""
         return self._apothem() - _THICKNESS / 2.0 - _SLACK
 
     def teeth(self) -> list[Array]:
-        """[m] In the frame of a sprocket, one at each pin."""
+        """[m] Corners of the teeth in the sprocket's frame, one tooth at each pin."""
         root, tip = self._apothem() - _TOOTH_ROOT, self._apothem() - _TOOTH_TIP
         base, end = 0.5 * _TOOTH_BASE * self.pitch, 0.5 * _TOOTH_END * self.pitch
         tooth = np.array([(root, -base), (tip, -end), (tip, end), (root, base)])
@@ -158,7 +158,7 @@ class ChainRobot:
         ]
 
     def hull(self) -> Array:
-        """[m] What carries the straight runs, in the frame of the chassis."""
+        """[m] Corners of the hull that carries the straight runs, in the chassis frame."""
         y = self.pin_radius - _THICKNESS / 2.0 - _SLACK
         below = [(-0.258, -y + 0.015), (-0.208, -y), (0.208, -y), (0.258, -y + 0.015)]
         return np.array([*below, *((-a, -b) for a, b in below)])

@@ -1,15 +1,16 @@
-"""A chain of shoes in pymunk and in crawler2d: what a step costs, and how well the chain holds.
+"""A chain of shoes in pymunk and in crawler2d: cost per step, and how well the chain holds.
 
-Times are of blocks of half a second: the lower quartile of a run's blocks, the least of several
-rounds in which all jobs took turns. What is judged besides:
+Times are of blocks of half a second: the lower quartile of a run's blocks, and of that the minimum
+of several rounds in which all jobs take turns. Also judged:
 
-- the widest gap of a pin, from half a second on: the robot falls from 2 mm at first;
-- whether the chain stayed on: no pin wider than a plate is thick, the chassis over the ground;
-- on flat ground how far the mean speed from 3 s on is off the commanded one;
-- how far the path gets from that with half the time step.
+- the largest gap of a pin, from half a second on, because the robot first falls by 2 mm;
+- whether the chain stayed on: no pin gap larger than the thickness of a plate, the chassis above
+  the ground;
+- on flat ground, the error of the mean speed from 3 s on;
+- how far the path is from the one with half the time step.
 
-*At equal gaps* looks for the cheapest setting with which no pin of pymunk's opens wider than an
-aim: what the other scenes of this benchmark allow, and crawler2d's own gap at its defaults.
+*At equal gaps* finds the cheapest setting with which no pin gap in pymunk exceeds an aim: what the
+other scenes of this benchmark allow, and crawler2d's own gap at its defaults.
 """
 
 from __future__ import annotations
@@ -41,14 +42,14 @@ SETTINGS = {
     "pymunk, tuned": Setting(1e-3, iterations=10),
     "crawler2d": Setting(Solver().time_step, Solver().substeps),
 }
-"""What stands side by side; all at steps of 1 ms."""
+"""Settings that are compared; all at steps of 1 ms."""
 GRID = [
     Setting(dt * 1e-3, iterations=iterations, tuned=tuned)
     for dt in (2.0, 1.0, 0.5, 0.25, 0.125)
     for iterations in (10, 20, 40, 80, 160)
     for tuned in (True, False)
 ]
-"""What is tried of pymunk at equal gaps."""
+"""Settings of pymunk that are tried at equal gaps."""
 
 OWN: dict[str, Track] = {
     "belt with grousers": GrouserBeltTrack(),
@@ -60,15 +61,15 @@ OWN: dict[str, Track] = {
 
 # [s]
 _DURATION, _BLOCK = 8.0, 0.5
-# [s] Where gaps and speed begin to count, and how often gaps are seen.
+# [s] When gaps and speed begin to count, and the sampling interval of gaps.
 _SETTLED, _STEADY, _INTERVAL = 0.5, 3.0, 2e-3
-# [m] Starts of a cell.
+# [m] Shifts of the start of a cell.
 _SHIFTS = (0.0, 0.011, 0.023)
 
 
 @dataclass(frozen=True)
 class Place:
-    """A robot before a ground.
+    """A robot on a ground.
 
     Attributes
     ----------
@@ -85,7 +86,7 @@ class Place:
     shift: float = 0.0
 
     def starts(self) -> list[Place]:
-        """List the starts of a cell."""
+        """List the places with all starts of a cell."""
         return [replace(self, shift=shift) for shift in _SHIFTS]
 
     def boxes(self) -> list[Array]:
@@ -95,17 +96,17 @@ class Place:
         return list(scenes.load(f"lwa5-round-{self.terrain}").boxes)
 
     def profile(self) -> Array:
-        """[m] The ground from left to right; the second point is before the robot."""
+        """[m] The ground from left to right; the second point is in front of the robot."""
         if self.terrain == "flat":
             return np.array([(-5.0, 0.0), (0.8, 0.0), (15.0, 0.0)])
         return scenes.load(f"lwa5-round-{self.terrain}").profile()
 
     def world(self, setting: Setting) -> chain_pymunk.World:
-        """Build it in pymunk."""
+        """Build the world in pymunk."""
         return chain_pymunk.build(self.robot, self.boxes(), setting, self.shift)
 
     def scenario(self, setting: Setting) -> Scenario:
-        """Describe it for crawler2d."""
+        """Make the scenario for crawler2d."""
         return chain_crawler2d.scenario(self.robot, self.profile(), setting, _DURATION, self.shift)
 
 
@@ -118,7 +119,7 @@ class Ride:
     path : ndarray, shape (n, 2)
         [m] Chassis x, y every `_INTERVAL`.
     gap : float
-        [m] Widest gap of a pin.
+        [m] Largest gap of a pin.
     """
 
     path: Array
@@ -131,13 +132,13 @@ class Ride:
 
     @property
     def speed_error(self) -> float:
-        """[-] Of the mean speed."""
+        """[-] Error of the mean speed."""
         steady = self.path[round(_STEADY / _INTERVAL) :, 0]
         mean = (steady[-1] - steady[0]) / ((len(steady) - 1) * _INTERVAL)
         return float(mean / chain_robot.SPEED - 1.0)
 
     def distance(self, other: Ride) -> float:
-        """[m] Largest distance of the two paths at equal times."""
+        """[m] Largest distance between the two paths at equal times."""
         return float(np.hypot(*(self.path - other.path).T).max())
 
 
@@ -170,7 +171,7 @@ def side_by_side(
 def equal_gaps(
     counts: Sequence[int], terrains: Sequence[str], grid: Sequence[Setting] = GRID
 ) -> list[dict[str, Any]]:
-    """Find pymunk's cheapest settings that keep its pins as tight as an aim, and what they cost."""
+    """Find pymunk's cheapest settings that keep the pin gaps below an aim, and their cost."""
     rows = []
     for count in counts:
         for terrain in terrains:
@@ -192,7 +193,7 @@ def equal_gaps(
 def _costs(
     place: Place, found: dict[str, Setting | None], finest: Sequence[Setting]
 ) -> dict[str, Any]:
-    """Time what was found beside crawler2d's defaults; look at the finest where nothing was."""
+    """Time the settings found beside crawler2d's defaults; without one, measure the finest."""
     settings = {name: setting for name, setting in found.items() if setting is not None}
     jobs = {name: partial(_blocks, "pymunk", place, s) for name, s in settings.items()}
     jobs["crawler2d"] = partial(_blocks, "crawler2d", place, SETTINGS["crawler2d"])
@@ -212,7 +213,7 @@ def _first(pair: tuple[float, Setting]) -> float:
 
 
 def engineer(repeats: int) -> list[dict[str, Any]]:
-    """Time the Engineer's own chains and its belt with grousers, steps of 1 ms."""
+    """Time the Engineer's own chains and its belt with grousers at steps of 1 ms."""
     grounds: dict[str, Terrain] = {
         "flat": c2d.terrains.flat(friction=0.9),
         "step of 80 mm": c2d.terrains.step(0.08, friction=0.9),
@@ -235,7 +236,7 @@ def engineer(repeats: int) -> list[dict[str, Any]]:
 
 
 def ride(engine: str, place: Place, setting: Setting, most: float = np.inf) -> Ride:
-    """Run an engine; pymunk's run ends early once a pin is wider than `most` [m]."""
+    """Run an engine; pymunk's run ends early if a pin gap exceeds `most` [m]."""
     if engine == "crawler2d":
         run = c2d.simulate(place.scenario(setting), sample_interval=_INTERVAL)
         return Ride(run.position, run.metrics["max_pin_gap"])
@@ -252,7 +253,7 @@ def ride(engine: str, place: Place, setting: Setting, most: float = np.inf) -> R
 
 
 def pin_gap(shoes: Array, pitch: float) -> float:
-    """[m] Widest gap of the pins of a closed chain, from the poses of its shoes."""
+    """[m] Largest pin gap of a closed chain, from the poses of its shoes."""
     reach = pitch / 2.0 * np.column_stack([np.cos(shoes[:, 2]), np.sin(shoes[:, 2])])
     front, rear = shoes[:, :2] + reach, shoes[:, :2] - reach
     return float(np.hypot(*(front - np.roll(rear, -1, axis=0)).T).max())
@@ -274,7 +275,7 @@ def _judged(engine: str, place: Place, setting: Setting) -> dict[str, Any]:
 
 
 def _widest(place: Place, setting: Setting, most: float) -> float:
-    """[m] Widest gap of pymunk's pins over the starts; what breaks `most` ends it early."""
+    """[m] Largest pin gap in pymunk over the starts; ends early if it exceeds `most`."""
     widest = 0.0
     for start in place.starts():
         run = ride("pymunk", start, setting, most)
@@ -285,13 +286,13 @@ def _widest(place: Place, setting: Setting, most: float) -> float:
 
 
 def _seconds(place: Place, setting: Setting) -> float:
-    """[s] Wall time of a tenth of a second in pymunk."""
+    """[s] Wall time of 0.1 s of simulated time in pymunk."""
     world = place.world(setting)
     return world.advance(setting.steps(0.1), setting.time_step)
 
 
 def _blocks(engine: str, place: Place, setting: Setting) -> float:
-    """[s] Wall time of a block, the lower quartile of a run's."""
+    """[s] Wall time of a block, lower quartile over a run."""
     if engine == "crawler2d":
         return _of_simulation(place.scenario(setting))
     world = place.world(setting)
@@ -300,7 +301,7 @@ def _blocks(engine: str, place: Place, setting: Setting) -> float:
 
 
 def _own_blocks(track: Track, terrain: Terrain) -> float:
-    """[s] The same of the Engineer."""
+    """[s] The same for the Engineer."""
     robot = c2d.robots.engineer(flippers=None, track=track)
     drivetrain = replace(robot.drivetrain, max_acceleration=2.0, max_torque=20.0)
     built = replace(robot, drivetrain=drivetrain)
@@ -323,7 +324,7 @@ def _lower_quartile(block: Callable[[], float]) -> float:
 
 
 def _low_blocks() -> Points:
-    """[m] Twenty blocks, each 0.2 m long."""
+    """Make twenty blocks, each 0.2 m long."""
     heights = np.random.default_rng(7).uniform(0.0, 0.06, 20)
     points = [(-5.0, 0.0), (0.0, 0.0)]
     for index, height in enumerate(heights.tolist()):

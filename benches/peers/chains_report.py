@@ -8,7 +8,7 @@ from benches.peers import machine, markdown
 
 Rows = list[dict[str, Any]]
 
-# [us] What a step of 1 ms may take, and what it should.
+# [us] Largest time for a step of 1 ms, and the better aim.
 _AIMS = {
     "belt with grousers": (18, 10),
     "22 shoes": (50, 35),
@@ -18,7 +18,7 @@ _AIMS = {
 
 
 def render(result: dict[str, Any]) -> str:
-    """Write the section of a run of it."""
+    """Write the section from its results."""
     return "\n\n".join(
         [
             "## A chain of shoes",
@@ -59,7 +59,7 @@ def _side_by_side(rows: Rows) -> str:
 
 
 def _standing(rows: Rows) -> str:
-    """Say how crawler2d stands to pymunk at its defaults."""
+    """Compare crawler2d with pymunk at its defaults."""
     cells = {(row["shoes"], row["terrain"], row["engine"]): row for row in rows}
     pairs = [
         (own, cells[shoes, terrain, "pymunk, defaults"])

@@ -1,4 +1,4 @@
-"""What the benchmark asks of an engine."""
+"""The interface of an engine in the benchmark."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class Setting:
     time_step : float
         [s] Time of a step.
     substeps : int
-        Parts of a step, in engines that have them.
+        Substeps per step, in engines that have them.
     iterations : int
         Sweeps or solver iterations, in engines that have them; 0 is the engine's default.
     tuned : bool
-        Whether lengths and stiffness suit parts of a few millimetres, or are the engine's defaults.
+        Whether lengths and stiffness suit parts of a few millimetres, or are defaults.
     ground : {"boxes", "profile"}
-        Of what the ground is made, in engines that offer both.
+        What the ground is made of, in engines that offer both.
     """
 
     time_step: float
@@ -37,7 +37,7 @@ class Setting:
     ground: Literal["boxes", "profile"] = "boxes"
 
     def __str__(self) -> str:
-        """Say it in a cell of a table."""
+        """Describe it for a table."""
         parts = [f"{self.time_step * 1e3:.4g} ms"]
         if self.substeps > 1:
             parts.append(f"{self.substeps} substeps")
@@ -57,23 +57,23 @@ class Setting:
 
 
 class Engine(Protocol):
-    """One engine; importing its module needs the engine, and nothing else does."""
+    """One engine; only its own module needs the engine installed."""
 
     name: str
     """Name in tables."""
     version: str
-    """Of what is installed."""
+    """Installed version."""
     defaults: Setting
-    """What the engine's own documentation or examples take."""
+    """Settings of the engine's own documentation or examples."""
     grid: Sequence[Setting]
-    """What the search for equal accuracy tries."""
+    """Settings that the search for equal accuracy tries."""
     finest: Setting
-    """The engine's own limit."""
+    """The engine's finest setting, its own limit."""
     next_finest: Setting
-    """What shows whether the limit has converged."""
+    """Next finest setting, which shows whether the limit has converged."""
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run, in the engine's fastest way from Python, not recorded."""
+        """[s] Time a run in the engine's fastest way from Python, without recording."""
 
     def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
-        """Run and sample all poses, at most `interval` [s] apart but no finer than each step."""
+        """Run and sample all poses every `interval` [s], at most every step."""

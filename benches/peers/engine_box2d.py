@@ -1,16 +1,16 @@
 """Box2D v3 through pyb2d3.
 
-Box2D's tolerances are meant for parts of about a metre: its slop is 5 mm, it looks for contacts 20
-mm ahead. The tuned setting tells it that the unit of length is a decimetre, which makes these a
-tenth, and stiffens contacts from 30 to 240 Hz at a damping ratio of 10. Box2D itself limits that
-to a quarter of the rate of substeps.
+Box2D's tolerances are meant for parts of about a metre: its slop is 5 mm, and it searches for
+contacts up to 20 mm ahead. The tuned setting makes its unit of length a decimetre, which reduces
+both to a tenth, and stiffens contacts from 30 to 240 Hz at a damping ratio of 10. Box2D itself
+limits that to a quarter of the substep rate.
 
 Its joints are springs of 60 per unit of time, and the package has no way to set that: wheels on
-pins of 60 Hz give way by more than a millimetre, at any time step. The tuned setting therefore
-counts time in units of 20 ms, which makes them 3 kHz (Box2D itself limits that, too, to a quarter
-of the rate of substeps), and gives gravity, speeds and torques in that unit.
+pins of 60 Hz give way by more than a millimetre at any time step. So the tuned setting has a time
+unit of 20 ms, which makes them 3 kHz (again limited to a quarter of the substep rate), and gives
+gravity, speeds and torques in that unit.
 
-Box2D mixes friction by the geometric mean, so that both have the scene's. Bodies do not sleep.
+Box2D mixes friction by the geometric mean, so both materials have the scene's. No body sleeps.
 Single precision.
 """
 
@@ -26,7 +26,7 @@ from benches.peers.engine import Setting
 from benches.peers.motion import Motion
 from benches.peers.scenes import Body, Scene
 
-# [s] Unit of time in a tuned world.
+# [s] Time unit of a tuned world.
 _TUNED_UNIT = 0.02
 
 _GROUND, _ROBOT = 1, 2
@@ -51,7 +51,7 @@ class Box2D:
     next_finest = Setting(0.5e-3, substeps=4)
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run."""
+        """[s] Time a run."""
         world, _ = _build(scene, setting)
         step, dt, substeps = world.step, setting.time_step / _unit(setting), setting.substeps
         start = time.perf_counter()
@@ -99,7 +99,7 @@ def _build(scene: Scene, setting: Setting) -> tuple[pyb2d3.World, list[pyb2d3.Bo
 
 
 def _unit(setting: Setting) -> float:
-    """[s] Unit of time."""
+    """[s] Time unit."""
     return _TUNED_UNIT if setting.tuned else 1.0
 
 

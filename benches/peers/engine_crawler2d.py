@@ -1,8 +1,8 @@
 """crawler2d itself, on its own form of the scenes in `tests/scenarios`.
 
-One call simulates a whole run, and the time is that of the call: it includes building the model,
-and the monitor that looks for stops. Ends of runs are switched off by a stop window longer than
-the run, so that every engine simulates the same span. There are no pins that could open.
+One call simulates a whole run and is timed, so the time includes building the model and the monitor
+that looks for stops. A stop window longer than the run keeps runs from ending early, so that every
+engine simulates the same span. There are no pins that could open.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
 
 _SCENARIOS = Path(__file__).parents[2] / "tests" / "scenarios"
-# [s] No run is as long.
+# [s] Longer than any run.
 _NEVER = 1000.0
 
 
@@ -43,7 +43,7 @@ class Crawler2D:
     next_finest = Setting(0.5e-3, substeps=4, iterations=30)
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run."""
+        """[s] Time a run."""
         ready = scenario(scene, setting, duration)
         start = time.perf_counter()
         with suppress(SimulationDiverged):
@@ -61,7 +61,7 @@ class Crawler2D:
         poses = np.empty((len(run.time), len(scene.bodies), 3))
         poses[:, 0, :2], poses[:, 0, 2] = run.position, run.chassis_angle
         wheels = ready.robot.wheels()
-        # Both sides are alike: the wheels of the left one.
+        # Both sides are alike; take the left wheels.
         left = wheels["side"] == "left"
         centers, radii = np.column_stack([wheels["x"], wheels["y"]])[left], wheels["radius"][left]
         for index, joint in enumerate(scene.joints):
@@ -74,7 +74,7 @@ class Crawler2D:
 
 
 def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:
-    """Take crawler2d's form of a scene, with the scene's draw."""
+    """Make crawler2d's form of a scene, with the scene's draw."""
     base = as_it_is(scene.name)
     draw = scene.draw
     solver = Solver(
@@ -104,7 +104,7 @@ def as_it_is(name: str) -> Scenario:
     without = np.flatnonzero(np.isin(wheels["body"], (1, 3)))
     return base.replace(
         {
-            # Each wheel, half of 1 kg, takes its mass and its inertia along.
+            # Each removed wheel, half of 1 kg, takes its mass and inertia with it.
             "robot.mass": robot.mass - 2.0,
             "robot.moment_of_inertia": robot.moment_of_inertia
             - sum(0.5 * wheels["x"][i] ** 2 + wheels["moment_of_inertia"][i] for i in without),

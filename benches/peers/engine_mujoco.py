@@ -2,13 +2,12 @@
 
 The chassis slides along x and z and turns about y; each wheel is a hinge on it, so that pins cannot
 open. Round parts are spheres in the plane, grousers are prisms, the ground is boxes. A motor is a
-velocity servo, so steep that its torque limit is what limits; `implicitfast` integrates that.
+velocity servo with a gain so high that only its torque limit matters; `implicitfast` integrates it.
 
-The defaults are MuJoCo's own: contacts with a time constant of 20 ms and a pyramid for friction.
-The tuned setting takes a time constant of 2 ms (MuJoCo itself never goes below two time steps), an
-impedance of 0.99 to 0.999 within 0.1 mm, and the elliptic cone with an `impratio` of 10, which
-keep sticking contacts from creeping. Newton's method is MuJoCo's default; the iterations are its
-cap.
+The defaults are MuJoCo's own: contacts with a time constant of 20 ms, and a friction pyramid. The
+tuned setting has a time constant of 2 ms (MuJoCo itself never goes below two time steps), an
+impedance of 0.99 to 0.999 within 0.1 mm, and the elliptic cone with an `impratio` of 10, which keep
+sticking contacts from creeping. Newton's method is MuJoCo's default; the iterations are its limit.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ from benches.peers.engine import Setting
 from benches.peers.motion import Motion
 from benches.peers.scenes import Body, Scene
 
-# [N m s/rad] 10 N m at a hundredth of a radian a second.
+# [N m s/rad] 10 N m at an error of 0.01 rad/s.
 _SERVO_GAIN = 1000.0
-# [m] Of the prisms and of the ground, across the plane.
+# [m] Half widths of the prisms and of the ground, across the plane.
 _HALF_WIDTH, _GROUND_HALF_WIDTH = 0.02, 0.5
-# About -y: x to z is then counter-clockwise, as x to y is in the plane.
+# About -y, so that x to z is counter-clockwise, like x to y in the plane.
 _AXIS = (0.0, -1.0, 0.0)
 
 
@@ -46,7 +45,7 @@ class MuJoCo:
     next_finest = Setting(0.5e-3, iterations=100)
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run."""
+        """[s] Time a run."""
         model, data = build(scene, setting)
         steps = setting.steps(duration)
         start = time.perf_counter()
@@ -71,13 +70,13 @@ class MuJoCo:
 
 
 def build(scene: Scene, setting: Setting) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """Compile the scene; the motors are commanded."""
+    """Compile the scene, with the motors commanded."""
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     option = spec.option
     option.timestep, option.iterations = setting.time_step, setting.iterations
     option.gravity = (0.0, 0.0, -9.81)
-    # What diverges shall show it, not start anew.
+    # A diverging run must show it, not restart.
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     if setting.tuned:

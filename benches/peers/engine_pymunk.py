@@ -1,10 +1,10 @@
 """Chipmunk through pymunk.
 
-Chipmunk's lengths are meant to be pixels: its slop of 0.1 would let a robot sink 0.1 m. The
-defaults here are its own for a metre of 100 pixels, which scales the slop alone. The tuned setting
-takes a slop of 0.1 mm, and lets overlap and open pins decay by 1/e in 17 ms instead of 160 ms.
-What is left is a matter of steps and iterations, which the search varies. Chipmunk multiplies
-friction, so that the robot's is 1. It warm-starts and has no substeps.
+Chipmunk's lengths are meant to be pixels: its slop of 0.1 would let a robot sink by 0.1 m. The
+defaults here are its own for a metre of 100 pixels, which only scales the slop. The tuned setting
+has a slop of 0.1 mm, and lets overlap and pin gaps decay by 1/e in 17 ms instead of 160 ms. The
+rest depends on steps and iterations, which the search varies. Chipmunk multiplies friction, so the
+robot's is 1. It warm-starts and has no substeps.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Pymunk:
     next_finest = Setting(0.5e-3, iterations=40)
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run."""
+        """[s] Time a run."""
         space, _ = _build(scene, setting)
         step, dt = space.step, setting.time_step
         start = time.perf_counter()
@@ -78,7 +78,7 @@ def _build(scene: Scene, setting: Setting) -> tuple[pymunk.Space, list[pymunk.Bo
         pin = pymunk.PivotJoint(a, b, joint.pa, joint.pb)
         if setting.tuned:
             pin.error_bias = math.exp(-60.0)
-        # Chipmunk counts the rate of a relative to b.
+        # Chipmunk's rate is that of a relative to b.
         motor = pymunk.SimpleMotor(a, b, -joint.speed)
         motor.max_force = joint.torque
         space.add(pin, motor)

@@ -1,12 +1,12 @@
-"""The bare engine under crawler2d's feet: rapier2d in double precision, from Rust.
+"""The bare engine that crawler2d builds on: rapier2d in double precision, from Rust.
 
-A small binary, `benches/src/bin/bare_rapier.rs`, takes a job as JSON and does it, each in a
-process of its own; only its loop of steps is timed. Rapier's tolerances are meant for parts of
-about a metre. The tuned setting looks for contacts 5 mm ahead, allows 0.1 mm of error, finds
-contacts anew in each step and stiffens them to 240 Hz at a damping ratio of 5, as this project's
-tests use the engine. The ground is the scene's cuboids, or the one-sided polyline round them: a
-wheel that rolls from one cuboid to the next can catch on the seam. Bodies do not sleep, slowly
-driven wheels would.
+A small binary, `benches/src/bin/bare_rapier.rs`, takes a job as JSON, each in a process of its own;
+only its loop of steps is timed. Rapier's tolerances are meant for parts of about a metre. The tuned
+setting searches for contacts up to 5 mm ahead, allows an error of 0.1 mm, finds contacts anew in
+each step and stiffens them to 240 Hz at a damping ratio of 5, as this project's tests use the
+engine. The ground is the scene's cuboids, or the one-sided polyline round them: a wheel that rolls
+from one cuboid to the next can catch on the seam. Sleeping is off, because slowly driven wheels
+would fall asleep.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Rapier:
         self._binary = _build()
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
-        """[s] Take the time of a run."""
+        """[s] Time a run."""
         (wall,) = self._do(scene, setting, duration, repeats=1)["wall"]
         return float(wall)
 
@@ -84,7 +84,7 @@ class Rapier:
 
 
 def _build() -> Path:
-    """Build the binary; nothing happens where it is up to date."""
+    """Build the binary, unless it is up to date."""
     command = ["cargo", "build", "--release", "--quiet", "--package", "crawler2d-benches"]
     subprocess.run([*command, "--bin", "bare_rapier"], cwd=_ROOT, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))

@@ -21,7 +21,7 @@ NAMES = tuple(_CLASSES)
 
 @cache
 def engine(name: str) -> Engine:
-    """Import an engine, once a process."""
+    """Import an engine, once per process."""
     module, kind = _CLASSES[name].split(":")
     try:
         made: Engine = getattr(import_module(f"benches.peers.{module}"), kind)()
@@ -31,10 +31,10 @@ def engine(name: str) -> Engine:
 
 
 def engines() -> list[Engine]:
-    """Import them all."""
+    """Import all engines."""
     return [engine(name) for name in NAMES]
 
 
 def at(engine: Engine, time_step: float, *, tuned: bool = False) -> Setting:
-    """Take an engine's default substeps and iterations at another time step [s]."""
+    """Return an engine's default substeps and iterations with another time step [s]."""
     return replace(engine.defaults, time_step=time_step, tuned=tuned)

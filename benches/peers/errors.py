@@ -1,4 +1,4 @@
-"""What equal accuracy means, and how a motion is judged by it."""
+"""What equal accuracy means, and how a motion is judged."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from benches.peers.motion import Motion
 from benches.peers.scenes import Scene
 
 PENETRATION = 1e-3
-"""[m] Overlap with the ground that is still accurate."""
+"""[m] Largest accurate overlap with the ground."""
 JOINT_GAP = 0.2e-3
-"""[m] Gap of a pin that is still accurate."""
+"""[m] Largest accurate gap of a pin."""
 PATH = 0.01
-"""[m] Distance from the limit's path that is still accurate."""
+"""[m] Largest accurate distance from the limit's path."""
 
-# [s] Between samples.
+# [s] Time between samples.
 _INTERVAL = 0.002
 
 
@@ -27,11 +27,11 @@ class Judged(NamedTuple):
     Attributes
     ----------
     motion : Motion
-        What was recorded.
+        The recorded motion.
     penetration, gap : float
         [m] Deepest overlap with the ground, largest gap of a pin; infinite if the robot flew off.
     cleared : bool
-        Whether the rear axle got beyond the last edge.
+        Whether the rear axle passed the last edge.
     """
 
     motion: Motion

@@ -1,6 +1,6 @@
-"""How far a recorded motion breaks the rules: overlap with the ground, gaps of the pins.
+"""Errors of a recorded motion: overlap with the ground, gaps of the pins.
 
-One geometry for every engine. It knows the scene and the poses, and nothing of any engine's
+The same geometry for every engine. It knows the scene and the poses, and nothing of any engine's
 contacts.
 """
 
@@ -30,7 +30,7 @@ def penetration(scene: Scene, motion: Motion) -> float:
 
 
 def joint_gap(scene: Scene, motion: Motion) -> float:
-    """[m] Largest distance of the two points that a pin holds together."""
+    """[m] Largest distance between the two points that a pin holds together."""
     gaps = [
         np.linalg.norm(
             _to_world(motion.poses[:, joint.a], joint.pa)
@@ -43,7 +43,7 @@ def joint_gap(scene: Scene, motion: Motion) -> float:
 
 
 class _Ground:
-    """All that lies below a profile of level tops and upright faces."""
+    """The region below a profile of level tops and vertical faces."""
 
     def __init__(self, profile: Array) -> None:
         self._starts = profile[:-1]
@@ -60,7 +60,7 @@ class _Ground:
         return np.asarray(points[:, 1] < self._tops[np.maximum(column, 0)])
 
     def distance(self, points: Array) -> Array:
-        """[m] From points, shape (n, 2), to the profile."""
+        """[m] Distance from points, shape (n, 2), to the profile."""
         away = points[:, None, :] - self._starts
         along = (away * self._spans).sum(-1) / (self._spans**2).sum(-1)
         nearest = away - np.clip(along, 0.0, 1.0)[..., None] * self._spans
@@ -77,7 +77,7 @@ class _Ground:
 
 
 def _corner_depth(ground: _Ground, body: Body, poses: Array) -> float:
-    """[m] Deepest corner of a body in the ground; what its circle covers is no corner."""
+    """[m] Largest depth of a body's corners in the ground, except those within its circle."""
     corners = np.concatenate(body.polygons)
     corners = corners[np.hypot(*corners.T) > body.radius]
     points = np.concatenate([_to_world(poses, corner) for corner in corners])
@@ -86,7 +86,7 @@ def _corner_depth(ground: _Ground, body: Body, poses: Array) -> float:
 
 
 def _edge_depth(ground: _Ground, body: Body, poses: Array) -> float:
-    """[m] Deepest edge of the ground in a polygon of a body."""
+    """[m] Largest depth of the ground's edges in the polygons of a body."""
     reach = max(float(np.hypot(*polygon.T).max()) for polygon in body.polygons)
     deepest = 0.0
     for edge in ground.edges:
@@ -104,7 +104,7 @@ def _edge_depth(ground: _Ground, body: Body, poses: Array) -> float:
 def _depth_in(polygon: Array, radius: float, points: Array) -> Array:
     """[m] How deep points lie in a convex polygon, negative outside.
 
-    A side that the body's circle covers, the base of a grouser, is no way out.
+    The side within the body's circle, the base of a grouser, does not count as a way out.
     """
     ends = np.roll(polygon, -1, axis=0)
     spans = ends - polygon

@@ -1,4 +1,4 @@
-"""On what a result was measured."""
+"""The machine on which a result was measured."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 
 def describe(versions: Mapping[str, str]) -> dict[str, Any]:
-    """Name the processor, its load by others, the interpreter and what was measured."""
+    """Name the processor, its load, the interpreter and the measured versions."""
     return {
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "processor": _processor(),
@@ -24,7 +24,7 @@ def describe(versions: Mapping[str, str]) -> dict[str, Any]:
 
 
 def sentence(machine: Mapping[str, Any], wall: float) -> str:
-    """Write for a report what `describe` found, and how long [s] the measurement took."""
+    """Write what `describe` found, and how long [s] the measurement took, for a report."""
     versions = ", ".join(f"{name} ({version})" for name, version in machine["versions"].items())
     load = "unknown" if machine["load"] is None else f"{machine['load']:.1f}"
     return (

@@ -13,12 +13,12 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def page(parts: Iterable[str]) -> str:
-    """Put parts together, each of blocks with empty lines between them."""
+    """Join parts, with empty lines between their blocks."""
     blocks = "\n\n".join(part.strip() for part in parts).split("\n\n")
     return "\n\n".join(_wrap(block) for block in blocks) + "\n"
 
 
 def _wrap(block: str) -> str:
-    """Break the lines of a paragraph anew; figures have changed their lengths."""
+    """Wrap the lines of a paragraph again, because figures change their lengths."""
     is_paragraph = not block.startswith(("|", "#", "-", "!"))
     return textwrap.fill(block, 100, break_on_hyphens=False) if is_paragraph else block

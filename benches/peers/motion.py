@@ -1,4 +1,4 @@
-"""What an engine hands back: poses over time."""
+"""The result of an engine: poses over time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# [s] Paths are compared on this raster.
+# [s] Interval at which paths are compared.
 _RASTER = 0.02
 
 
@@ -19,12 +19,12 @@ class Motion(NamedTuple):
     Attributes
     ----------
     time : ndarray, shape (n,)
-        [s] Of each sample.
+        [s] Time of each sample.
     poses : ndarray, shape (n, bodies, 3)
         [m], [m], [rad] Position and angle of each body.
     penetration : float
-        [m] Deepest overlap with the ground that the engine itself tells, between samples, too; 0 if
-        it tells none.
+        [m] Deepest overlap with the ground that the engine itself reports, also between samples; 0
+        if it reports none.
     """
 
     time: Array
@@ -37,13 +37,13 @@ class Motion(NamedTuple):
         return cls(np.asarray(time, float), np.asarray(poses, float), penetration)
 
     def path(self) -> Array:
-        """[m] Chassis x, y on a raster of equal times, shape (m, 2)."""
+        """[m] Chassis x, y at equal time intervals, shape (m, 2)."""
         raster = np.arange(0.0, self.time[-1], _RASTER)
         chassis = self.poses[:, 0]
         return np.stack([np.interp(raster, self.time, chassis[:, i]) for i in (0, 1)], axis=1)
 
     def distance(self, other: Motion) -> float:
-        """[m] Largest distance of the two paths at equal times."""
+        """[m] Largest distance between the two paths at equal times."""
         a, b = self.path(), other.path()
         shared = min(len(a), len(b))
         return float(np.linalg.norm(a[:shared] - b[:shared], axis=1).max())

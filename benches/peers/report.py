@@ -1,4 +1,4 @@
-"""The report: Markdown from the figures of a run, for the screen and for docs/studies."""
+"""The report: Markdown from the results, for the screen and for docs/studies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rows = list[dict[str, Any]]
 
 
 def render(result: dict[str, Any]) -> str:
-    """Write the report of a run, also of one that has not got to its end."""
+    """Write the report, also of unfinished results."""
     sections: dict[str, Callable[[Any], str]] = {
         "defaults": _defaults,
         "accuracy": _accuracy,
@@ -112,7 +112,7 @@ because no path has to be matched; an engine that converges has to match its pat
 
 
 def _standing(rows: Rows) -> str:
-    """Say how crawler2d stands to the fastest of the others, scene by scene."""
+    """Compare crawler2d with the fastest of the others, scene by scene."""
     lines = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
         found = {

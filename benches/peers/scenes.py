@@ -1,4 +1,4 @@
-"""The scenes, what varies in them, and when a robot has cleared one."""
+"""The scenes, what varies in them, and when a robot has cleared them."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ NAMES = tuple(
     for robot in ("lwa5", "cwa24")
     for wheel in ("round", "gear")
 )
-"""The scenes of the folder."""
+"""Names of the scenes in the folder."""
 
-# [s] Simulated time: the way at the commanded speed, 1.1 m or 5.0 m at 0.4 m/s, and some more.
+# [s] Simulated time: 1.1 m or 5.0 m at 0.4 m/s, and some more.
 _DURATIONS = {"step": 10.0, "field": 15.0}
 
-# [m] Above all ground: the robot on its end, and some more.
+# [m] Above all ground, more than the robot standing on its end.
 _HIGHEST = 0.6
 
 
 class Draw(NamedTuple):
-    """What varies from run to run; the same draws in every engine."""
+    """The values that vary from run to run; the same draws for every engine."""
 
     approach: float = 0.0  # [m] further away from the obstacle
     speed: float = 1.0  # [-] of the wheels
@@ -47,11 +47,11 @@ class Joint:
     a, b : int
         Bodies: the chassis and a wheel.
     pa, pb : tuple of float
-        [m] The pin in the frame of each.
+        [m] The pin in the frame of each body.
     speed : float
         [rad/s] Of b relative to a.
     torque : float
-        [N m] Limit.
+        [N m] Torque limit.
     """
 
     a: int
@@ -64,20 +64,20 @@ class Joint:
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body; the centre of mass is its origin.
+    """A rigid body; its origin is the centre of mass.
 
     Attributes
     ----------
     x, y : float
-        [m] Where it starts.
+        [m] Position at the start.
     angle : float
-        [rad] How it starts.
+        [rad] Angle at the start.
     mass : float
         [kg]
     inertia : float
         [kg m^2] About the centre of mass.
     radius : float
-        [m] Of its circle, 0 if there is none.
+        [m] Radius of its circle, 0 if there is none.
     polygons : tuple of ndarray, shape (n, 2)
         [m] Convex, counter-clockwise.
     """
@@ -93,7 +93,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Scene:
-    """A robot before an obstacle.
+    """A robot in front of an obstacle.
 
     Attributes
     ----------
@@ -102,13 +102,13 @@ class Scene:
     bodies : tuple of Body
         The chassis first.
     joints : tuple of Joint
-        One a wheel.
+        One per wheel.
     boxes : tuple of ndarray, shape (4, 2)
         [m] The ground.
     friction : float
-        [-] Of every pair.
+        [-] Friction of every pair of bodies.
     draw : Draw
-        What has been varied.
+        The values that were varied.
     """
 
     name: str
@@ -124,7 +124,7 @@ class Scene:
         return _DURATIONS[self.name.rsplit("-", 1)[1]]
 
     def vary(self, draw: Draw) -> Scene:
-        """Make a variant of the scene as it is in its file."""
+        """Make a variant of the scene in the file."""
         return replace(
             self,
             bodies=tuple(replace(body, x=body.x - draw.approach) for body in self.bodies),
@@ -146,19 +146,19 @@ class Scene:
         return np.array(points)
 
     def finish(self) -> float:
-        """[m] The chassis x at which the rear axle is beyond the last edge."""
+        """[m] The chassis x at which the rear axle has passed the last edge."""
         rear = min(joint.pa[0] for joint in self.joints)
         return float(self.profile()[-2, 0]) - rear
 
     def keeps_course(self, motion: Motion) -> bool:
-        """Whether the chassis stayed where a driving robot can be; False if it is not finite."""
+        """Whether the chassis stayed where a driving robot can be; False if not finite."""
         profile = self.profile()
         x, y = motion.poses[:, 0, 0], motion.poses[:, 0, 1]
         is_over_ground = (x > profile[0, 0]) & (x < profile[-1, 0])
         return bool((is_over_ground & (y < profile[:, 1].max() + _HIGHEST)).all())
 
     def cleared(self, motion: Motion) -> bool:
-        """Whether the rear axle got beyond the last edge; the same rule for every engine."""
+        """Whether the rear axle passed the last edge; the same rule for every engine."""
         is_beyond = motion.poses[:, 0, 0].max() > self.finish()
         return self.keeps_course(motion) and bool(is_beyond)
 
@@ -187,7 +187,7 @@ def read(path: Path) -> Scene:
 
 
 def draws(count: int, seed: int = 0) -> list[Draw]:
-    """Draw approaches uniform over 50 mm, speeds and frictions within 2 %; the first is nominal."""
+    """Draw approaches over 50 mm, speeds and frictions within 2 %; the first draw is nominal."""
     random = np.random.default_rng(seed)
     low, high = (-0.025, 0.98, 0.98), (0.025, 1.02, 1.02)
     rest = random.uniform(low, high, (count - 1, 3))

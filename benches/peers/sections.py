@@ -1,4 +1,4 @@
-"""The sections of the report that only time and judge: defaults, yardstick."""
+"""The sections of the report that only time and judge: defaults and yardstick."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from benches.peers.engines import at, engine
 from benches.peers.errors import judge
 from benches.peers.timing import interleaved, progress
 
-# [s] What all engines are also timed at.
+# [s] Time step at which all engines are also timed.
 _COMMON_STEP = 2e-3
-# [s] Of the yardstick.
+# [s] Time step of the yardstick.
 _YARDSTICK_STEP = 1e-3
 
 
 def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> list[dict[str, Any]]:
-    """Time and judge every engine at its own defaults, and at these with steps of 2 ms."""
+    """Time and judge every engine at its defaults, and at its defaults with steps of 2 ms."""
     rows = []
     for name in names:
         progress(f"defaults: {name}")
@@ -57,7 +57,7 @@ def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> l
 
 
 def cost(scene: scenes.Scene, setting: Setting, wall: float) -> dict[str, float]:
-    """Express a run's wall time [s] by the step [s], and by the simulated second [-]."""
+    """Return a run's wall time per step [s] and per simulated second [-]."""
     return {
         "per_step": wall / setting.steps(scene.duration),
         "per_second": wall / scene.duration,

@@ -1,4 +1,4 @@
-"""Times of several jobs, interleaved: what disturbs the machine disturbs all of them."""
+"""Interleaved timing of several jobs, so that disturbances of the machine affect all of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Key = TypeVar("Key", bound=Hashable)
 
 
 class Time(NamedTuple):
-    """[s] Of several repeats of a job."""
+    """[s] Times of several repeats of a job."""
 
     least: float
     median: float
@@ -26,7 +26,7 @@ def interleaved(jobs: Mapping[Key, Callable[[], float]], repeats: int) -> dict[K
     jobs : mapping of callables
         Each does its job and returns the seconds [s] it took.
     repeats : int
-        Rounds.
+        Number of rounds.
     """
     rounds = [{key: job() for key, job in jobs.items()} for _ in range(repeats)]
     return {
@@ -39,5 +39,5 @@ _START = time.perf_counter()
 
 
 def progress(text: str) -> None:
-    """Say on stderr what goes on, and since when."""
+    """Write a message and the elapsed time to stderr."""
     sys.stderr.write(f"{time.perf_counter() - _START:6.1f} s  {text}\n")

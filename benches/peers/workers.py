@@ -1,4 +1,4 @@
-"""Pools of processes, and a loop that only counts: what the machine gains by another core."""
+"""Pools of processes, and a loop that only counts, to see the gain by more cores."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SPINS = 2_000_000
 def pools(
     counts: Sequence[int], warm: Callable[[int], None]
 ) -> Iterator[dict[int, ProcessPoolExecutor]]:
-    """Open a pool of each count of processes; each process has done `warm`."""
+    """Open one pool per number of processes; each process has run `warm`."""
     context = get_context("spawn")
     with ExitStack() as stack:
         opened = {n: stack.enter_context(ProcessPoolExecutor(n, context)) for n in counts}
@@ -26,14 +26,14 @@ def pools(
 
 
 def spread(pool: ProcessPoolExecutor, work: Callable[[Any], None], tasks: Sequence[Any]) -> float:
-    """[s] Do all tasks in a pool."""
+    """[s] Run all tasks in a pool."""
     start = time.perf_counter()
     list(pool.map(work, tasks))
     return time.perf_counter() - start
 
 
 def spin(pool: ProcessPoolExecutor, loops: int) -> float:
-    """[s] Count in a pool, that many times."""
+    """[s] Run counting loops in a pool."""
     return spread(pool, _count, [_SPINS] * loops)
 
 

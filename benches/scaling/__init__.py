@@ -1,1 +1,1 @@
-"""What a step costs as the robot, the ground, the threads and the time step grow."""
+"""How the cost of a step grows with robot, ground, threads and time step."""

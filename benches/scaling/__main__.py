@@ -1,4 +1,4 @@
-"""Run the study: progress on stderr, `out/scaling.json`, the page and its figures.
+"""Run the study; it writes progress to stderr, `out/scaling.json`, the page and its figures.
 
 Usage, from the repository root: ``python -m benches.scaling [--quick | --render]``.
 """
@@ -22,7 +22,7 @@ from benches.scaling.threads import threads
 _ROOT = Path(__file__).parents[2]
 _PAGE = _ROOT / "docs" / "studies" / "scaling.md"
 _ROUNDS = 15
-# A round of the points takes most of a minute.
+# One round of the points takes most of a minute.
 _ROUNDS_OF_POINTS = 4
 _QUICK_PIECES = 1_000
 
@@ -31,8 +31,8 @@ def main() -> None:
     """Parse the arguments and run."""
     parser = argparse.ArgumentParser(prog="python -m benches.scaling", description=__doc__)
     kinds = parser.add_mutually_exclusive_group()
-    kinds.add_argument("--quick", action="store_true", help="one round of less, into out/ alone")
-    kinds.add_argument("--render", action="store_true", help="only write page and figures again")
+    kinds.add_argument("--quick", action="store_true", help="one short round, written to out/ only")
+    kinds.add_argument("--render", action="store_true", help="only rewrite the page and figures")
     arguments = parser.parse_args()
     name = "scaling-quick" if arguments.quick else "scaling"
     path = _ROOT / "out" / f"{name}.json"
@@ -49,7 +49,7 @@ def main() -> None:
 
 
 def run(*, quick: bool) -> dict[str, Any]:
-    """Measure it all, panel by panel."""
+    """Measure everything, panel by panel."""
     start, build = time.perf_counter(), c2d.build_info()["build_id"]
     found = machine.describe({"crawler2d": f"{c2d.__version__}, build {build}"})
     rows: list[dict[str, Any]] = []

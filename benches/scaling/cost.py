@@ -1,4 +1,4 @@
-"""What a step costs."""
+"""The cost of a step."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
     Parameters
     ----------
     points : sequence of Point
-        What belongs together.
+        Points of one panel.
     repeats : int
-        Rounds.
+        Number of rounds.
 
     Returns
     -------
     list of dict
-        One a point: `per_step` [s] is the least of the rounds, `final_x` [m] where the robot ends.
+        One per point: `per_step` [s] is the minimum over the rounds, `final_x` [m] the final x.
     """
     ends: dict[int, float] = {}
     jobs: dict[int, Callable[[], float]] = {
@@ -46,7 +46,7 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
 
 
 def _drive(point: Point, index: int, ends: dict[int, float]) -> float:
-    """[s] Drive to the scenario's end: the time of a step in the mean."""
+    """[s] Drive to the scenario's end, and return the mean time per step."""
     scenario = point.scenario
     simulation = c2d.Simulation(scenario)
     start = time.perf_counter()

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from benches.scaling.slopes import Curve, curves
 
-# Okabe and Ito's palette: told apart by colour-blind readers; the markers say it again.
+# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 _MARKERS = ("o", "s", "^", "D")
 _GREY = "#666666"
@@ -26,9 +26,9 @@ _COLUMNS = 3
 
 
 def plot(result: dict[str, Any], folder: Path) -> None:
-    """Write a picture a figure into a folder."""
+    """Write one picture per figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    # Text stays text, and drawings of the same figures are equal.
+    # Text stays text, and equal figures give equal files.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "crawler2d"}):
         for figure in _LABELS:
             drawn = _costs(figure, curves(result["rows"], figure))
@@ -42,7 +42,7 @@ def _save(figure: Figure, path: Path) -> None:
 
 
 def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
-    """Draw us a step, a panel a scene; a line of slope 1 beside."""
+    """Draw the time per step, one panel per scene, with a line of slope 1."""
     panels = list(dict.fromkeys(curve.panel for curve in drawn))
     labels = list(dict.fromkeys(curve.name for curve in drawn))
     styles = dict(zip(labels, _styles(), strict=False))
@@ -68,7 +68,7 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
 
 
 def _time_steps(drawn: Sequence[Curve]) -> Figure:
-    """Draw what a step costs, and what a simulated second costs, a curve a scene."""
+    """Draw the cost of a step and of a simulated second, one curve per scene."""
     figure = Figure(figsize=(8.0, 3.4), layout="constrained")
     step, second = figure.subplots(1, 2)
     for curve, style in zip(drawn, _styles(), strict=False):
@@ -113,7 +113,7 @@ def _styles() -> list[dict[str, Any]]:
 
 
 def _whole_decades(axes: Sequence[Axes]) -> None:
-    """Widen the heights of panels to powers of ten: a decade has too few labels otherwise."""
+    """Extend the y axes to powers of ten, because part of a decade has too few labels."""
     lows, highs = zip(*(ax.dataLim.intervaly for ax in axes), strict=True)
     low, high = math.floor(math.log10(min(lows))), math.ceil(math.log10(max(highs)))
     for ax in axes:
@@ -121,7 +121,7 @@ def _whole_decades(axes: Sequence[Axes]) -> None:
 
 
 def _proportional(ax: Axes) -> None:
-    """Draw what cost in proportion would look like, at the top left, over half a decade."""
+    """Draw proportional cost, at the top left, over half a decade."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     rise = 10.0**0.5
     x, y = (1.3 * left, 1.3 * left * rise), (0.7 * high / rise, 0.7 * high)

@@ -1,4 +1,4 @@
-"""The page of the study: Markdown from the figures of a run."""
+"""The page of the study: Markdown from the results."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from benches.scaling.scenes import BLOCKS, CUT, FLAT, LEVEL, STEP
 from benches.scaling.slopes import Curve, curves
 
 AIM = 1.3
-"""[-] What flat ground in the most pieces may cost at most, over whole ground."""
+"""[-] Largest cost of flat ground in the most pieces, relative to ground in one piece."""
 
 
 def render(result: dict[str, Any]) -> str:
-    """Write the page of a run."""
+    """Write the page from the results."""
     rows = result["rows"]
     return markdown.page(
         [
@@ -130,7 +130,7 @@ ground; a simulated second still becomes cheaper.
 
 
 def _exponents(drawn: Sequence[Curve], panels: tuple[str, str]) -> str:
-    """Tell the ends and the exponents of curves, those of both panels side by side."""
+    """Write the ends and the exponents of the curves, both panels side by side."""
     found = {(curve.panel, curve.name): curve for curve in drawn}
     table = [
         [name, *(_ends(found.get((panel, name))) for panel in panels)]
@@ -148,7 +148,7 @@ def _ends(curve: Curve | None) -> str:
 
 
 def _stopped(rows: Sequence[dict[str, Any]]) -> str:
-    """Name the robots that the step holds up, whose cost is that of a robot at a stop."""
+    """Name the robots that the step stops; their cost is that of a stopped robot."""
     held: dict[str, list[str]] = {}
     for row in rows:
         if row["figure"] == "wheels" and row["panel"] == STEP and row["final_x"] < 0.0:
@@ -158,7 +158,7 @@ def _stopped(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _ratios(rows: Sequence[dict[str, Any]]) -> str:
-    """Compare the finest cuts of flat ground with whole ground."""
+    """Compare the finest cuts of flat ground with ground in one piece."""
     own = {(row["curve"], row["x"]): row["per_step"] for row in rows if row["panel"] == CUT}
     most = max(x for _, x in own)
     names = [name for name, x in own if x == 1]

@@ -22,24 +22,24 @@ TIME_STEPS = (0.5e-3, 1e-3, 2e-3, 4e-3, 8e-3)
 FLAT, STEP = "flat ground", "step of 50 mm"
 CUT, BLOCKS = "flat ground in pieces", "blocks in pieces"
 LEVEL = "level"
-"""The curve's ending for the flat ground whose pieces lie level: it is read as one."""
+"""Suffix of the curve whose pieces lie level and so are read as one piece."""
 
 _SHAPES: tuple[Wheel, ...] = (c2d.RoundWheel(), c2d.GearWheel())
-# [m] Of circumferential wheels: three of them carry the Engineer just so, and 96 overlap.
+# [m] Of circumferential wheels: three of them just carry the Engineer, and 96 overlap.
 _WHEEL_RADIUS = 0.016
 # [m] Thin enough for 48 grousers on such a wheel.
 _TIP_THICKNESS = 1e-3
 
-# [s] 4 m at 0.4 m/s, the way to full speed included; over the step and on.
+# [s] 4 m at 0.4 m/s, including the acceleration; over the step and beyond.
 _DURATIONS = {FLAT: 11.0, STEP: 6.0}
-# [s] On ground in pieces, where each step may be dear.
+# [s] On ground in pieces, where each step may be expensive.
 _SHORT = 2.0
 
-# [m] Ground in pieces reaches from here to there.
+# [m] Extent of the ground in pieces.
 _GROUND = (-1.0, 5.0)
-# [m] Heights of the points: below 1e-9 m they would be read as one straight piece.
+# [m] Heights of the points; below 1e-9 m they would be read as one straight piece.
 JITTER = 1e-7
-# [m] Size of the blocks, the first right before the robot.
+# [m] Size of the blocks, the first right in front of the robot.
 _BLOCK, _HEIGHT = 0.2, 0.03
 
 
@@ -70,7 +70,7 @@ def panels(points: Iterable[Point]) -> dict[tuple[str, str], list[Point]]:
 
 
 def line_of_gears() -> Scenario:
-    """Make the scene of the threads: a line of 3 gear wheels over the step."""
+    """Make the scene for the threads: a line of 3 gear wheels over the step."""
     return _over(c2d.LineOfWheels(3, wheel=c2d.GearWheel()), STEP)
 
 
@@ -126,36 +126,36 @@ def _time_steps() -> Iterator[Point]:
 
 
 def flat(count: int, jitter: float, seed: int = 0) -> Lane:
-    """Cut flat ground into pieces of one length, the heights of their ends drawn.
+    """Cut flat ground into pieces of one length, with random heights of their ends.
 
     Parameters
     ----------
     count : int
-        Pieces.
+        Number of pieces.
     jitter : float
-        [m] Largest height, up and down.
+        [m] Largest height, up or down.
     seed : int
-        Of the heights.
+        Seed of the heights.
     """
     x = np.linspace(*_GROUND, count + 1)
     return _ground(x, np.zeros(count + 1), jitter, seed)
 
 
 def blocks(count: int, seed: int = 0) -> Lane:
-    """Cut the tops of blocks of drawn heights into pieces of one length, vertical faces whole.
+    """Cut the tops of blocks of random heights into pieces of one length.
 
     Parameters
     ----------
     count : int
-        Pieces, the few vertical faces not counted.
+        Number of pieces, not counting the few vertical faces, which stay whole.
     seed : int
-        Of the heights.
+        Seed of the heights.
     """
     begins = np.arange(0.0, _GROUND[1], _BLOCK)
     heights = np.random.default_rng(seed).uniform(0.0, _HEIGHT, begins.size)
     tops = np.concatenate([[0.0], heights])
     x = np.unique(np.concatenate([np.linspace(*_GROUND, count + 1), begins]))
-    # Where a block begins there are two points, one above the other.
+    # At the start of a block there are two points, one above the other.
     before, behind = (np.searchsorted(begins, x, side=side) for side in ("left", "right"))
     twice = np.column_stack([np.full(x.size, True), before != behind]).ravel()
     y = tops[np.column_stack([before, behind])].ravel()

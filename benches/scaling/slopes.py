@@ -29,7 +29,7 @@ class Curve(NamedTuple):
 
 
 def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
-    """Collect the curves of a figure, without those of one point."""
+    """Collect the curves of a figure, except those with only one point."""
     keys = dict.fromkeys((row["panel"], row["curve"]) for row in rows if row["figure"] == figure)
     found = []
     for panel, name in keys:

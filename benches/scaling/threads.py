@@ -1,4 +1,4 @@
-"""Many worlds on more and more threads; processes that only count show what the machine gains."""
+"""Many worlds on an increasing number of threads, beside processes that only count."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from benches.peers.timing import interleaved
 from benches.scaling import scenes
 from crawler2d.parameters.scenario import Scenario
 
-# [m] From world to world: no two do the same.
+# [m] Shift from world to world, so that no two are the same.
 _APPROACH = 5e-4
 
 
 def threads(worlds: int, loops: int, repeats: int) -> list[dict[str, Any]]:
-    """Time a batch of worlds, and loops that count beside, on one core, two, and so on.
+    """Time a batch of worlds, and loops that only count, on one core, two, and so on.
 
     Parameters
     ----------
     worlds : int
-        In the batch.
+        Number of worlds in the batch.
     loops : int
-        For the pools of processes.
+        Number of loops for the pools of processes.
     repeats : int
-        Rounds.
+        Number of rounds.
 
     Returns
     -------
     list of dict
-        One a number of threads, with the speed-ups of both over one thread.
+        One per number of threads, with the speed-ups of both over one thread.
     """
     base = scenes.line_of_gears()
     batch = [base.replace({"start.approach": 0.1 + _APPROACH * i}) for i in range(worlds)]
@@ -57,7 +57,7 @@ def threads(worlds: int, loops: int, repeats: int) -> list[dict[str, Any]]:
 
 
 def _wall_time(batch: Sequence[Scenario], count: int) -> float:
-    """[s] Run a batch, from the scenarios to the runs."""
+    """[s] Wall time of a batch, from the scenarios to the runs."""
     start = time.perf_counter()
     c2d.simulate_many(batch, threads=count, record="summary")
     return time.perf_counter() - start

@@ -1,4 +1,4 @@
-//! The scenes that the benchmarks time, from scenario files that tests and benchmarks share.
+//! The scenes that the benchmarks time, from scenario files shared with the tests.
 
 use crawler2d_core::{Checked, Scenario, TorqueSharing};
 
@@ -7,7 +7,7 @@ mod engine_world;
 
 pub use engine_world::{EngineSettings, EngineWorld};
 
-/// A robot before an obstacle.
+/// A robot in front of an obstacle.
 pub struct Scene {
     /// Name in the report.
     pub name: &'static str,
@@ -24,9 +24,9 @@ macro_rules! scene {
     };
 }
 
-/// A robot of 20 kg on 5 wheels in line or 24 round the outline, round or with 12 or 10 grousers,
-/// before a step of 0.15 m or on a field of 20 blocks; and the Engineer before a step: a belt, without and with
-/// grousers, chains of 22 shoes on a guide and round a sprocket, and with its flippers.
+/// A robot of 20 kg on 5 wheels in line or 24 all round, round or with 12 or 10 grousers, in front of a step of
+/// 0.15 m or on a field of 20 blocks; and the Engineer in front of a step: on a belt, without and with grousers, on
+/// chains of 22 shoes on a guide and with a sprocket, and with its flippers.
 pub const SCENES: [Scene; 13] = [
     scene!("peer_lwa5_round_step"),
     scene!("peer_lwa5_gear_step"),
@@ -52,7 +52,7 @@ impl Scene {
         Scenario::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same as it comes out of the door.
+    /// The validated scenario.
     ///
     /// # Panics
     /// As [`Self::scenario`].
@@ -60,8 +60,8 @@ impl Scene {
         Checked::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same in the bare engine, with as many steps and its own default of 4 substeps; none without
-    /// wheels that have motors of their own.
+    /// The same in the bare engine, with as many steps and its own default of 4 substeps; `None` unless each wheel has
+    /// its own motor.
     pub fn engine(&self) -> Option<EngineWorld> {
         let scenario = self.scenario();
         let settings = EngineSettings {
@@ -72,8 +72,8 @@ impl Scene {
         own_motors.then(|| EngineWorld::new(&scenario, settings))
     }
 
-    /// [s] An instant at which the robot is on its obstacle: a second, and the way to it and a third
-    /// of its length further at the commanded speed.
+    /// [s] An instant at which the robot is on its obstacle: one second, plus the time to the obstacle and a third of
+    /// its length at the commanded speed.
     pub fn in_the_climb(&self) -> f64 {
         let scenario = self.scenario();
         let way = scenario.start.approach + scenario.robot.outline.axle_distance / 3.0;

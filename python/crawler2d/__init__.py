@@ -1,6 +1,6 @@
-"""Simulate tracked robots in side view, whatever the model of their track.
+"""Simulate tracked robots in side view, with any model of their tracks.
 
-One body in the plane, its track as a belt, as wheels or as a mere force, on ground with edges.
+One body in the plane; its track a belt, a set of wheels, a chain of shoes or a mere force.
 Units are SI, angles radians, x forward, y up.
 
 >>> import crawler2d as c2d

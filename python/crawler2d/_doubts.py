@@ -1,4 +1,4 @@
-"""Doubts of the core as warnings, at the line of the user's code that led to them."""
+"""Turn the core's doubts into warnings at the line of user code that led to them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 def warn(path: str, value: float, reason: str) -> None:
-    """Issue one doubt; the core calls this.
+    """Issue one doubt as a warning; called by the core.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """What can go wrong, as exceptions.
 
-Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`, which holds runs
-and lies with them: an interrupt must not be swallowed by ``except Exception``. A `ScenarioWarning`
-stops nothing. All of them survive pickling with their attributes.
+Every exception of the package is a `Crawler2dError`, except `BatchInterrupted`: an interrupt must
+not be swallowed by ``except Exception``. It is defined with the runs, which it holds. A
+`ScenarioWarning` stops nothing. All of them keep their attributes when pickled.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ __all__ = [
 ]
 
 
-# As long as the core keeps a value, and in bits what every float is below.
+# The core cuts values at the same length. A whole number of more bits exceeds every float.
 _LONGEST_TEXT = 80
 _LARGEST_WHOLE = 1024
 
 
 class _Short(reprlib.Repr):
-    """Texts of objects; Python writes no whole number of thousands of digits."""
+    """Short texts of objects; Python refuses to print whole numbers of thousands of digits."""
 
     def repr_int(self, x: int, level: int) -> str:
         if x.bit_length() <= _LARGEST_WHOLE:
@@ -35,7 +35,7 @@ class _Short(reprlib.Repr):
 
 
 def _short(value: object) -> object:
-    """Keep what is small; an arbitrary object may be huge, or refuse to be shown or pickled."""
+    """Keep small values; any other object may be huge, or fail to print or pickle."""
     if isinstance(value, str):
         return value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]}..."
     if isinstance(value, (float, type(None))):
@@ -57,10 +57,10 @@ class ScenarioError(Crawler2dError, ValueError):
     path : str
         Dotted path of the field, such as ``robot.track.count``.
     value : object
-        The value found there. Anything but a number, a text or None is kept as its text; long texts
-        are shortened, and so are whole numbers beyond every float.
+        The value found there. Anything but a number, a string or None is kept as its text; long
+        texts are shortened, and so are whole numbers too large for a float.
     rule : str
-        The rule it breaks, starting with a verb: "must be ...".
+        The rule it breaks: "must be ...".
 
     Examples
     --------
@@ -80,7 +80,7 @@ class ScenarioError(Crawler2dError, ValueError):
         self.rule = rule
 
     def __str__(self) -> str:
-        """Name the field, the rule and the value."""
+        """Return path, rule and value in one line."""
         return f"{self.path} {self.rule}, got {self.value}"
 
 
@@ -94,7 +94,7 @@ class ScenarioWarning(UserWarning):
     value : object
         The value found there.
     reason : str
-        What makes it doubtful, starting with a verb: "is usually ...".
+        Why it is doubtful: "is usually ...".
 
     Examples
     --------
@@ -113,7 +113,7 @@ class ScenarioWarning(UserWarning):
         self.reason = reason
 
     def __str__(self) -> str:
-        """Name the field, the reason and the value."""
+        """Return path, reason and value in one line."""
         return f"{self.path} {self.reason}, got {self.value}"
 
 
@@ -123,11 +123,11 @@ class SimulationDiverged(Crawler2dError, RuntimeError):
     Parameters
     ----------
     message : str
-        What happened.
+        What went wrong.
     step : int, optional
-        Number of the step in which it happened, from 1.
+        Step in which it happened, counted from 1.
     body : str, optional
-        The body whose state it was.
+        The body whose state became non-finite.
     """
 
     step: int | None
@@ -139,25 +139,25 @@ class SimulationDiverged(Crawler2dError, RuntimeError):
         self.body = body
 
     def __str__(self) -> str:
-        """Say what happened."""
+        """Return the message."""
         return str(self.args[0])
 
 
 class RunUnfinished(Crawler2dError, RuntimeError):
-    """The batch was interrupted before this run had ended; it has no result."""
+    """The batch was interrupted before this run was finished; it has no result."""
 
 
 class LimitError(Crawler2dError, ValueError):
-    """A request is larger than this machine or this program can serve.
+    """A request exceeds what this machine or this program can handle.
 
     Parameters
     ----------
     message : str
-        What is too large, its limit and how that is set.
+        What is too large, the limit, and how to set it.
     needed : int, optional
-        [bytes] Memory that the request needs, about.
+        [bytes] Memory that the request needs, approximately.
     left : int, optional
-        [bytes] Memory that it may have.
+        [bytes] Memory available to it.
     """
 
     needed: int | None
@@ -169,9 +169,9 @@ class LimitError(Crawler2dError, ValueError):
         self.left = left
 
     def __str__(self) -> str:
-        """Say what is too large."""
+        """Return the message."""
         return str(self.args[0])
 
 
 class InternalError(Crawler2dError, RuntimeError):
-    """A fault of crawler2d itself, or of the process that it runs in, not of the scenario."""
+    """A fault of crawler2d itself or of the process it runs in, not of the scenario."""

@@ -1,4 +1,4 @@
-//! From the core's plain data to dictionaries of `NumPy` arrays.
+//! Converts the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
     BodyKind, Condition, ContactTable, Edge, Event, Intrusion, Mechanism, Model, Outcome, Record,
@@ -98,7 +98,7 @@ fn events<'py>(py: Python<'py>, events: &[Event]) -> PyResult<Bound<'py, PyDict>
     Ok(columns)
 }
 
-/// What of the ground is inside the track.
+/// The ground inside the track.
 pub(crate) fn intrusions<'py>(
     py: Python<'py>,
     found: &[Intrusion],
@@ -128,7 +128,7 @@ pub(crate) fn intrusions<'py>(
     Ok(columns)
 }
 
-/// A run of a batch that gave no result, with its exception.
+/// A run of a batch without a result, with its exception.
 pub(crate) fn failure(py: Python<'_>, error: PyErr) -> PyResult<Bound<'_, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("error", error.into_value(py))?;
@@ -252,7 +252,7 @@ pub(crate) fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py,
     Ok(columns)
 }
 
-/// The wheels of both sides, those of the left one first.
+/// The wheels of both sides, the left side first.
 pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
     let of_side = || model.wheels().into_iter().map(WheelBody::of_one_side);
     let sides = ["left", "right"];

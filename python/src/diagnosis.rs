@@ -7,7 +7,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A diagnosis; what has no answer is None.
+/// A diagnosis; values that are not known are None.
 pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let names = |set: &Vec<Condition>| PyTuple::new(py, set.iter().map(|c| c.name()));

@@ -10,7 +10,7 @@ mod stepwise;
 
 use pyo3::prelude::*;
 
-/// Makes what the core promises hold at the boundary; see `python/crawler2d/_core.pyi`.
+/// The compiled module; its signatures are in `python/crawler2d/_core.pyi`.
 #[pymodule]
 mod _core {
     use std::sync::Mutex;
@@ -32,14 +32,14 @@ mod _core {
     #[pymodule_export]
     use crate::door::Passed;
 
-    /// Checks a scenario and returns its canonical JSON.
+    /// Validates a scenario and returns its canonical JSON.
     #[pyfunction]
     fn canonical(py: Python<'_>, text: PyBackedStr) -> PyResult<String> {
         let checked = built(py, text, Checked::from_json)?;
         Ok(checked.scenario().to_json())
     }
 
-    /// Checks a scenario, and warns of what is unlikely to be meant.
+    /// Validates a scenario, and warns of values that are unlikely to be meant.
     #[pyfunction]
     fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
         let checked = built(py, text, Checked::from_json)?;
@@ -90,7 +90,7 @@ mod _core {
         convert::wheels(py, checked.model())
     }
 
-    /// One run.
+    /// Simulates one scenario.
     #[pyfunction]
     fn simulate<'py>(
         py: Python<'py>,
@@ -112,7 +112,7 @@ mod _core {
         }
     }
 
-    /// Many runs on several threads, results in order; whatever one comes to, the others are there.
+    /// Simulates many scenarios on several threads; results in order, and an error spoils only its own run.
     #[pyfunction]
     fn simulate_many<'py>(
         py: Python<'py>,
@@ -142,7 +142,7 @@ mod _core {
             list.append(converted.or_else(|error| convert::failure(py, error))?)?;
         }
         match interrupted {
-            // Ctrl-C keeps what is finished; anything else a callback raised goes on unchanged.
+            // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
                 Err(signal)
             }
@@ -150,7 +150,7 @@ mod _core {
         }
     }
 
-    /// A run up to a time, and on from there as another scenario.
+    /// Simulates up to a time, then continues as another scenario.
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
@@ -171,7 +171,7 @@ mod _core {
         convert::run(py, run)
     }
 
-    /// A run up to a time, and a closed belt from there.
+    /// Simulates up to a time, then tries a closed belt.
     #[pyfunction]
     fn counterfactual(
         py: Python<'_>,
@@ -195,9 +195,9 @@ mod _core {
 
     type Results = Vec<Option<Result<Run, Error>>>;
 
-    /// Warns of what is doubtful, then runs all detached from the interpreter.
+    /// Warns of doubts, then runs everything detached from the interpreter.
     ///
-    /// The second item is what interrupted the batch: a signal, or an exception of the callback.
+    /// The second item is what interrupted the batch: a signal or an exception of the callback.
     fn run_all(
         py: Python<'_>,
         scenarios: Vec<Checked>,

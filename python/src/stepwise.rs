@@ -1,4 +1,4 @@
-//! A simulation that Python advances and commands by itself.
+//! A simulation that Python advances and commands step by step.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -13,20 +13,20 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::beside::{beside, built};
 use crate::{convert, diagnosis, errors};
 
-/// One simulation under way; a lock lets any thread use it, one at a time.
+/// A running simulation; a lock lets any thread use it, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
     inner: Arc<Inner>,
-    /// Its steps take so long that Ctrl-C must not wait for one.
+    /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
 }
 
-/// Between two looks for Ctrl-C.
+/// Time between two checks for Ctrl-C.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
-/// A step that takes longer is one that Ctrl-C must not wait for.
+/// A step that takes longer is too slow to let Ctrl-C wait for it.
 const SLOW: Duration = Duration::from_millis(20);
 
-/// None once a step failed: its state is not to be trusted.
+/// `None` after a step has failed, because its state cannot be trusted.
 type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 
 #[pymethods]
@@ -42,7 +42,7 @@ impl Simulation {
         Ok(Self::of(simulation))
     }
 
-    /// The simulation of a snapshot.
+    /// Restores a simulation from a snapshot.
     #[staticmethod]
     fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
         let simulation = beside(py, &Cancel::default(), move || {
@@ -51,7 +51,7 @@ impl Simulation {
         Ok(Self::of(simulation))
     }
 
-    /// Everything that the future depends on.
+    /// Writes the complete state.
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let snapshot = self.with(py, |simulation| Ok(simulation.snapshot()))?;
         Ok(PyBytes::new(py, &snapshot))
@@ -103,12 +103,12 @@ impl Simulation {
                 Ok(slowest)
             })
         })?;
-        // Other work on the machine may have made it look slow.
+        // Other load on the machine may have made it look slow.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         Ok(())
     }
 
-    /// Gives the drivetrain a new command, turns the flippers, or pushes the robot.
+    /// Commands a new speed or new flipper angles, or pushes the robot.
     #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
     fn command(
         &self,
@@ -155,7 +155,7 @@ impl Simulation {
         Ok(state)
     }
 
-    /// What of the ground is inside the envelope of the track now.
+    /// The ground inside the envelope of the track now.
     fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
         convert::intrusions(py, &found)
@@ -170,7 +170,7 @@ impl Simulation {
 
 impl Simulation {
     fn of(simulation: crawler2d_core::Simulation) -> Self {
-        /// Points of a ground, and parts of a robot, from which a step may take long.
+        /// Number of points of the ground and of parts of the robot from which a step may take long.
         const MANY: (usize, usize) = (10_000, 200);
 
         let (points, parts) = simulation.size();
@@ -180,7 +180,7 @@ impl Simulation {
         }
     }
 
-    /// Takes at most so many steps, and no more than fit between two looks for Ctrl-C; how many it took.
+    /// Takes at most so many steps, and no more than fit between two checks for Ctrl-C; returns how many.
     fn steps_between_looks(
         &self,
         simulation: &mut crawler2d_core::Simulation,
@@ -213,7 +213,7 @@ fn call<T>(
     change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,
 ) -> Result<T, Error> {
     let closed = || {
-        let message = "this simulation has failed before and cannot go on";
+        let message = "this simulation has failed before and cannot continue";
         Error::Internal(message.to_owned())
     };
     let mut inner = inner.lock().map_err(|_| closed())?;

@@ -1,4 +1,4 @@
-//! What can go wrong beside a scenario that breaks a rule: a run that cannot go on, a request beyond its memory.
+//! What can go wrong besides a broken rule of a scenario: a run that diverges, a request for too much memory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -9,35 +9,35 @@ use crate::scenario::ScenarioError;
 /// The environment variable that sets the limit of memory, in GiB.
 pub const MEMORY_VARIABLE: &str = "CRAWLER2D_MEMORY";
 
-/// The state of a run became non-finite; everything after `step` would be noise.
+/// The state of a run became non-finite; everything after `step` would be meaningless.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("the state of {body} became non-finite in step {step}")]
 pub struct SimulationError {
-    /// Number of the step, from 1.
+    /// The step, counted from 1.
     pub step: u64,
     /// Which body.
     pub body: String,
 }
 
-/// A request needs more memory than it may have; nothing of it has been done.
+/// A request needs more memory than it may have; nothing has been done.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LimitError {
-    /// It needs more than is left of the limit, or than the system gives.
+    /// It needs more than is left of the limit, or than the system has.
     #[error(
-        "{what} needs about {} MiB of memory and {} MiB are left: the limit is {} GiB (environment variable {MEMORY_VARIABLE}), or less if the system gives less",
+        "{what} needs about {} MiB of memory, but only {} MiB are available: the limit is {} GiB (environment variable {MEMORY_VARIABLE}), or less if the system has less",
         mebibytes(*needed), left >> 20, gibibytes(*limit)
     )]
     Memory {
-        /// What needs it, and perhaps what would need less.
+        /// What needs it and, if possible, what would need less.
         what: String,
-        /// \[bytes\] How much it needs.
+        /// \[bytes\] Memory that it needs.
         needed: u64,
-        /// \[bytes\] How much is left.
+        /// \[bytes\] Memory available.
         left: u64,
-        /// \[bytes\] The limit.
+        /// \[bytes\] Limit of memory.
         limit: u64,
     },
-    /// The environment variable that sets the limit makes no sense.
+    /// The environment variable that sets the limit is invalid.
     #[error("environment variable {MEMORY_VARIABLE} must be a number of GiB > 0, got {0:?}")]
     Setting(String),
 }
@@ -54,7 +54,7 @@ pub enum Error {
     /// See [`LimitError`].
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// A fault of the program, or of the process that it runs in.
+    /// A fault of the program or of the process it runs in.
     #[error("{0}")]
     Internal(String),
     /// The caller asked to stop.
@@ -62,7 +62,7 @@ pub enum Error {
     Interrupted,
 }
 
-/// Turns a panic into an error: it is a fault of the program, and takes no more than its own run.
+/// Turns a panic, which is a fault of the program, into an error, so that it ends only its own run.
 ///
 /// # Errors
 /// Those of the call, and [`Error::Internal`] with the text of a panic.

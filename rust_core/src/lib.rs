@@ -1,6 +1,6 @@
 //! A simulator of tracked robots in the sagittal plane.
 //!
-//! The same robot takes every track model, meets edged ground, and the run says whether it got
+//! The same robot can have any track model and drives over ground with edges; the run says whether it got
 //! over and at what cost. A [`Scenario`] goes in, a [`Run`] comes out:
 //!
 //! ```no_run

@@ -162,7 +162,7 @@ def test_a_branch_is_not_branched_again(seized: c2d.Run) -> None:
     for call in (branch.branch, branch.counterfactual):
         error = refusal(lambda call=call: call(at=1.2))
         assert error.path == "run"
-        assert "branch the run it came from" in error.rule
+        assert "branch the original run" in error.rule
 
 
 def test_a_run_without_a_result_is_not_branched() -> None:

@@ -94,7 +94,7 @@ def test_a_number_of_grousers_left_to_the_program_has_the_bounds_of_a_given_one(
     robot = replace(
         ENGINEER.with_track(track), outline=outline, belly=None, moment_of_inertia=900.0
     )
-    with pytest.raises(errors.ScenarioError, match=f"must leave at most {most} grousers") as caught:
+    with pytest.raises(errors.ScenarioError, match=f"at most {most} grousers on a belt") as caught:
         c2d.simulate(robot, c2d.terrains.flat())
     assert caught.value.path == "robot.outline.grouser_pitch"
 

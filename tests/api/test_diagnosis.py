@@ -48,12 +48,12 @@ STOPS: dict[str, tuple[c2d.Robot, Any]] = {
 }
 SAID = {
     "straddled": "seized, straddled: edge 1 reaches",
-    "undercut": "seized, undercut: edge 1 reaches 49 mm inside the envelope between wheels 1 and 2",
+    "undercut": "seized, undercut: edge 1 reaches 49 mm into the track between wheels 1 and 2",
     "bellied": "seized, bellied: edge 1 reaches",
-    "interlocked": "stalled, interlocked: edge 1 reaches 10 mm inside the envelope between two",
-    "slipping": "slipping: its track slips at 0.40 m/s; twice the friction or a push of ",
-    "stalled": "stalled: its motors stand at their torque limit; more torque or a push of ",
-    "hung up": "hung up: 100 % of the load rests on the belly; a robot without its belly or a push",
+    "interlocked": "stalled, interlocked: edge 1 reaches 10 mm into the track between two",
+    "slipping": "slipping: the track slips at 0.40 m/s; twice the friction or a push of ",
+    "stalled": "stalled: the motors are at their torque limit; more torque or a push of ",
+    "hung up": "hung up: the belly carries 100 % of the load; removing the belly or a push",
     "cycling": "cycling",
 }
 

@@ -31,7 +31,7 @@ def test_an_interrupt_survives_pickling_with_its_runs(run: c2d.Run) -> None:
     refused = c2d.Run(run.scenario, {}, errors.ScenarioError("gravity", -1.0, "must be > 0 m/s^2"))
     rest = c2d.Run(run.scenario, {}, c2d.RunUnfinished("interrupted"))
     copy = pickle.loads(pickle.dumps(c2d.BatchInterrupted([run, rest, refused])))
-    assert str(copy) == "interrupted after 2 of 3 runs; .runs keeps them"
+    assert str(copy) == "interrupted after 2 of 3 runs; .runs holds them"
     assert copy.runs[0].outcome == run.outcome
     assert copy.runs[1].scenario == run.scenario
     assert isinstance(copy.runs[1].error, c2d.RunUnfinished)

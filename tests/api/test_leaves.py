@@ -124,6 +124,13 @@ def test_an_unknown_key_is_refused_in_every_object() -> None:
         assert error.path == dotted((*keys, "unknown_key")), error
 
 
+def test_an_unknown_key_is_answered_with_every_field_once() -> None:
+    for name, keys in OBJECTS:
+        rule = refusal(changed(name, (*keys, "unknown_key"), 1)).rule
+        fields = rule.removeprefix("must be a known field: ").partition(" (")[0].split(", ")
+        assert sorted(fields) == sorted(at(PLAIN[name], keys)), rule
+
+
 def test_a_missing_key_is_refused_in_every_object() -> None:
     for name, keys in OBJECTS:
         for key in at(PLAIN[name], keys):

@@ -202,7 +202,7 @@ def test_a_text_that_is_no_scenario_is_refused(text: str) -> None:
 
 @pytest.mark.parametrize("text", [None, b"{}", 5, {}, Path("scenario.json")])
 def test_what_is_no_text_is_refused(text: Any) -> None:
-    with pytest.raises(c2d.ScenarioError, match="scenario must be a text"):
+    with pytest.raises(c2d.ScenarioError, match="scenario must be a string"):
         Scenario.from_json(text)
 
 
@@ -219,7 +219,7 @@ def test_a_key_that_is_given_twice_is_refused_by_its_path(
 ) -> None:
     text = scenario.to_json()
     assert old in text
-    with pytest.raises(c2d.ScenarioError, match="must be given once") as caught:
+    with pytest.raises(c2d.ScenarioError, match="must be given only once") as caught:
         Scenario.from_json(text.replace(old, new, 1))
     assert caught.value.path == path
 
@@ -243,7 +243,7 @@ def test_a_zero_may_be_written_in_any_way(scenario: Scenario, zero: str) -> None
 def test_a_number_too_small_to_keep_its_digits_is_refused_with_the_reason(
     scenario: Scenario,
 ) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"must be 0 or at least 2\.2.*e-308 in size"):
+    with pytest.raises(c2d.ScenarioError, match=r"must be 0 or at least 2\.2.*e-308 in magnitude"):
         scenario.replace({"start.track_phase": 1e-310}).validate()
 
 

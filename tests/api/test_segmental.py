@@ -101,20 +101,24 @@ def test_the_same_bits_again_and_from_a_snapshot(mechanism: str) -> None:
         ({"shoe_count": 1}, "robot.track.shoe_count", "from 3 to 400"),
         ({"shoe_count": 10_000}, "robot.track.shoe_count", "from 3 to 400"),
         ({"shoe_count": 5}, "robot.track.shoe_count", "must be from 12 to 400 here"),
-        ({"shoe_count": 11}, "robot.track.shoe_count", "no longer than the smaller end is thick"),
+        ({"shoe_count": 11}, "robot.track.shoe_count", "not be longer than the diameter"),
         ({"mechanism": "Sproket"}, "robot.track.mechanism", "did you mean sprocket?"),
         ({"shoe_shape": "trapez"}, "robot.track.shoe_shape", "did you mean trapezoid?"),
         ({"shoe_count": 22.5}, "robot.track.shoe_count", "integer"),
         ({"shoe_shape": "round"}, "robot.track.shoe_shape", "rectangle"),
-        ({"plate_thickness": 0.06}, "robot.track.plate_thickness", "leave a guide"),
+        ({"plate_thickness": 0.06}, "robot.track.plate_thickness", "leave room for a guide"),
         ({"plate_thickness": -1.0}, "robot.track.plate_thickness", "m"),
         ({"pre_tension": 0.0}, "robot.track.pre_tension", "N"),
         ({"pre_tension": float("nan")}, "robot.track.pre_tension", "N"),
         ({"mechanism": "friction"}, "robot.track.mechanism", "guide, sprocket"),
         ({"tensioner_stiffness": 0.0}, "robot.track.tensioner_stiffness", "N/m"),
         ({"tensioner_damping": -1.0}, "robot.track.tensioner_damping", "N s/m"),
-        ({"road_wheel_count": 5}, "robot.track.road_wheel_count", "a guide has no wheels"),
-        ({"return_roller_count": 0}, "robot.track.return_roller_count", "a guide has no wheels"),
+        ({"road_wheel_count": 5}, "robot.track.road_wheel_count", "a guide, which has no wheels"),
+        (
+            {"return_roller_count": 0},
+            "robot.track.return_roller_count",
+            "a guide, which has no wheels",
+        ),
         (
             {"mechanism": "sprocket", "road_wheel_count": 201},
             "robot.track.road_wheel_count",
@@ -139,7 +143,7 @@ def test_ends_too_small_for_any_shoe_say_so() -> None:
     outline = replace(ENGINEER.outline, axle_distance=3.0, front_radius=0.013, grouser_height=0.012)
     error = refusal(replace(chain(plate_thickness=1e-4), outline=outline, belly=None))
     assert error.path == "robot.track.shoe_count"
-    assert "beyond 400" in error.rule
+    assert "more than 400" in error.rule
 
 
 def test_a_shoe_may_weigh_a_three_thousandth_of_the_rest() -> None:

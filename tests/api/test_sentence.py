@@ -61,17 +61,17 @@ def made(contacts: Any = None, **fields: Any) -> c2d.Diagnosis:
     return c2d.Diagnosis(**(plain | {"contacts": Table(columns)} | fields))
 
 
-INSIDE = "edge 3 reaches 41 mm inside the envelope between wheels 3 and 4, at x 0.600 m, y 0.100 m"
-ON_IT = "wheel 2 slides on it with 150 N, wheel 1 with 40 N"
+INSIDE = "edge 3 reaches 41 mm into the track between wheels 3 and 4, at x = 0.600 m, y = 0.100 m"
+ON_IT = "wheel 2 slides on it under a load of 150 N, wheel 1 under 40 N"
 
 
-def test_a_sentence_says_what_is_inside_what_bears_and_what_would_move_it() -> None:
+def test_a_sentence_says_what_is_inside_what_bears_and_what_would_free_it() -> None:
     assert str(made()) == (
-        f"seized, straddled: {INSIDE}; {ON_IT}; a closed track or a push of 61 N would move it on"
+        f"seized, straddled: {INSIDE}; {ON_IT}; a closed track or a push of 61 N would free it"
     )
     assert str(made(counterfactual=BELT)) == (
-        f"seized, straddled: {INSIDE}; {ON_IT}; a push of 61 N would move it on; "
-        "a closed belt gets away"
+        f"seized, straddled: {INSIDE}; {ON_IT}; a push of 61 N would free it; "
+        "a closed belt escapes from the same pose"
     )
 
 
@@ -82,22 +82,43 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_would_move_it() -> N
         (
             {"slides": [False, True, True]},
             "straddled",
-            "wheel 2 bears on it with 150 N and wheel 1 slides on it with 40 N",
+            "wheel 2 bears on it with 150 N and wheel 1 slides on it under a load of 40 N",
         ),
-        ({"in_pocket": [False, True, False]}, "undercut", "wheel 1 slides on it with 40 N"),
+        (
+            {"in_pocket": [False, True, False]},
+            "undercut",
+            "wheel 1 slides on it under a load of 40 N",
+        ),
         # Two contacts of one wheel are one wheel.
-        ({"body": [2, 2, 0]}, "undercut", "wheel 2 slides on it with 190 N"),
-        ({"body_kind": [3, 0, 0]}, "bellied", "the belly slides on it with 150 N, wheel 1 with"),
+        ({"body": [2, 2, 0]}, "undercut", "wheel 2 slides on it under a load of 190 N"),
+        (
+            {"body_kind": [3, 0, 0]},
+            "bellied",
+            "the belly slides on it under a load of 150 N, wheel 1 under",
+        ),
         (
             {"slides": [False] * 3},
             "interlocked",
-            "wheel 2 bears on it with 150 N, wheel 1 with 40 N, a grouser's flank against it",
+            "wheel 2 bears on it with 150 N, wheel 1 with 40 N, with the flank of a grouser against"
+            " it",
         ),
         # Shoes have no numbers that a reader could count.
-        ({"body_kind": [5, 5, 5]}, "undercut", "a shoe slides on it with 150 N, another with 40 N"),
-        ({"body_kind": [6, 4, 4]}, "undercut", "the guide slides on it with 150 N, a grouser with"),
+        (
+            {"body_kind": [5, 5, 5]},
+            "undercut",
+            "a shoe slides on it under a load of 150 N, another under 40 N",
+        ),
+        (
+            {"body_kind": [6, 4, 4]},
+            "undercut",
+            "the guide slides on it under a load of 150 N, a grouser under",
+        ),
         # A hundredth of the force is not worth a name.
-        ({"normal_force": [150.0, 1.0, 60.0]}, "straddled", "wheel 2 slides on it with 150 N;"),
+        (
+            {"normal_force": [150.0, 1.0, 60.0]},
+            "straddled",
+            "wheel 2 slides on it under a load of 150 N;",
+        ),
     ],
 )
 def test_bodies_on_the_edge_are_named_by_what_they_do(
@@ -110,19 +131,19 @@ def test_bodies_on_the_edge_are_named_by_what_they_do(
 @pytest.mark.parametrize(
     ("piece", "said"),
     [
-        ({}, "41 mm inside the envelope between wheels 3 and 4, at x 0.600 m, y 0.100 m;"),
-        ({"x": -1e-9}, "between wheels 3 and 4, at x 0.000 m"),
-        ({"root_depth": 0.029}, "inside the envelope, 29 mm below the roots, between wheels 3"),
-        ({"root_depth": 0.0}, "inside the envelope, not below the roots, between wheels 3 and 4"),
-        ({"root_depth": 0.0, "bodies": (4, 4)}, "the envelope between two grousers of wheel 4, at"),
-        ({"bodies": (4, 4)}, "the envelope at wheel 4, at x 0.600 m"),
+        ({}, "41 mm into the track between wheels 3 and 4, at x = 0.600 m, y = 0.100 m;"),
+        ({"x": -1e-9}, "between wheels 3 and 4, at x = 0.000 m"),
+        ({"root_depth": 0.029}, "into the track (29 mm past the grouser roots) between wheels 3"),
+        ({"root_depth": 0.0}, "into the track (not as far as the grouser roots) between wheels 3"),
+        ({"root_depth": 0.0, "bodies": (4, 4)}, "the track between two grousers of wheel 4, at"),
+        ({"bodies": (4, 4)}, "the track at wheel 4, at x = 0.600 m"),
         # What a chain runs on has no numbers that a reader could count.
-        ({"body_kinds": (9, 9)}, "under the shoes between a road wheel and the next, at x 0.600"),
+        ({"body_kinds": (9, 9)}, "under the shoes between a road wheel and the next, at x = 0.600"),
         ({"body_kinds": (9, 7)}, "under the shoes between a road wheel and the sprocket, at x"),
-        ({"bodies": (44, 44), "body_kinds": (6, 6)}, "the envelope between two shoes, at x 0.600"),
+        ({"bodies": (44, 44), "body_kinds": (6, 6)}, "the track between two shoes, at x = 0.600"),
         (
             {"bodies": (0, 0), "body_kinds": (1, 1), "root_depth": 0.029},
-            "the envelope between two grousers of the belt, at x 0.600 m",
+            "the track between two grousers of the belt, at x = 0.600 m",
         ),
     ],
 )
@@ -140,17 +161,17 @@ POCKET, BELLY, TORQUE, FRICTION = Condition
         # A tie is told without the pocket where a belt has been tried.
         (
             {"cause": ((POCKET,), (FRICTION,)), "counterfactual": BELT},
-            "; twice the friction or a push of 61 N would move it on; a closed belt gets away",
+            "; twice the friction or a push of 61 N would free it; a closed belt escapes",
         ),
-        ({"cause": ((BELLY, TORQUE),)}, "a robot without its belly with more torque or a push"),
-        ({"escape_force": 0.2}, "a closed track or the slightest push would move it on"),
-        ({"escape_force": math.inf}, "a closed track would move it on, but not any push"),
-        ({"cause": (), "escape_force": math.inf}, "; no push would move it on"),
-        ({"escape_force": None}, "; a closed track would move it on"),
+        ({"cause": ((BELLY, TORQUE),)}, "removing the belly plus more torque or a push"),
+        ({"escape_force": 0.2}, "a closed track or the slightest push would free it"),
+        ({"escape_force": math.inf}, "a closed track would free it, but no push would"),
+        ({"cause": (), "escape_force": math.inf}, "; no push would free it"),
+        ({"escape_force": None}, "; a closed track would free it"),
         ({"cause": (), "escape_force": None, "certified": False, "imbalance": 0.034}, "balance"),
     ],
 )
-def test_what_would_move_it_on_is_told_once(fields: Any, said: str) -> None:
+def test_what_would_free_it_is_told_once(fields: Any, said: str) -> None:
     assert said in str(made(**fields))
 
 
@@ -159,41 +180,41 @@ def test_what_would_move_it_on_is_told_once(fields: Any, said: str) -> None:
     [
         (
             {"outcome": "stalled", "stalled_share": 1.0},
-            "stalled: its motors stand at their torque limit; a push of 61 N would move it on, but "
-            "not more torque",
+            "stalled: the motors are at their torque limit; a push of 61 N would free it, but "
+            "more torque would not",
         ),
         (
             {"outcome": "stalled", "stalled_share": 0.6, "escape_force": math.inf},
-            "stalled: 60 % of its motors stand at their torque limit; neither more torque nor any "
-            "push would move it on",
+            "stalled: 60 % of the motors are at their torque limit; neither more torque nor any "
+            "push would free it",
         ),
         (
             {"outcome": "stalled", "stalled_share": 1.0, "escape_force": None},
-            "stalled: its motors stand at their torque limit; more torque would not move it on",
+            "stalled: the motors are at their torque limit; more torque would not free it",
         ),
         (
             {"outcome": "slipping", "escape_force": 20.0},
-            "slipping: its track slips at 0.40 m/s; a push of 20 N would move it on, but not twice "
-            "the friction",
+            "slipping: the track slips at 0.40 m/s; a push of 20 N would free it, but twice the "
+            "friction would not",
         ),
         (
             {"outcome": "hung_up", "belly_share": 0.995, "cause": ((BELLY,),)},
-            "hung up: 100 % of the load rests on the belly; a robot without its belly or a push of "
-            "61 N would move it on",
+            "hung up: the belly carries 100 % of the load; removing the belly or a push of "
+            "61 N would free it",
         ),
         (
             {"outcome": "cycling", "cause": ((FRICTION,),), "progress": 0.031},
-            "cycling: its track slips at 0.40 m/s; it creeps on at 3 % of what is commanded; twice "
-            "the friction or a push of 61 N would move it on",
+            "cycling: the track slips at 0.40 m/s; it still creeps at 3 % of the commanded speed; "
+            "twice the friction or a push of 61 N would free it",
         ),
         (
             {"outcome": "slipping", "certified": False, "escape_force": None, "imbalance": 0.034},
-            "slipping: its track slips at 0.40 m/s; no contact forces balance it: 3.4 % of the "
-            "weight is missing",
+            "slipping: the track slips at 0.40 m/s; no contact forces balance it: the smallest "
+            "residual is 3.4 % of the weight",
         ),
         (
             {"outcome": "slipping", "certified": False, "escape_force": None, "imbalance": None},
-            "slipping: its track slips at 0.40 m/s; its balance could not be computed",
+            "slipping: the track slips at 0.40 m/s; the balance of forces could not be computed",
         ),
     ],
 )
@@ -208,9 +229,15 @@ def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
 @pytest.mark.parametrize(
     ("belt", "said"),
     [
-        ({}, "; a closed belt gets away"),
-        ({"freed": False, "distance": 0.0123}, "; a closed belt gets 12 mm further"),
-        ({"freed": False, "distance": 0.0}, "; a closed belt gets no further"),
+        ({}, "; a closed belt escapes from the same pose"),
+        (
+            {"freed": False, "distance": 0.0123},
+            "does not escape from the same pose either (it advances 12 mm)",
+        ),
+        (
+            {"freed": False, "distance": 0.0},
+            "; a closed belt does not escape from the same pose either",
+        ),
     ],
 )
 def test_a_tried_belt_ends_the_sentence(belt: Any, said: str) -> None:
@@ -223,8 +250,8 @@ def test_the_body_of_a_closed_track_is_no_wheel(kind: int, name: str) -> None:
     contacts = {"body": [0, 0, 0], "body_kind": [kind] * 3, "in_pocket": [True, False, False]}
     piece = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(kind, kind))
     said = str(made(contacts, intrusion=piece))
-    assert f"inside the envelope at {name}, at x 0.600 m" in said
-    assert f"; {name} slides on it with 150 N;" in said
+    assert f"into the track at {name}, at x = 0.600 m" in said
+    assert f"; {name} slides on it under a load of 150 N;" in said
     assert "wheel" not in said
 
 

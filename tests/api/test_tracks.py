@@ -78,12 +78,12 @@ def test_an_impossible_radius_is_refused(model: Any, path: str, radius: Any) -> 
 @pytest.mark.parametrize(
     ("wheel", "field", "reason"),
     [
-        ({"grouser_height": 0.064}, "grouser_height", "no root circle is left"),
-        ({"grouser_height": 0.07}, "grouser_height", "no root circle is left"),
+        ({"grouser_height": 0.064}, "grouser_height", "to leave a root circle"),
+        ({"grouser_height": 0.07}, "grouser_height", "to leave a root circle"),
         ({"grouser_count": 12, "tip_thickness": 0.03}, "tip_thickness", "they would overlap"),
         ({"grouser_count": 200}, "tip_thickness", "they would overlap"),
         ({"grouser_count": 12, "base_thickness": 0.03}, "base_thickness", "they would overlap"),
-        ({"base_thickness": 0.004}, "base_thickness", "must not be below the thickness of the tip"),
+        ({"base_thickness": 0.004}, "base_thickness", "must be at least the thickness at the tip"),
     ],
 )
 def test_a_gear_that_cannot_be_is_refused_with_the_reason(

@@ -32,7 +32,7 @@ def test_a_tuple_is_no_number_and_no_text(scenario: Scenario, path: str, value: 
 
 @pytest.mark.parametrize("number", [float("inf"), float("-inf"), float("nan"), 10**400, 1.0])
 def test_a_number_is_no_name(scenario: Scenario, number: float) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"robot.name must be a text"):
+    with pytest.raises(c2d.ScenarioError, match=r"robot.name must be a string"):
         scenario.replace({"robot.name": number}).validate()
 
 

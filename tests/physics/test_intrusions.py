@@ -277,5 +277,5 @@ def test_the_criterion_must_leave_room_inside_every_wheel() -> None:
         c2d.terrains.step(0.05),
         criteria=c2d.SeizureCriteria(intrusion_depth=0.01),
     )
-    with pytest.raises(c2d.ScenarioError, match=r"^criteria\.intrusion_depth must be below"):
+    with pytest.raises(c2d.ScenarioError, match=r"^criteria\.intrusion_depth must be less than"):
         scenario.validate()

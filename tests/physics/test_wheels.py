@@ -150,8 +150,8 @@ def test_tight_wheels_larger_than_half_the_outline_are_refused(
     error = refusal(ring(robot, count))
     assert error.path == "robot.track.count"
     assert error.rule == (
-        f"must be larger: so few wheels would have to exceed {largest} m, half the outline's"
-        " radius, to touch; give wheel_radius for spaced ones"
+        f"must be larger: to touch each other, so few wheels would need a radius above {largest} m,"
+        " half the outline's (give wheel_radius to space them instead)"
     )
     Scenario(ring(robot, count, largest), c2d.terrains.flat()).validate()
 
@@ -160,7 +160,7 @@ def test_tight_wheels_larger_than_half_the_outline_are_refused(
 def test_circumferential_wheels_are_smaller_than_the_smaller_end(radius: float) -> None:
     error = refusal(TAPERED.with_track(c2d.CircumferentialWheels(12, wheel_radius=radius)))
     assert error.path == "robot.track.wheel_radius"
-    assert error.rule == "must be below the smaller radius of the outline, 0.05 m"
+    assert error.rule == "must be less than the smaller radius of the outline, 0.05 m"
 
 
 def test_a_line_of_wheels_tapers_with_the_outline() -> None:

@@ -279,7 +279,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
     out = tmp_path / "out"
     assert main(["--quick", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
-    assert "torque 6.0 N m a sprocket" in printed
+    assert "torque 6.0 N m per sprocket" in printed
     text = (out / "study.txt").read_text(encoding="utf-8")
     assert set(text.splitlines()) <= set(printed.splitlines())
     for name in MODELS:
@@ -300,7 +300,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
     for replay in replays:
         assert (out / "replays" / replay["file"]).exists()
         assert f"{out}/replays/{replay['file']}" in text
-    assert "Gear wheels against round ones on steps" in text
+    assert "Gear wheels beside round ones on steps" in text
     for picture in ("rates.png", "phases.png", "posts.png"):
         assert (out / picture).stat().st_size > 10_000
 

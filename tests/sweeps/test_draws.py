@@ -261,7 +261,7 @@ def test_what_is_asked_for_is_drawn_as_it_is_and_may_scale_what_is_swept() -> No
     assert refused == [plan.drawn["terrain.friction"] > 100.0 for plan in plans]
     assert 0 < sum(refused) < 10
     lanes = VARIANTS["belt-lanes"]
-    with pytest.raises(c2d.ScenarioError, match="must name a field of Lanes"):
+    with pytest.raises(c2d.ScenarioError, match="must be a known field: Lanes has"):
         Variation.of(lanes, vary, []).draw(lanes, dict.fromkeys(vary, 0.5))
 
 
@@ -276,7 +276,7 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
         with pytest.raises(c2d.ScenarioError) as caught:
             Variation.of(cell, {path: distribution}, []).draw(cell, {path: 0.5})
         assert str(caught.value) == (
-            f"{path} must be drawn by uniform_int(low, high), for it is a whole number,"
+            f"{path} must be drawn with uniform_int(low, high), because it is a whole number,"
             f" got {distribution}"
         )
     cell = VARIANTS["line-flat"]
@@ -290,7 +290,7 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
 def test_only_a_number_is_scaled(path: str, value: Any) -> None:
     base = Scenario(ROBOT, c2d.terrains.step(0.05))
     variation = Variation.of(base, {path: scaled(0.9, 1.1)}, [])
-    with pytest.raises(c2d.ScenarioError, match=r"must be a number to be scaled, got ") as caught:
+    with pytest.raises(c2d.ScenarioError, match=r"must be a number, because .*, got ") as caught:
         variation.draw(base, {path: 0.5})
     assert caught.value.path == path
     assert value is None or caught.value.value == value

@@ -25,7 +25,7 @@ from tests.sweeps.small import BASE, BRIEF, MODELS, quiet, refusal
         (
             {"robot.track": MODELS, "robot.track.count": [3]},
             "cell[track=belt, robot_track_count=3].robot.track.count",
-            "a field of BeltTrack",
+            "BeltTrack has no fields",
         ),
         ({"terrain.height": [0.1, -0.1]}, "cell[height=-0.1].terrain.height", "> 0 m"),
         ({"terrain.height": [0.1, np.nan]}, "cell[height=nan].terrain.height", "must be"),

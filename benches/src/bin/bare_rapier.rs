@@ -1,4 +1,4 @@
-//! The bare engine on one of the scenes of `benches/peers`: a job as JSON in, its figures out.
+//! Runs the bare engine on one of the scenes of `benches/peers`: reads a job as JSON, writes its results.
 
 use std::io;
 use std::time::Instant;
@@ -6,14 +6,14 @@ use std::time::Instant;
 use rapier2d_f64::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// What to do.
+/// A job.
 #[derive(Deserialize)]
 struct Job {
     scene: Scene,
     settings: Settings,
     /// [s] Simulated time.
     duration: f64,
-    /// Timed runs, each in a world of its own.
+    /// Number of timed runs, each in a world of its own.
     repeats: usize,
     /// Steps between two recorded poses; 0 records none.
     sample_every: usize,
@@ -25,7 +25,7 @@ struct Settings {
     /// [s] Time of a step.
     time_step: f64,
     substeps: usize,
-    /// Internal sweeps of a substep.
+    /// Internal solver iterations per substep.
     iterations: usize,
     /// Whether lengths and stiffness suit parts of a few millimetres, or are the engine's defaults.
     tuned: bool,
@@ -81,7 +81,7 @@ struct Pin {
 struct Motor {
     /// [rad/s] Of b relative to a.
     speed: f64,
-    /// [N m] Limit.
+    /// [N m] Torque limit.
     torque: f64,
 }
 
@@ -91,14 +91,14 @@ struct GroundBox {
     mu: f64,
 }
 
-/// What came out.
+/// The results.
 #[derive(Serialize)]
 struct Figures {
     /// [s] Wall time of each timed run, without building its world.
     wall: Vec<f64>,
-    /// [s] Of each recorded sample.
+    /// [s] Time of each recorded sample.
     time: Vec<f64>,
-    /// [m], [m], [rad] Of each body at each sample, one after another.
+    /// [m], [m], [rad] Pose of each body at each sample, one after another.
     poses: Vec<f64>,
 }
 
@@ -180,7 +180,7 @@ impl Bare {
                 .local_anchor2(vector(pin.pb))
                 .contacts_enabled(false)
                 .motor_model(MotorModel::ForceBased)
-                // So steep that the limit, not the gain, is what limits.
+                // A gain so high that only the torque limit matters.
                 .motor_velocity(pin.motor.speed, 1e4)
                 .motor_max_force(pin.motor.torque);
             world.insert_impulse_joint(bodies[pin.a], bodies[pin.b], joint);
@@ -197,7 +197,7 @@ impl Bare {
     }
 }
 
-/// Lengths of a grouser's scale and stiff contacts, as this project's tests use the engine.
+/// Lengths on the scale of a grouser and stiff contacts, as this project's tests use the engine.
 fn set(parameters: &mut IntegrationParameters, settings: &Settings) {
     parameters.dt = settings.time_step;
     parameters.num_solver_iterations = settings.substeps;
@@ -216,7 +216,7 @@ fn set(parameters: &mut IntegrationParameters, settings: &Settings) {
 
 fn ground(scene: &Scene, kind: &GroundKind) -> Vec<ColliderBuilder> {
     if *kind == GroundKind::Polyline {
-        // Outside is on the right of each segment: the way back.
+        // The outside is on the right of each segment, so go backwards.
         let points = scene.profile.iter().rev().copied().map(vector).collect();
         return vec![ColliderBuilder::oriented_polyline(points, None)];
     }

@@ -1,1 +1,1 @@
-"""What everything else stands on: arrays, tables, units, optional packages."""
+"""What everything else builds on: arrays, tables, units, optional packages."""

@@ -1,4 +1,4 @@
-"""Which numbers and arrays a parameter takes, and their one frozen form."""
+"""Numbers and arrays that a parameter accepts, and the one frozen form they are kept in."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 
-# What a row of so many numbers stands for.
+# What a row of two or three numbers means.
 _ROWS = {2: "a point (x, y)", 3: "a circle (x, y, radius)"}
 
-# Every whole number up to here is a float64.
+# float64 holds every whole number up to here exactly.
 _EXACT = 2**53
 
 
 def frozen_scalar(value: Any, *, whole: bool) -> Any:
-    """Take a NumPy scalar or an array of no dimension as the Python number it holds.
+    """Convert a NumPy scalar or a 0-d array to the Python number it holds.
 
     Parameters
     ----------
     value : object
-        Anything; what is no number stays as it is, for the validator to refuse.
+        Anything; what is not a number is returned unchanged, for the validator to reject.
     whole : bool
-        Whether the field is a whole number; where it is not, whole numbers become floats if exact.
+        Whether the field takes whole numbers; if not, they become floats where that is exact.
 
     Returns
     -------
     object
-        An equal Python object; there is one zero, 0.0.
+        An equal Python object; -0.0 becomes 0.0.
     """
     if isinstance(value, np.generic) or (type(value) is np.ndarray and value.ndim == 0):
         value = value.item()
     if isinstance(value, np.longdouble) and np.longdouble(float(value)) == value:
-        value = float(value)  # its .item() is itself
-    # A class of one's own may write and compare itself otherwise; and there is one zero.
+        value = float(value)  # .item() returns a longdouble again
+    # A subclass may print and compare differently; adding 0.0 turns -0.0 into 0.0.
     if isinstance(value, float):
         return float(value) + 0.0
     if isinstance(value, int) and not isinstance(value, bool):
@@ -45,12 +45,12 @@ def frozen_scalar(value: Any, *, whole: bool) -> Any:
 
 
 def real_number(value: Any, path: str) -> float:
-    """Take any real number as a float.
+    """Convert any real number to a float.
 
     Raises
     ------
     ScenarioError
-        If it is none; a bool or a text is none.
+        If it is not a number; a bool or a string is not.
     """
     number = frozen_scalar(value, whole=False)
     if type(number) is not float:
@@ -59,28 +59,28 @@ def real_number(value: Any, path: str) -> float:
 
 
 def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
-    """Copy an array-like of real numbers to tuples of floats, without losing a bit.
+    """Copy an array-like of real numbers to tuples of floats, exactly.
 
     Parameters
     ----------
     value : array_like, shape (n, columns) or (columns,)
-        Any layout, byte order, and width of float or integer; None stays None.
+        Any layout, byte order and size of float or integer; None stays None.
     path : str
         Path of the field, for messages.
     rows : bool
         True for a list of rows; False for one row.
     columns : int
-        Numbers of a row: 2 of a point (x, y), 3 of a placed circle (x, y, radius).
+        Numbers per row: 2 for a point (x, y), 3 for a circle (x, y, radius).
 
     Returns
     -------
     tuple or None
-        Of rows as tuples, or one such tuple.
+        A tuple of rows, or one row.
 
     Raises
     ------
     ScenarioError
-        If the values are no real numbers, are masked, lose digits as float64 or are misshapen.
+        If the values are not real numbers, are masked, do not fit in float64 or have a wrong shape.
     """
     if value is None:
         return None
@@ -104,7 +104,7 @@ def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
         exact = array.astype(np.float64)
     if not _same_numbers(array, exact):
         raise ScenarioError(path, _described(value, array), "must hold numbers that fit in float64")
-    numbers = (exact + 0.0).tolist()  # there is one zero
+    numbers = (exact + 0.0).tolist()  # -0.0 becomes 0.0
     return tuple(map(tuple, numbers)) if rows else tuple(numbers)
 
 
@@ -115,7 +115,7 @@ def _same_numbers(array: np.ndarray[Any, Any], exact: np.ndarray[Any, Any]) -> b
 
 
 def _bad_row(value: Any, path: str, columns: int) -> ScenarioError:
-    """Find the first row of a ragged list that has not as many numbers."""
+    """Find the first row of a ragged list that has the wrong number of numbers."""
     for index, row in enumerate(value if isinstance(value, (list, tuple)) else ()):
         try:
             shape = np.shape(row)
@@ -127,7 +127,7 @@ def _bad_row(value: Any, path: str, columns: int) -> ScenarioError:
 
 
 def _described(value: Any, array: np.ndarray[Any, Any]) -> object:
-    """Keep a message short: an array by its type and shape, anything else by itself."""
+    """Describe an array by type and shape, to keep messages short; return the rest as it is."""
     if isinstance(value, np.ndarray):
         return f"{array.dtype} array of shape {array.shape}"
     return value

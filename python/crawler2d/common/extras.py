@@ -1,4 +1,4 @@
-"""Optional packages: imported when first used, and named with their extra when missing."""
+"""Optional packages: imported on first use; if one is missing, the error names its extra."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ def extra(module: str, name: str) -> Any:
     module : str
         Dotted name of the module.
     name : str
-        The extra of crawler2d that brings it.
+        The extra of crawler2d that installs it.
 
     Raises
     ------
     ImportError
-        If it is not installed; the message names the extra. If it is, but its import fails; the
-        message says why.
+        If it is not installed (the message names the extra), or fails to import (the message says
+        why).
     """
     top = module.partition(".")[0]
     try:
@@ -43,9 +43,9 @@ def extra(module: str, name: str) -> Any:
 
 @contextlib.contextmanager
 def _without_interrupt() -> Iterator[None]:
-    """Answer Ctrl-C afterwards: what was imported by half can often not be imported again.
+    """Delay Ctrl-C until the import is done: what is half imported often cannot be imported again.
 
-    Nor does it help to forget the half: pandas and matplotlib then fail the more.
+    Removing the half from `sys.modules` does not help: pandas and matplotlib still fail.
     """
     handler = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):

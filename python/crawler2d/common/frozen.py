@@ -1,4 +1,4 @@
-"""What comes back of a run is not changed by accident: arrays and figures that refuse to be."""
+"""Arrays and figures of a run that cannot be changed by accident."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["Figures", "read_only"]
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """View an array without the right to write, and without a way to give it back.
+    """Return a view of an array that is read-only and cannot be made writeable again.
 
-    NumPy lets a view be written to again if an array under it can be, or the owner of its memory.
-    The core's memory has no owner that could; any other may be someone else's, and is copied.
+    NumPy lets a view be made writeable again if its base array, or the owner of the memory, is
+    writeable. The owner of the core's memory never is; memory of any other owner is copied.
     """
     under = [array]
     while isinstance(under[-1].base, np.ndarray):
@@ -29,7 +29,7 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _is_the_cores(owner: object) -> bool:
-    """Tell the owner of memory that no Python code can reach from arrays that own theirs."""
+    """Whether the memory belongs to the core, where no Python code can reach it."""
     if owner is None:
         return False
     try:
@@ -48,18 +48,18 @@ class Figures(dict[str, float]):
     >>> figures["time"] = 3.0
     Traceback (most recent call last):
         ...
-    TypeError: these figures cannot be changed; dict(figures) is a copy that can
+    TypeError: these figures are read-only; dict(figures) is a copy that can be changed
     """
 
     __slots__ = ()
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
-        """Say why not."""
-        raise TypeError("these figures cannot be changed; dict(figures) is a copy that can")
+        """Raise, and say why."""
+        raise TypeError("these figures are read-only; dict(figures) is a copy that can be changed")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse
 
     def __reduce__(self) -> tuple[type[Figures], tuple[dict[str, float]]]:
-        """Pickle and copy the figures as a whole: one by one they cannot be set."""
+        """Pickle and copy all figures at once, because single ones cannot be set."""
         return Figures, (dict(self),)

@@ -1,4 +1,4 @@
-"""A table of equal columns: contacts, edges and events of a run."""
+"""A table of columns: contacts, edges and events of a run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Table"]
 
-# Rows of a table that a notebook shows.
+# How many rows of a table a notebook shows.
 _SHOWN = 10
 
 
@@ -26,7 +26,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
     Parameters
     ----------
     columns : mapping of str to array_like
-        The columns in order; a list becomes an array of texts, or of objects for tuples.
+        The columns in order; a list becomes an array of strings, or of objects if it holds tuples.
 
     Examples
     --------
@@ -37,7 +37,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     __slots__ = ("_columns",)
 
-    # Comparing columns has no single answer, as with arrays: a table equals only itself.
+    # As with arrays, comparing columns has no single answer: a table equals only itself.
     __eq__ = object.__eq__
     __hash__ = object.__hash__
 
@@ -65,7 +65,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
         return Table, (self._columns,)
 
     def __repr__(self) -> str:
-        """Name size and columns."""
+        """Show the number of rows and the column names."""
         return f"Table({len(self)} rows: {', '.join(self)})"
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -91,7 +91,7 @@ class Table(Mapping[str, "NDArray[Any]"]):
             + "</tr>"
             for i in range(min(len(self), _SHOWN))
         )
-        more = f"<p>{len(self)} rows, {_SHOWN} shown</p>" if len(self) > _SHOWN else ""
+        more = f"<p>{len(self)} rows, first {_SHOWN} shown</p>" if len(self) > _SHOWN else ""
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 
@@ -100,7 +100,7 @@ def _column(values: Any) -> NDArray[Any]:
         return values
     rows = list(values)
     if any(isinstance(row, (tuple, list)) for row in rows):
-        # Tuples of equal length would otherwise become a second dimension.
+        # NumPy would turn tuples of equal length into a second dimension.
         column = np.empty(len(rows), dtype=object)
         for index, row in enumerate(rows):
             column[index] = tuple(row)

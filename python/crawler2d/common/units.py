@@ -1,4 +1,4 @@
-"""Units of what a sweep can vary and of what a run measures."""
+"""Units of the fields that a sweep can vary and of the metrics of a run."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in name
 _FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
 
 _COLUMNS = {"drive.schedule": ("s", "m/s"), "drive.gait.schedule": ("s", "rad")}
-"""Units of rows whose numbers have not all the same."""
+"""Units by column, for arrays whose columns differ."""
 
 
 def unit_of(path: str) -> str | None:
-    """Look up the unit of the field or the element at a path; None if it is no number."""
+    """Look up the unit of the field or element at a path; None if it is not a number."""
     field, *indices = path.replace("]", "").split("[")
     if field in _COLUMNS:
         return _COLUMNS[field][int(indices[1])] if len(indices) == 2 else None

@@ -13,42 +13,44 @@ __all__ = ["Flippers"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flippers(Parameters):
-    """Arms of one form at one end of a robot or at both, one on either side of it.
+    """Identical arms at one end of a robot or at both, one on each side.
 
-    An arm pivots on the end axle, and a track runs round it from there to an axle at its tip. The
-    motors of the robot's tracks drive it, at the speed of the robot's tracks over the chassis: the
-    sprocket sits on the pivot, so that a belt also runs along an arm that turns. A motor of its own
-    turns the arm to the commanded angle, as fast as its rate and its torque allow, and acts back on
-    the chassis. Arms do not touch the chassis or each other. `Drive.gait` moves them.
+    An arm pivots on the end axle, and a track runs round it from there to an axle at its tip. It is
+    driven by the motors of the robot's tracks, at the same speed over the chassis. The sprocket
+    sits on the pivot, so that the belt also runs along an arm that turns. A motor of its own turns
+    the arm to the commanded angle, as fast as its rate and torque limits allow, and its torque
+    reacts on the chassis. Arms do not touch the chassis or each other. `Drive.gait` moves them.
 
-    The mass figures of a `Robot` are those of the whole robot, arms included. `Robot.with_flippers`
-    mounts arms on a robot and counts their masses, `Robot.without_flippers` takes both off again;
-    the field `robot.flippers` alone, set to other arms or to None, leaves the whole as heavy as it
-    was.
+    The mass, centre of mass and moment of inertia of a `Robot` are those of the whole robot, arms
+    included. `Robot.with_flippers` mounts arms and adds their mass, `Robot.without_flippers` takes
+    arms and mass off again. Replacing or clearing the field `robot.flippers` alone leaves the mass
+    of the robot unchanged.
 
     Parameters
     ----------
     length : float
-        [m] From the pivot to the axle at the tip.
+        [m] Distance from the pivot to the axle at the tip.
     root_radius, tip_radius : float
-        [m] Radius about the pivot and about the axle at the tip, to the grouser tips. The grousers
-        are those of `robot.outline`. A line of wheels with a `wheel_radius` has that one instead.
+        [m] Radii at the pivot and at the tip, measured to the grouser tips. The grousers
+        are those of `robot.outline`. A line of wheels with a `wheel_radius` has that radius
+        instead.
     mass : float
-        [kg] Of one arm with its track; part of `robot.mass`. It is spread evenly from the pivot to
-        the axle at the tip.
+        [kg] Of one arm with its track; part of `robot.mass`. It is spread evenly between pivot and
+        tip axle.
     ends : {"front", "rear", "both"}
-        Where they are.
+        The ends of the robot that have arms.
     angle : float
-        [rad] At time 0: 0 points away from the robot along its axis, upwards > 0.
+        [rad] At time 0. 0 points away from the robot along its axis, upwards > 0.
     rate_limit : float
-        [rad/s] Fastest turn over the chassis.
+        [rad/s] Largest turning rate relative to the chassis.
     torque_limit : float
-        [N m] Largest torque of the motor of one arm; beyond it the arm gives way.
+        [N m] Largest torque of the motor of one arm; under more load the arm gives way.
     track : Track, optional
-        How their tracks are modelled: any model but a chain of shoes. Places of `HybridWheels` are
-        counted from midway between the arm's axles. None takes the model of the robot's track, a
-        belt with grousers where that is a chain, more small wheels all round where a tip needs
-        them; it must be given where that has its wheels placed by hand.
+        How their tracks are modelled: any model but a chain of shoes. The placements of
+        `HybridWheels` are measured from midway between the arm's axles. None takes the model of the
+        robot's track, with two exceptions: for a chain it takes a belt with grousers, and for small
+        wheels all round it adds wheels where a tip needs more. If the robot's wheels are placed by
+        hand, the model must be given.
 
     Examples
     --------

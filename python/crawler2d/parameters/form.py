@@ -1,4 +1,4 @@
-"""The form of a scenario: its fields, their defaults and its JSON, whatever robot and ground."""
+"""The form of a scenario: its fields, their defaults and its JSON, for any robot and ground."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Form"]
 
 @dataclass(frozen=True, slots=True)
 class Form(Parameters):
-    """A scenario to those whom it imports: a robot that asks the core about itself fills it in.
+    """The base of `Scenario`, for modules that `Scenario` imports, such as `robot`.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Form(Parameters):
         Parameters
         ----------
         indent : int, optional
-            Spaces a level; None writes one line.
+            Spaces per level; None writes one line.
 
         Returns
         -------
@@ -49,7 +49,7 @@ class Form(Parameters):
         Raises
         ------
         ScenarioError
-            If a field holds what JSON cannot.
+            If a field holds something JSON cannot represent.
         """
         separators = (",", ":") if indent is None else (",", ": ")
         return json.dumps(to_plain(self), allow_nan=False, indent=indent, separators=separators)

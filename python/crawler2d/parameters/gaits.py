@@ -12,14 +12,14 @@ __all__ = ["Climb", "Gait", "Hold"]
 
 @dataclass(frozen=True, slots=True)
 class Hold(Parameters):
-    """Hold the flippers at an angle, at others from given times on.
+    """Hold the flippers at an angle, which a schedule can change.
 
     Parameters
     ----------
     angle : float
-        [rad] Over the chassis, upwards > 0; of the flippers at both ends.
+        [rad] Relative to the chassis, upwards > 0; of the flippers at both ends.
     schedule : array_like, shape (n, 2), optional
-        Times [s], rising, and the angles [rad] that hold from then on.
+        Increasing times [s], and the angles [rad] that apply from then on.
 
     Examples
     --------
@@ -39,22 +39,22 @@ class Hold(Parameters):
 class Climb(Parameters):
     """Reach up with the flippers to meet an obstacle, sweep down to lift the chassis over it.
 
-    The driver knows what one at a distance could know: the angle of the chassis, and whether
-    flippers bear on something beyond their roots. Those at the front are held at `reach_angle`
-    until they do; then they sweep down to `sweep_angle`. As soon as the chassis is raised, by more
-    than `level_angle`, those at the rear push down to `push_angle` and lift it from behind. When it
-    is level again and nothing bears on those at the rear, all go back: the front ones reach up,
-    the rear ones to where they start. The speed of the tracks is that of the `Drive`, and nothing
-    is rocked to and fro.
+    The driver knows what an operator could see from a distance: the angle of the chassis, and
+    whether the flippers bear on something beyond their roots. The front ones are held at
+    `reach_angle` until they do; then they sweep down to `sweep_angle`. As soon as the chassis is
+    raised by more than `level_angle`, the rear ones push down to `push_angle` and lift it from
+    behind. When the chassis is level again and nothing bears on the rear ones, all go back: the
+    front ones to `reach_angle`, the rear ones to their starting angle. The speed of the tracks is
+    that of the `Drive`; the gait never reverses.
 
     Parameters
     ----------
     reach_angle : float
-        [rad] Over the chassis, upwards > 0.
+        [rad] Relative to the chassis, upwards > 0.
     sweep_angle, push_angle : float
-        [rad] Over level ground, upwards > 0.
+        [rad] Relative to the horizontal, upwards > 0.
     level_angle : float
-        [rad] Of the chassis.
+        [rad] Chassis angle above which the chassis counts as raised.
     """
 
     kind: ClassVar[str] = "climb"
@@ -67,4 +67,4 @@ class Climb(Parameters):
 
 
 Gait = Hold | Climb
-"""Every gait."""
+"""Any gait."""

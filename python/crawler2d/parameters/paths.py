@@ -1,4 +1,4 @@
-"""Dotted paths of fields and their elements: how they are read, and a variant is made."""
+"""Dotted paths of fields and elements: read what is there, or replace it in a copy."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from crawler2d.parameters.plain import Parameters, alternatives, field_hints
 
 P = TypeVar("P", bound=Parameters)
 
-# A name and the indices behind it, each written in one way only.
+# A name and its indices, without leading zeros.
 _PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
 
 
 def replace_path(parameters: P, path: str, value: Any) -> P:
-    """Copy a parameter object with the field or the element at a path replaced.
+    """Copy a parameter object, with the field or element at a path replaced.
 
     Raises
     ------
     ScenarioError
-        If a part of the path is no field there; the message lists the fields and the nearest name.
-        If an index is out of range; the message has the length.
+        If a part of the path is not a field; the message lists the fields and the nearest name. If
+        an index is out of range; the message gives the length.
     """
     if not isinstance(path, str):
-        raise ScenarioError("path", path, "must be a text")
+        raise ScenarioError("path", path, "must be a string")
     copy: P = _replaced(parameters, _steps(path), value, path)
     return copy
 
@@ -42,7 +42,7 @@ def read_path(parameters: Parameters, path: str) -> Any:
 
 
 def is_whole(parameters: Parameters, path: str) -> bool:
-    """Whether the field at a path takes whole numbers alone."""
+    """Whether the field at a path takes only whole numbers."""
     parent, _, name = path.rpartition(".")
     holder = read_path(parameters, parent) if parent else parameters
     kinds = alternatives(field_hints(type(holder)).get(name))
@@ -74,21 +74,21 @@ def _replaced(node: Any, steps: list[str | int], value: Any, path: str, depth: i
 
 
 def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
-    """Return what the last of some steps names in the object that those before it lead to."""
+    """Return what the last step names; the earlier steps have led to `node`."""
     *before, step = steps
     place = "".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in before).removeprefix(".")
     if isinstance(step, str):
         if not isinstance(node, Parameters):
-            rule = f"must name a field, but {place} = {reprlib.repr(node)} has none"
+            rule = f"must be a known field: {place} = {reprlib.repr(node)} has no fields"
             raise ScenarioError(path, value, rule)
         if step not in field_hints(type(node)):
             raise ScenarioError(path, value, _rule(type(node), step))
         return getattr(node, step)
     if not isinstance(node, tuple):
-        rule = f"must name a field, but {place} = {reprlib.repr(node)} has no elements"
+        rule = f"must be a known field: {place} = {reprlib.repr(node)} has no elements"
         raise ScenarioError(path, value, rule)
     if not 0 <= step < len(node):
-        rule = f"must name an element, but {place} has {len(node)}, counted from 0"
+        rule = f"must be an element that exists: {place} has {len(node)} elements, counted from 0"
         raise ScenarioError(path, value, rule)
     return node[step]
 
@@ -99,5 +99,5 @@ def _rule(cls: type[Parameters], name: str) -> str:
     fields = list(field_hints(cls))
     nearest = difflib.get_close_matches(name, fields, n=1)
     hint = f" (did you mean {nearest[0]}?)" if nearest else ""
-    listed = ", ".join(fields) if fields else "it has none"
-    return f"must name a field of {cls.__name__}: {listed}{hint}"
+    listed = ", ".join(fields) if fields else "no fields"
+    return f"must be a known field: {cls.__name__} has {listed}{hint}"

@@ -1,6 +1,6 @@
-"""Parameter objects and plain data: what a frozen dataclass may hold, and its way to JSON and back.
+"""Parameter objects as plain data: what a frozen dataclass may hold, and how it becomes JSON.
 
-Non-finite numbers do not exist in JSON; they cross as the texts "NaN", "Infinity" and "-Infinity",
+JSON has no non-finite numbers; they are written as the strings "NaN", "Infinity" and "-Infinity",
 so that the validator, which knows the rules, can name the field.
 """
 
@@ -23,28 +23,28 @@ ROWS = {
     tuple[tuple[float, float], ...]: ("n", 2),
     tuple[tuple[float, float, float], ...]: ("n", 3),
 }
-"""Number of rows and columns of the fields that hold arrays; None is one row without brackets."""
+"""Rows and columns of the fields that hold arrays; None for rows means a single row, not nested."""
 
-_RULES = {float: "must be a number", int: "must be a whole number", str: "must be a text"}
+_RULES = {float: "must be a number", int: "must be a whole number", str: "must be a string"}
 
 
 class Parameters:
-    """Base of the parameter dataclasses: fields are normalised once, when the object is made.
+    """Base of the parameter dataclasses: fields are normalised once, on creation.
 
     NumPy scalars become Python numbers, whole numbers become floats where the field is a float, and
-    arrays of points become tuples, so that objects compare, hash and print the same whatever they
-    were made from, and no later change of an input array can reach them.
+    arrays of points become tuples. So objects compare, hash and print the same whatever they were
+    made from, and later changes of an input array do not reach them.
     """
 
     __slots__ = ()
 
     kind: ClassVar[str] = ""
-    """Tag of the variant in JSON; empty for classes without variants."""
+    """Tag of the class in JSON; empty where a field has only one class."""
     place: ClassVar[str] = ""
     """Where objects of this class sit in a scenario, for messages."""
 
     def __post_init__(self) -> None:
-        """Replace every field by its plain Python form."""
+        """Convert every field to its plain Python form."""
         for name, hint in field_hints(type(self)).items():
             value = getattr(self, name)
             shape = shape_of_rows(hint)
@@ -61,7 +61,7 @@ _HINTS: dict[type[Parameters], dict[str, Any]] = {}
 
 
 def field_hints(cls: type[Parameters]) -> dict[str, Any]:
-    """Resolve the annotations of the fields, in order; each class once."""
+    """Resolve the annotations of the fields, in order, once per class."""
     if cls not in _HINTS:
         hints = typing.get_type_hints(cls)
         _HINTS[cls] = {f.name: hints[f.name] for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
@@ -70,7 +70,7 @@ def field_hints(cls: type[Parameters]) -> dict[str, Any]:
 
 @functools.cache
 def alternatives(hint: Any) -> tuple[Any, ...]:
-    """Split a union into its members; anything else is its own only member."""
+    """Split a union into its members; any other annotation is its own only member."""
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         return typing.get_args(hint)
     return (hint,)
@@ -78,7 +78,7 @@ def alternatives(hint: Any) -> tuple[Any, ...]:
 
 @functools.cache
 def shape_of_rows(hint: Any) -> tuple[str | None, int] | None:
-    """Look up rows and columns of a field that holds an array; None for any other field."""
+    """Look up the rows and columns of an array field; None for any other field."""
     return next((ROWS[a] for a in alternatives(hint) if a in ROWS), None)
 
 
@@ -89,12 +89,12 @@ def nested_classes(hint: Any) -> tuple[type[Parameters], ...]:
 
 
 def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
-    """Turn a parameter object into dicts, lists, numbers and texts, every field present.
+    """Convert a parameter object to dicts, lists, numbers and strings, with every field present.
 
     Raises
     ------
     ScenarioError
-        If a field holds what JSON cannot.
+        If a field holds something JSON cannot represent.
     """
     cls = type(parameters)
     plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
@@ -124,12 +124,12 @@ def _plain_field(value: Any, hint: Any, path: str) -> Any:
         return value
     if isinstance(value, (int, float)) and str not in alternatives(hint):  # "Infinity" is a name
         return _plain_number(value)
-    rule = next((_RULES[a] for a in alternatives(hint) if a in _RULES), "must be a text or None")
+    rule = next((_RULES[a] for a in alternatives(hint) if a in _RULES), "must be a string or None")
     raise ScenarioError(path, value, rule)
 
 
 def _plain_number(value: float) -> float | str:
-    """Name a non-finite number; a whole number beyond every float counts as infinite."""
+    """Write a non-finite number as a string; a whole number too large for a float is infinite."""
     if -sys.float_info.max <= value <= sys.float_info.max:
         return value
     if value != value:  # noqa: PLR0124 - the definition of NaN

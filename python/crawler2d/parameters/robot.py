@@ -1,4 +1,4 @@
-"""The robot as it is built: masses, outline, belly and drivetrain, with the model of its track."""
+"""The robot as built, with masses, outline, belly and drivetrain, and the model of its track."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from crawler2d.parameters.track import BeltTrack, Track
 
 __all__ = ["Drivetrain", "Robot", "TrackOutline"]
 
-# Grouser height, pitch and thickness as shares of the radius: the Servosila Engineer's.
+# Proportions of the Servosila Engineer's grousers, whose radius is 64 mm.
 _GROUSER_HEIGHT = 0.012 / 0.064
 _GROUSER_PITCH = 0.048 / 0.064
 _GROUSER_THICKNESS = 0.006 / 0.048
 
-# A drivetrain that holds its robot on this slope with this margin climbs what its geometry allows.
+# With enough torque to hold the robot on this slope with this margin, geometry limits climbing.
 _HOLDING_SLOPE = math.radians(45.0)
 _HOLDING_MARGIN = 1.6
 
@@ -36,15 +36,15 @@ class TrackOutline(Parameters):
     Parameters
     ----------
     axle_distance : float
-        [m] Distance of the end axles.
+        [m] Distance between the end axles.
     front_radius, rear_radius : float
         [m] Radius of each end, to the grouser tips.
     grouser_height : float
         [m] Height of the grousers above the belt; 0 for a smooth belt.
     grouser_pitch : float
-        [m] Distance of the grousers along the belt.
+        [m] Spacing of the grousers along the belt.
     grouser_thickness : float
-        [m] Extent of a grouser along the belt, below the pitch.
+        [m] Thickness of a grouser along the belt, less than the pitch.
     """
 
     place: ClassVar[str] = "robot.outline"
@@ -66,12 +66,13 @@ class Drivetrain(Parameters):
     max_speed : float
         [m/s] Largest track speed.
     max_acceleration, max_deceleration : float
-        [m/s^2] Largest rates at which the commanded speed grows and falls in magnitude.
+        [m/s^2] Largest rates at which the commanded speed rises and falls in magnitude.
     max_torque : float
-        [N m] Largest torque of one sprocket, acting at the belt radius; the robot has two.
+        [N m] Largest torque of one sprocket, acting at the belt radius. The robot has two.
     torque_sharing : {"track", "wheel"}
-        "track": one motor a track, all its wheels keep one speed and the sum of their traction is
-        limited. "wheel": each of the N wheels of a line has its own servo and an Nth of the torque.
+        "track": one motor per track; all its wheels keep one speed, and the sum of their traction
+        is limited. "wheel": each of the N wheels of a line has its own servo with 1/N of the
+        torque.
     """
 
     place: ClassVar[str] = "robot.drivetrain"
@@ -85,33 +86,33 @@ class Drivetrain(Parameters):
 
 @dataclass(frozen=True, slots=True)
 class Robot(Parameters):
-    """A tracked robot; `track` says how its track is modelled, all else what is built.
+    """A tracked robot; `track` says how its track is modelled, everything else how it is built.
 
-    Whatever the model, the total mass, the centre of mass and the moment of inertia are these.
+    Total mass, centre of mass and moment of inertia are the same for every track model.
 
     Parameters
     ----------
     name : str
-        Name for tables and plots.
+        Name shown in tables and plots.
     mass : float
-        [kg] Of the whole robot, both tracks and all flippers included.
+        [kg] Of the whole robot, including both tracks and all flippers.
     center_of_mass : array_like, shape (2,)
         [m] In the chassis frame: origin midway between the end axles, x forward, y up.
     moment_of_inertia : float
-        [kg m^2] Of the whole robot about its centre of mass, flippers at angle 0.
+        [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0.
     track_mass : float
         [kg] Of both tracks together, all of it moving at track speed.
     outline : TrackOutline
         Side view of the track.
     gauge : float
-        [m] Lateral distance of the tracks.
+        [m] Lateral distance between the tracks.
     drivetrain : Drivetrain
-        Motors and limits.
+        What drives the tracks, and its limits.
     belly : array_like, shape (n, 2), optional
-        [m] Convex polygon in the chassis frame, counter-clockwise; None never touches the ground.
+        [m] Convex polygon in the chassis frame, counter-clockwise; None: it never touches.
     flippers : Flippers, optional
-        Pivoting arms; None: none. The field alone changes no mass: see `with_flippers` and
-        `without_flippers`.
+        Pivoting arms, or None. Setting this field alone changes no mass: see `with_flippers`
+        and `without_flippers`.
     track : Track
         The model of the track.
     """
@@ -132,7 +133,7 @@ class Robot(Parameters):
     track: Track = BeltTrack()
 
     def with_track(self, track: Track) -> Robot:
-        """Take the same robot with another model of its track.
+        """Return the same robot with another track model.
 
         Parameters
         ----------
@@ -147,22 +148,22 @@ class Robot(Parameters):
         return replace(self, track=track)
 
     def with_flippers(self, flippers: Flippers) -> Robot:
-        """Mount arms: mass, centre of mass and moment of inertia count them from then on.
+        """Mount arms, and add them to mass, centre of mass and moment of inertia.
 
         Parameters
         ----------
         flippers : Flippers
-            The arms, in place of those that the robot may have.
+            The arms; they replace any that the robot has.
 
         Returns
         -------
         Robot
-            A copy with the arms; they count as rods at angle 0, evenly spread from pivot to tip.
+            A copy with the arms, which count as uniform rods at angle 0 from pivot to tip.
 
         Raises
         ------
         ScenarioError
-            If the figures of the arms cannot be counted.
+            If mass, length or place of the arms is invalid.
 
         Examples
         --------
@@ -177,20 +178,20 @@ class Robot(Parameters):
         return replace(_plus_arms(self.without_flippers(), flippers, 1.0), flippers=flippers)
 
     def without_flippers(self) -> Robot:
-        """Take the arms off, with their mass: the robot as its builder would have it without them.
+        """Take the arms and their mass off: the robot as it would be built without them.
 
         Setting `flippers` to None leaves mass, centre of mass and moment of inertia as they are:
-        the chassis then weighs what the arms weighed, and where the whole robot had it.
+        the chassis then carries the mass of the arms.
 
         Returns
         -------
         Robot
-            A copy without arms, less what they count as in `with_flippers`.
+            A copy without arms, less the mass that `with_flippers` adds for them.
 
         Raises
         ------
         ScenarioError
-            If the arms leave no chassis.
+            If nothing is left for the chassis.
 
         Examples
         --------
@@ -204,20 +205,20 @@ class Robot(Parameters):
         return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
 
     def wheels(self) -> Table:
-        """List every wheel of the track model, of both sides and of the flippers.
+        """List every wheel of the track model, on both sides and on the flippers.
 
         Returns
         -------
         Table
-            One row a wheel, first those of the left side, of each side first those of the chassis,
-            in the order of eq. (1); empty for belts, skids and chains of shoes. Columns: `side`
-            ("left", "right"), `carrier` ("chassis", "front flipper", "rear flipper"), `body` (as in
-            the contacts where both tracks meet the same ground, one number for the wheels of both
-            sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at their `angle`),
-            `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true outline),
-            `moment_of_inertia` [kg m^2] (this wheel's share of what circulates: the wheels of the
-            chassis have `track_mass` together, those of a flipper a tenth of its mass) and `mass`
-            [kg] (of the uniform wheel of this outline that has this moment of inertia).
+            One row per wheel, the left side first; on each side first the wheels of the chassis, in
+            the order of eq. (1) of the paper. Empty for belts, skids and chains of shoes. Columns:
+            `side` ("left", "right"), `carrier` ("chassis", "front flipper", "rear flipper"), `body`
+            (number as in the contacts where both tracks meet the same ground, shared by the wheels
+            of both sides), `x` and `y` [m] (axle in the chassis frame, with the flippers at their
+            `angle`), `radius` [m] (of the circumscribed circle), `area` [m^2] (of the true
+            outline), `moment_of_inertia` [kg m^2] (this wheel's share of the moving mass: the
+            wheels of the chassis share `track_mass`, those of a flipper a tenth of its mass) and
+            `mass` [kg] (of a uniform wheel with this outline and moment of inertia).
 
         Raises
         ------
@@ -234,7 +235,7 @@ class Robot(Parameters):
         ([-0.1825, 0.0, 0.1825], [0.8, 0.8, 0.8])
         """
         ground = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
-        # At rest and in the shortest steps, the robot alone decides what is refused.
+        # At rest and with the shortest steps, only the robot itself can break a rule.
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
         alone = Form(self, ground, drive=drive, solver=solver)
         return Table(_core.wheels(alone.to_json()))
@@ -249,43 +250,43 @@ class Robot(Parameters):
         max_speed: float = 1.0,
         track: Track | None = None,
     ) -> Robot:
-        """Make a robot of three figures; stated rules fill the others.
+        """Make a robot from three figures; the rules below set the others.
 
         Parameters
         ----------
         mass : float
             [kg] Of the whole robot.
         axle_distance : float
-            [m] Distance of the end axles.
+            [m] Distance between the end axles.
         radius : float
-            [m] Radius of both ends of the track, to the grouser tips.
+            [m] Radius of both ends of the track, measured to the grouser tips.
         name : str
-            Name for tables and plots.
+            Name shown in tables and plots.
         max_speed : float
             [m/s] Largest track speed.
         track : Track, optional
-            The model of the track; None is `Robot`'s default.
+            The model of the track; None takes `Robot`'s default.
 
         Returns
         -------
         Robot
-            Change single figures with `dataclasses.replace`.
+            `dataclasses.replace` changes single figures.
 
         Raises
         ------
         ScenarioError
-            If `mass`, `axle_distance` or `radius` is no number above 0.
+            If `mass`, `axle_distance` or `radius` is not a number above 0.
 
         Notes
         -----
         - centre of mass: midway between the axles, at axle height;
-        - moment of inertia: a uniform rectangle that bounds the outline;
+        - moment of inertia: that of a uniform rectangle round the outline;
         - track mass: a tenth of the mass;
-        - grousers: the proportions of the Servosila Engineer, height 3/16 of the radius, pitch near
-          3/4 of the radius so that a whole number fits on the belt, thickness 1/8 of the pitch;
+        - grousers: the proportions of the Servosila Engineer; height 3/16 of the radius, pitch
+          near 3/4 of the radius such that a whole number fits on the belt, thickness 1/8 of pitch;
         - belly: none; gauge: half the axle distance;
         - acceleration: 1 m/s^2, deceleration 4 m/s^2;
-        - torque: 1.6 times what holds the robot on a slope of 45 degrees under 9.81 m/s^2.
+        - torque: 1.6 times what holds the robot on a slope of 45 degrees at 9.81 m/s^2.
 
         Examples
         --------
@@ -327,7 +328,7 @@ class Robot(Parameters):
 
 
 def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
-    """Count the masses of arms, as rods at angle 0, to those of a robot: +1 adds, -1 takes out."""
+    """Add (+1) or subtract (-1) the mass of arms, as uniform rods at angle 0."""
     length = real_number(flippers.length, "robot.flippers.length")
     pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
     reach = 0.5 * robot.outline.axle_distance + 0.5 * length
@@ -338,7 +339,7 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     ends = places[flippers.ends]
     mass = robot.mass + pair * len(ends)
     if not mass > 0.0:
-        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave a chassis")
+        raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave mass for the chassis")
     x, y = robot.center_of_mass
     center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
     inertia = robot.moment_of_inertia
@@ -350,7 +351,7 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
 
 
 def _size(value: float, name: str) -> float:
-    """Refuse what the rules of `Robot.simple` cannot be computed with; validation is stricter."""
+    """Reject sizes with which `Robot.simple` cannot compute; validation is stricter."""
     number = real_number(value, name)
     if not 1e-9 <= number <= 1e9:
         raise ScenarioError(name, value, "must be > 0")

@@ -1,4 +1,4 @@
-"""What is simulated: one robot, one terrain, one command, complete and frozen."""
+"""What is simulated: one robot, one terrain and one command, complete and frozen."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ __all__ = ["Scenario"]
 
 @dataclass(frozen=True, slots=True)
 class Scenario(Form):
-    """One run, complete: the same scenario and build give the same bits.
+    """Everything that defines a run: the same scenario and build give the same bits.
 
     Parameters
     ----------
     robot : Robot
         The robot and the model of its track.
     terrain : Terrain
-        The ground; `crawler2d.terrains` makes them.
+        The ground; see `crawler2d.terrains`.
     drive : Drive
         The command.
     start : Start
         How the robot stands at time 0.
     goal : float, optional
-        [m] The x that the robot must leave behind; None takes the terrain's.
+        [m] The x that the whole robot must pass; None takes the terrain's.
     gravity : float
-        [m/s^2] Downwards.
+        [m/s^2] Acceleration of gravity, downwards.
     duration : float
         [s] Longest simulated time.
     solver : Solver
         How the equations are solved.
     criteria : SeizureCriteria
-        When a run ends, and when a stop counts as one.
+        When a run ends, and what counts as a stop.
     schema : int
         Version of the JSON format.
 
@@ -63,8 +63,8 @@ class Scenario(Form):
         Parameters
         ----------
         fields : mapping of str to object
-            New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Indices
-            name elements: ``{"terrain.points[3][1]": 0.06}``.
+            New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
+            have an index: ``{"terrain.points[3][1]": 0.06}``.
 
         Returns
         -------
@@ -74,21 +74,21 @@ class Scenario(Form):
         Raises
         ------
         ScenarioError
-            If a path names no field; the message lists the fields and the nearest name. If an
-            index is out of range; the message has the length.
+            If a path is not a field; the message lists the fields and the nearest name. If an index
+            is out of range; the message gives the length.
 
         Warns
         -----
         ScenarioWarning
-            If the flippers are taken off a robot and their mass stays on it.
+            If the flippers are removed but their mass stays on the robot.
         """
         variant = self
         for path, value in fields.items():
             variant = replace_path(variant, path, value)
         if _leaves_mass_of_arms(self.robot, variant.robot):
             reason = (
-                "leaves their mass on the robot if it alone is replaced; to take that off, too,"
-                ' replace or sweep the whole robot: {"robot": robot.without_flippers()}'
+                "leaves their mass on the robot if replaced alone; to remove the mass, too, replace"
+                ' or sweep the whole robot: {"robot": robot.without_flippers()}'
             )
             warnings.warn(ScenarioWarning("robot.flippers", None, reason), stacklevel=2)
         return variant
@@ -110,10 +110,11 @@ class Scenario(Form):
         Raises
         ------
         ScenarioError
-            If the text is no JSON, or a field is missing, unknown, of a wrong type or out of range.
+            If the text is not JSON, or a field is missing, unknown, out of range or of the wrong
+            type.
         """
         if not isinstance(text, str):
-            raise ScenarioError("scenario", text, "must be a text")
+            raise ScenarioError("scenario", text, "must be a string")
         try:
             text.encode()
         except UnicodeEncodeError:
@@ -121,17 +122,17 @@ class Scenario(Form):
         return from_plain(cls, json.loads(_core.canonical(text)))
 
     def validate(self) -> None:
-        """Check every rule, and warn of what is unlikely to be meant.
+        """Check every rule, and warn of values that are unlikely to be meant.
 
         Raises
         ------
         ScenarioError
-            The first broken rule: path of the field, value and rule.
+            For the first broken rule: path of the field, value and rule.
 
         Warns
         -----
         ScenarioWarning
-            Of each field whose value is legal but doubtful, such as a step of 75 m.
+            For each field whose value is legal but doubtful, such as a step of 75 m.
         """
         _core.validate(self.to_json())
 
@@ -142,15 +143,15 @@ class Scenario(Form):
         Raises
         ------
         ScenarioError
-            If the scenario is not valid.
+            If the scenario breaks a rule.
         """
         return _core.identity(self.to_json())
 
 
 def _leaves_mass_of_arms(before: Robot, after: Robot) -> bool:
-    """Whether arms went from a robot whose masses are still those of the whole."""
+    """Whether arms were removed, but mass, centre of mass and inertia left unchanged."""
     if not (isinstance(before, Robot) and isinstance(after, Robot)):
-        return False  # for the validator to refuse
+        return False  # for the validator to reject
     names = ("mass", "center_of_mass", "moment_of_inertia")
     masses = [[getattr(robot, name) for name in names] for robot in (before, after)]
     return before.flippers is not None and after.flippers is None and masses[0] == masses[1]

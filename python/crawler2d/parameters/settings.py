@@ -1,4 +1,4 @@
-"""What a scenario says besides robot and ground: command, start, solver, criteria."""
+"""What a scenario has besides robot and ground: command, start, solver, criteria."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Drive(Parameters):
     speed : float
         [m/s] Track speed; above 0 drives towards +x.
     schedule : array_like, shape (n, 2), optional
-        Times [s], rising, and the speeds [m/s] that hold from then on.
+        Increasing times [s], and the speeds [m/s] that apply from then on.
     gait : Hold or Climb, optional
-        How the flippers move; None holds them where they start. A robot without flippers has
-        nothing to move, so that a sweep may leave them off and keep the gait.
+        How the flippers move; None holds them where they start. It has no effect on a robot
+        without flippers, so that a sweep may remove the flippers and keep the gait.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Start(Parameters):
     approach : float
         [m] From the robot's foremost point to the first edge at or beyond x = 0.
     track_phase : float
-        [m] Common advance of all wheels, or of the belt.
+        [m] Initial advance of all wheels, or of the belt.
     angle : float
         [rad] Chassis angle, nose up > 0.
     """
@@ -64,30 +64,30 @@ class Start(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solver(Parameters):
-    """How the equations of motion are solved; the defaults come from a convergence study.
+    """How the equations of motion are solved; the defaults are from a convergence study.
 
     Parameters
     ----------
     contact : {"own", "reference"}
-        Who finds the contacts: our own exact geometry, or the engine's queries of convex pieces on
-        one polyline, which are slower and cut rounded edges into facets; these are there to compare
-        with.
+        How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
+        queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,
+        and is there for comparison.
     time_step : float
-        [s] Time between two looks for contacts.
+        [s] Time between two searches for contacts.
     substeps : int
-        Substeps of a step; one in which a part strikes the ground is cut there.
+        Substeps per step. A substep in which a part strikes the ground is split at the impact.
     iterations : int, optional
-        Largest number of rounds in search of the forces that all contacts agree on, each a few
-        guesses and a descent; None takes 30. One is enough as a rule. A chain of shoes is solved in
-        another way, in one round of at most 16 steps: it takes no number.
+        Largest number of rounds in the search for forces that satisfy all contacts; each is a
+        few guesses and a descent. None takes 30; usually one is enough. A chain of shoes is
+        solved differently, in one round of at most 16 steps, and takes no number.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float
         [-] Damping ratio of the contact softness.
     max_push_speed : float
-        [m/s] Fastest push out of a penetration.
+        [m/s] Largest speed at which a penetration is pushed out.
     prediction_distance : float
-        [m] Contacts are looked for up to this gap.
+        [m] Gap up to which contacts are searched for.
     """
 
     place: ClassVar[str] = "solver"
@@ -104,53 +104,53 @@ class Solver(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeizureCriteria(Parameters):
-    """When a run ends, and when a stop counts as one.
+    """When a run ends, and what counts as a stop.
 
     Parameters
     ----------
     stop_window : float
-        [s] Shortest time without progress that is a stop.
+        [s] Shortest time without progress that counts as a stop.
     stop_pitches : float
         [-] Grouser pitches at the commanded speed that must pass without progress.
     stop_progress : float
         [-] Share of the commanded distance below which there is no progress.
     stationary_distance : float
-        [m] Largest change of pose of a stationary state.
+        [m] Largest change of pose that still counts as stationary.
     stationary_windows : int
-        Windows for which a state must be stationary to end the run early.
+        Stop windows for which a state must be stationary to end the run early.
     clear_time : float
-        [s] Time for which the goal must be held.
+        [s] How long the robot must stay beyond the goal.
     clear_angle : float
-        [rad] Largest angle between chassis and ground at the goal.
+        [rad] Largest angle between chassis and ground at which the goal counts.
     tip_over_angle : float
         [rad] Chassis angle at which the robot has tipped over.
     intrusion_depth : float
-        [m] Ground inside the envelope of the track is an intrusion beyond this depth, 0 to 0.1. The
-        default lies above what round wheels and belts sink in when they strike an edge (0.2 mm).
-        With 0 the ground that the robot rests on joins the pieces under it.
+        [m] Ground inside the envelope of the track is an intrusion if deeper than this, 0 to 0.1.
+        The default is more than round wheels and belts sink in when they strike an edge (0.2 mm).
+        With 0, the ground that the robot rests on joins the pieces under it.
     intrusion_load : float
-        [-] Share of the weight from which an intrusion is loaded; less is a touch in passing.
+        [-] Share of the weight from which an intrusion counts as loaded; less is a passing touch.
     belly_load : float
-        [-] Share of the weight on the belly from which a stop without a seizure is a hang-up: what
-        is missing below the tracks is then more than the friction number is usually known to.
+        [-] Share of the weight on the belly from which a stop without a seizure is a hang-up. The
+        default exceeds the usual uncertainty of the friction coefficient.
     sliding_speed : float
-        [-] Share of the commanded speed from which a surface slides, or a drive turns. A solver's
-        sticking contact creeps by a thousandth of that.
+        [-] Share of the commanded speed from which a surface slides, or a drive turns. A contact
+        that sticks creeps in the solver by a thousandth of that.
     torque_limit : float
-        [-] Share of the torque limit from which a motor is at its limit, in the mean.
+        [-] Share of the torque limit from which a motor counts as at its limit, on average.
     cycling_distance : float
         [m] A robot that moves to and fro by this much within a stop window is cycling: more than
-        jammed grousers rattle, less than the spacing of any wheels.
+        the rattle of jammed grousers, less than the spacing of any wheels.
     imbalance : float
-        [-] Share of the weight that an equilibrium of a stationary state may leave unbalanced.
+        [-] Share of the weight that may stay unbalanced in the equilibrium of a stationary state.
     mean_imbalance : float
-        [-] The same for the means of a state that rattles on.
+        [-] The same for the mean forces of a state that keeps rattling.
     creep_from, creep_to : float
-        [-] Shares of the commanded distance between which the robot creeps.
+        [-] Shares of the commanded distance between which the robot counts as creeping.
     escape_distance : float
-        [m] Advance that counts as getting away from a stop.
+        [m] Advance that counts as escaping from a stop.
     escape_time : float
-        [s] Time that a closed belt is given to get away from a stop.
+        [s] Time that a closed belt has to escape from a stop.
     """
 
     place: ClassVar[str] = "criteria"

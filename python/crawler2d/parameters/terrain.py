@@ -1,4 +1,4 @@
-"""The ground as parameters: x forward, y up, the first edge of the generated obstacles at x = 0."""
+"""The ground as parameters: x forward, y up; the first edge of an obstacle is at x = 0."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Ramp(Parameters):
     angle : float
         [rad] Angle of the slope, up > 0.
     length : float
-        [m] Horizontal run of the slope.
+        [m] Horizontal length of the slope.
     edge_radius : float
         [m] Radius of the convex edge; 0 is sharp.
     friction : float
@@ -102,7 +102,7 @@ class Barrier(Parameters):
     height : float
         [m] Height, above 0.
     thickness : float
-        [m] Extent along x.
+        [m] Thickness along x.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -128,7 +128,7 @@ class Ridge(Parameters):
     height : float
         [m] Height of the edge, above 0.
     edge_angle : float
-        [rad] Angle between the two flanks: small is a blade, near pi a low bump.
+        [rad] Angle between the two flanks: a small one is a blade, one near pi a low bump.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -152,7 +152,7 @@ class Gap(Parameters):
     Parameters
     ----------
     width : float
-        [m] Extent along x.
+        [m] Width along x.
     depth : float
         [m] Depth, above 0.
     edge_radius : float
@@ -182,7 +182,7 @@ class Stairs(Parameters):
     count : int
         Number of steps.
     rise, run : float
-        [m] Height of each step, and its extent along x.
+        [m] Height and depth of each step.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -201,12 +201,12 @@ class Stairs(Parameters):
 
 @dataclass(frozen=True, slots=True)
 class HalfRound(Parameters):
-    """Half a pipe lying on level ground, from x = 0.
+    """Half a pipe lying on level ground, starting at x = 0.
 
     Parameters
     ----------
     radius : float
-        [m] Radius, also its height.
+        [m] Radius, and so the height.
     friction : float
         [-] Coulomb friction between robot and ground.
     """
@@ -223,19 +223,19 @@ class HalfRound(Parameters):
 class DiagonalBarrier(Parameters):
     """A parallelepiped on level ground whose front face is turned about the vertical.
 
-    The tracks meet it `gauge` tan(`yaw`) apart, and `thickness` / cos(`yaw`) long; the gauge is the
-    robot's. Roll and yaw of the robot are held: what a side view can say of such a barrier. The
-    belly is taken to be as wide as the gauge.
+    The tracks meet it `gauge` tan(`yaw`) apart, and each crosses `thickness` / cos(`yaw`) of it,
+    where `gauge` is the robot's. Roll and yaw of the robot are held, as in any side view. The belly
+    is assumed to be as wide as the gauge.
 
     Parameters
     ----------
     yaw : float
-        [rad] Turn of the barrier, counter-clockwise seen from above: above 0 the left track meets
-        it first, at x = 0. At most 80 degrees either way.
+        [rad] Turn of the barrier, counter-clockwise seen from above, at most 80 degrees either way.
+        Above 0 the left track meets it first, at x = 0.
     height : float
         [m] Height, above 0.
     thickness : float
-        [m] Extent across its front face.
+        [m] Thickness at right angles to its front face.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -260,25 +260,26 @@ class RandomStepfield(Parameters):
     Parameters
     ----------
     seed : int
-        Of the heights, 0 to 2^32 - 1. Nothing else of the field changes them.
+        Seed of the random heights, 0 to 2^32 - 1; the draws depend on nothing else.
     pattern : {"flat", "hill", "diagonal"}
-        Posts of all levels alike; or up to a ridge and down again, one level more or less at
-        random, the ridge across the field or, sooner on the left, askew.
+        "flat": any level is equally likely. "hill" and "diagonal": up to a ridge and down again,
+        plus or minus one level at random; the ridge lies across the field, or askew, met first on
+        the left.
     posts : int
         Posts in a row.
     post : float
-        [m] Side of a post.
+        [m] Side length of a post.
     rise : float
-        [m] Height of a level. The default is a quarter of a public arena's 0.10 m, for robots as
+        [m] Height of one level. The default is a quarter of a public arena's 0.10 m, for robots as
         small as the Engineer.
     levels : int
-        Levels above the ground.
+        Number of levels above the ground.
     barrier_height : float
-        [m] Height of a barrier across the middle of the field; 0 is none.
+        [m] Height of a barrier across the middle of the field; 0 for none.
     barrier_thickness : float
-        [m] Its extent across its front face.
+        [m] Thickness of the barrier at right angles to its front face.
     barrier_yaw : float
-        [rad] Its turn, as that of a `DiagonalBarrier`.
+        [rad] Turn of the barrier, as for `DiagonalBarrier`.
     edge_radius : float
         [m] Radius of the convex edges; 0 is sharp.
     friction : float
@@ -304,15 +305,15 @@ class RandomStepfield(Parameters):
 
 @dataclass(frozen=True, slots=True)
 class Points(Parameters):
-    """A profile of the user's own.
+    """A user-defined profile.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
         [m] Points (x, y) in order, from left to right or from right to left. Vertical faces are
-        allowed, overhangs are not. Any real array is taken and copied.
+        allowed, overhangs are not. Any array of real numbers; it is copied.
     goal : float
-        [m] The x that the robot must leave behind.
+        [m] The x that the whole robot must pass.
     edge_radius : float
         [m] Radius of every convex edge; 0 is sharp.
     friction : float
@@ -321,7 +322,7 @@ class Points(Parameters):
     Raises
     ------
     ScenarioError
-        If `points` holds no real numbers, is masked or has another shape.
+        If `points` does not hold real numbers, is masked or has another shape.
     """
 
     kind: ClassVar[str] = "points"
@@ -335,22 +336,22 @@ class Points(Parameters):
 
 
 Lane = Flat | Step | Ramp | Barrier | Ridge | Gap | Stairs | HalfRound | Points
-"""Every terrain of one profile."""
+"""Any terrain with one profile."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lanes(Parameters):
     """A profile under each track and one under the belly.
 
-    Each track has half of the mass that moves with the surfaces and half of the motors' force;
-    roll and yaw are held. Equal profiles are simulated as one with both tracks lumped.
+    Each track has half of the moving track mass and half of the motor force; roll and yaw are held.
+    Equal profiles are simulated as one, with both tracks lumped together.
 
     Parameters
     ----------
     left, right : Lane
-        What each track meets.
+        The profile under each track.
     middle : Lane, optional
-        What the belly meets; None is the upper envelope of the two, with the larger friction.
+        The profile under the belly; None takes the higher of the two, with the larger friction.
     """
 
     kind: ClassVar[str] = "lanes"
@@ -363,4 +364,4 @@ class Lanes(Parameters):
 
 
 Terrain = Lane | Lanes | DiagonalBarrier | RandomStepfield
-"""Every terrain."""
+"""Any terrain."""

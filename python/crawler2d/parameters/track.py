@@ -1,7 +1,7 @@
-"""How a track is modelled: one class a family of the literature, one robot behind them.
+"""How a track is modelled: one class for each family of the literature.
 
-The paper, whose figures and sections are named here, is "Gear Wheels based Simulation of Crawlers
-for Mobile Robot Servosila Engineer".
+Figures, sections and equations are those of the paper "Gear Wheels based Simulation of Crawlers for
+Mobile Robot Servosila Engineer".
 """
 
 from __future__ import annotations
@@ -38,25 +38,25 @@ class RoundWheel(Parameters):
 class GearWheel(Parameters):
     """A wheel with grousers: a root circle, and trapezoids whose corners reach the wheel's radius.
 
-    What is None follows from the robot's outline. The paper gives the grousers of large wheels
+    Fields that are None follow from the robot's outline. The paper gives grousers for large wheels
     only; the rules for small ones are ours.
 
     Parameters
     ----------
     grouser_count : int, optional
-        Grousers round the wheel, 3 to 200. None takes the whole number that comes nearest to the
-        robot's grouser pitch on the root circle, or 8 where that is fewer than 6.
+        Grousers on the wheel, 3 to 200. None takes the whole number that comes closest to the
+        robot's grouser pitch on the root circle, or 8 if that number is less than 6.
     grouser_height : float, optional
-        [m] Radius of the wheel less that of its root circle. None takes the robot's, at most a
-        quarter of the radius.
+        [m] Radius of the wheel less that of its root circle. None takes the robot's grouser height,
+        but at most a quarter of the radius.
     tip_thickness : float, optional
-        [m] Thickness of a grouser at its tip. None takes the robot's, reduced in proportion where
-        the height is.
+        [m] Thickness of a grouser at its tip. None takes the robot's, reduced in the same
+        proportion as the height.
     base_thickness : float, optional
-        [m] Thickness of a grouser at the root circle, at least that of the tip, and no more than
-        keeps its flanks outside that circle. None is that of the tip: parallel flanks.
+        [m] Thickness of a grouser at the root circle, at least that at the tip. Its flanks must
+        stay outside that circle. None takes the thickness at the tip: parallel flanks.
     phase_fraction : float
-        [-] Wheel n, counted from 1 at the rear, starts turned by this share of n times the angle
+        [-] Wheel n, counted from 1 at the rear, starts turned by n times this share of the angle
         between two grousers: eq. (1) of the paper, where it is a third.
 
     Examples
@@ -76,7 +76,7 @@ class GearWheel(Parameters):
 
 
 Wheel = RoundWheel | GearWheel
-"""Every wheel."""
+"""Any wheel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +86,10 @@ class LineOfWheels(Parameters):
     Parameters
     ----------
     count : int
-        Wheels a side, the two at the end axles included; at least 2.
+        Wheels per side, including the two at the end axles; at least 2.
     wheel_radius : float, optional
-        [m] Radius of every wheel. None takes the outline's, linear between unequal ends. With half
-        the spacing the wheels touch, with more they overlap, with less slots stay open.
+        [m] Radius of every wheel. None takes the outline's, linear between unequal ends. At half
+        the spacing the wheels touch; larger ones overlap, smaller ones leave gaps.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
@@ -112,19 +112,19 @@ class LineOfWheels(Parameters):
 class CircumferentialWheels(Parameters):
     """Small driven wheels all round the outline, each touching it from inside (CWA, Figs. 6, 7).
 
-    The first wheel sits at the rear end of the lower run, the others follow in the direction of
-    belt travel: up round the rear, then forwards on top. Their centres move on a path of their own,
-    inside the outline by the radius. *Spaced* wheels, of a given radius, divide that path into
-    equal lengths, arcs included. *Tight* ones are as large as their count lets them be: each
-    touches both its neighbours, so that straight distances are exactly 2 radii.
+    The first wheel sits at the rear end of the lower run; the others follow in the direction of
+    belt travel: up round the rear, then forward on top. Their centres lie inside the outline, at
+    the distance of the radius. *Spaced* wheels, of a given radius, divide that path into equal
+    lengths, arcs included. *Tight* wheels are as large as their count allows: each touches both
+    neighbours, so that the straight distance between centres is exactly 2 radii.
 
     Parameters
     ----------
     count : int
-        Wheels a side, at least 3. Tight wheels must not have to exceed half the smaller radius of
-        the outline, which takes 14 on the Servosila Engineer: fewer are refused.
+        Wheels per side, at least 3. The radius of tight wheels must not exceed half the smaller
+        radius of the outline; on the Servosila Engineer that takes at least 14 wheels.
     wheel_radius : float, optional
-        [m] Radius of every wheel, below the smaller radius of the outline. None packs them tightly.
+        [m] Radius of every wheel, less than the smaller radius of the outline. None: tight wheels.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
@@ -145,7 +145,7 @@ class CircumferentialWheels(Parameters):
 
 @dataclass(frozen=True, slots=True)
 class HybridWheels(Parameters):
-    """Driven wheels of varying sizes, placed by hand (Fig. 8). All run at one surface speed.
+    """Driven wheels of various sizes, placed by hand (Fig. 8), all with one surface speed.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ class HybridWheels(Parameters):
     Raises
     ------
     ScenarioError
-        If `placements` holds no real numbers, is masked or has another shape.
+        If `placements` does not hold real numbers, is masked or has another shape.
 
     Examples
     --------
@@ -177,7 +177,7 @@ class HybridWheels(Parameters):
 class BeltTrack(Parameters):
     """A taut smooth belt: its surface moves along the outline at track speed.
 
-    The contact surface is closed, so that no edge can get between wheels.
+    The contact surface is closed: no edge can get between wheels.
     """
 
     kind: ClassVar[str] = "belt"
@@ -188,16 +188,16 @@ class BeltTrack(Parameters):
 class GrouserBeltTrack(Parameters):
     """A taut belt with grousers that travel along it, after Okada et al. (2020).
 
-    On the ground the grousers run rearwards with the belt, round the sprockets they turn with it,
-    on top they come back. Belt and grousers have no bodies of their own: they are where the drive
-    has run to, so that every contact pulls on the drive by its lever. The tips round the sprockets
-    are faster than the belt; a corner that comes down there lifts the robot by some hundredths of a
-    millimetre. Height and thickness are those of `robot.outline`, and both must be above 0.
+    The grousers run rearwards with the belt along the ground, turn with it round the sprockets and
+    come back on top. Belt and grousers are not bodies of their own: their place follows from the
+    travel of the drive, and every contact acts on the drive through its lever arm. Round the
+    sprockets the tips are faster than the belt; an edge met there lifts the robot by some
+    hundredths of a millimetre. Height and thickness are those of `robot.outline`; both must be > 0.
 
     Parameters
     ----------
     grouser_count : int, optional
-        Grousers of one belt, evenly spaced; None takes the whole number that comes nearest to the
+        Grousers per belt, evenly spaced; None takes the whole number that comes closest to the
         outline's `grouser_pitch`: 22 for the Engineer.
     """
 
@@ -211,55 +211,54 @@ class GrouserBeltTrack(Parameters):
 class SegmentalTrack(Parameters):
     """A chain of rigid shoes linked by pins, on a guide or on wheels (section 2.3, Figs. 9, 10).
 
-    Every shoe is a body. The outer faces of the plates run along the roots of the outline, the pins
-    in the middle of the plates, so that the robot stands as high as the built one. Grousers are
-    those of `robot.outline`, with a `grouser_height` of 0 there are none.
+    Every shoe is a body. The outer faces of the plates run along the roots of the outline and the
+    pins along the middle of the plates, so that the robot stands as high as the real one. Grousers
+    are those of `robot.outline`; with a `grouser_height` of 0 there are none.
 
-    *Guide*: the plates slide on a guide of the outline's shape without friction. The drive pulls on
-    the shoes round its rear end, with the same forces back on the chassis: a sprocket without
-    teeth, which counts its shoes.
+    *Guide*: the plates slide without friction on a guide of the outline's shape. The drive pulls on
+    the shoes round the rear end, and the chassis takes the reaction: a sprocket without teeth that
+    keeps count of its shoes.
 
-    *Sprocket*: the mechanism that one sees. A toothed wheel with a spin, an inertia and a torque
-    limit of its own at the rear, an idler at the front, road wheels and return rollers on the runs
-    between them. Nothing but the flanks of the teeth moves the chain, by its pins. The sprocket has
-    the number of teeth that comes nearest to the outline, and the radius that these need; it turns
-    evenly, and so the chain does not. Its teeth take the pins beside the plates. Wheels turn with
-    what they touch.
+    *Sprocket*: the full mechanism. At the rear a toothed wheel with its own speed, inertia and
+    torque limit, at the front an idler, between them road wheels and return rollers. The chain is
+    driven only by the flanks of the teeth, which act on its pins. The sprocket has the number of
+    teeth that comes closest to the outline, and the radius that follows; it turns evenly, so the
+    chain does not. The teeth take the pins beside the plates. Idler, road wheels and rollers turn
+    with what they touch.
 
-    In both, the front end sits on a spring and a damper, the tensioner, which takes up what the
-    polygon of the shoes needs more or less as it runs.
+    In both, the front end sits on a tensioner, a spring with a damper, which follows the small
+    changes of length that the polygon of shoes needs as it runs.
 
     A run has the forces and gaps of the pins (`Run.track_tension`, `max_track_tension`,
-    `max_pin_gap`), the places of its shoes (`Run.shoe_poses`), what the chain runs ahead of its
-    sprocket or behind (`max_sprocket_slip`), and may end as *detracked*.
+    `max_pin_gap`), the poses of the shoes (`Run.shoe_poses`), the slip between chain and sprocket
+    (`max_sprocket_slip`), and may end as *detracked*.
 
     Parameters
     ----------
     shoe_count : int, optional
-        Shoes of one chain, 3 to 400; None takes the whole number that comes nearest to the
-        outline's `grouser_pitch`: 22 for the Engineer. A shoe must be no longer than the smaller
-        end is thick, than half the distance of the axles, nor than a straight run, and weigh at
-        least a three-thousandth of the rest of the robot.
+        Shoes per chain, 3 to 400; None takes the whole number that comes closest to the outline's
+        `grouser_pitch`: 22 for the Engineer. A shoe must not be longer than the diameter of the
+        smaller end, half the axle distance or a straight run, and must weigh at least 1/3000 of the
+        rest of the robot.
     mechanism : {"guide", "sprocket"}
         What the chain runs on and what drives it.
     shoe_shape : {"rectangle", "trapezoid"}
-        A flat plate with a grouser on its middle, or one body that tapers from the pins to the tip.
+        A flat plate with a grouser in the middle, or one body that tapers from the pins to the tip.
     plate_thickness : float, optional
-        [m] Thickness of the plates. None takes a sixteenth of the pitch, our assumption.
+        [m] Thickness of the plates. None takes 1/16 of the pitch, our assumption.
     pre_tension : float, optional
-        [N] Force of the tensioner of one track. None takes a fortieth of the robot's weight, our
-        assumption: much more lifts the robot over the corners of the polygon.
+        [N] Force of the tensioner of one track. None takes 1/40 of the robot's weight, our
+        assumption: much more would lift the robot over the corners of the polygon.
     tensioner_stiffness : float, optional
-        [N/m] Stiffness of that tensioner. None lets a tenth of the pitch take all its force.
+        [N/m] Stiffness of that tensioner. None: a tenth of the pitch takes up its whole force.
     tensioner_damping : float, optional
-        [N s/m] Its damping. None is critical for the mass of one track.
+        [N s/m] Damping of that tensioner. None: critical damping for the mass of one track.
     road_wheel_count : int, optional
-        Wheels on the lower run of one track between sprocket and idler, 0 to 200. None takes as
-        many as leave at most a pitch between them: shoes sink where more is free. Only with a
-        sprocket.
+        Wheels on the lower run of one track between sprocket and idler, 0 to 200. None takes enough
+        to leave gaps of at most one pitch: shoes sink into larger gaps. Only with a sprocket.
     return_roller_count : int, optional
-        Rollers under the upper run of one track, 0 to 200. None takes as many as leave at most two
-        pitches between them. Only with a sprocket.
+        Rollers under the upper run of one track, 0 to 200. None takes enough to leave gaps of at
+        most two pitches. Only with a sprocket.
 
     Examples
     --------
@@ -290,18 +289,18 @@ class SegmentalTrack(Parameters):
 class ForceTrack(Parameters):
     """No moving surface: the drive pushes the chassis along its axis at axle height.
 
-    The force follows the speed command, is limited like the traction of a track, and acts in the
-    air too: that is the model's flaw, kept as it is.
+    The force follows the speed command and is limited like the traction of a track. It acts in the
+    air, too: a known flaw of this model, kept on purpose.
 
     Parameters
     ----------
     support : {"skids", "wheels"}
-        What carries the robot: skids of the outline's shape, or a line of round wheels that turn
-        freely, each by itself.
+        What carries the robot: skids in the shape of the outline, or a line of round wheels that
+        turn freely and independently.
     skid_friction : float
-        [-] Friction of the skids; the smaller of this and the terrain's friction acts.
+        [-] Friction of the skids; the smaller of this and the terrain's friction applies.
     wheel_count : int
-        Free wheels a side, the two at the end axles included; at least 2.
+        Free wheels per side, including the two at the end axles; at least 2.
     """
 
     kind: ClassVar[str] = "force"
@@ -321,4 +320,4 @@ Track = (
     | SegmentalTrack
     | ForceTrack
 )
-"""Every track model."""
+"""Any track model."""

@@ -1,1 +1,1 @@
-"""Robots of the literature and terrains of every kind, ready made."""
+"""Ready-made robots of the literature, and terrains of every kind."""

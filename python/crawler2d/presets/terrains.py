@@ -1,4 +1,4 @@
-"""Generators of terrains: the short way to write the ground of a scenario."""
+"""Functions that make terrains: the short way to write the ground of a scenario."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ random_stepfield = RandomStepfield
 
 
 def knife_edge(height: float, *, thickness: float = 0.01, **fields: float) -> Barrier:
-    """Make a barrier so thin that it fits between wheels.
+    """Make a barrier thin enough to fit between wheels.
 
     Parameters
     ----------
     height : float
         [m] Height, above 0.
     thickness : float
-        [m] Extent along x.
+        [m] Thickness along x.
     **fields : float
         Further fields of `Barrier`: `edge_radius` [m], `friction` [-].
 
@@ -92,14 +92,14 @@ def stepfield_with_barrier(
     Parameters
     ----------
     seed : int
-        Of the heights of the posts.
+        Seed of the heights of the posts.
     height : float, optional
-        [m] Of the barrier. None stands it half as high again as the highest post can be, 0.15 m
-        in the default field.
+        [m] Height of the barrier. None takes one and a half times the largest possible height of a
+        post, 0.15 m in the default field.
     thickness : float
         [m] Of the barrier.
     yaw : float
-        [rad] Turn of the barrier about the vertical, as that of a `DiagonalBarrier`.
+        [rad] Turn of the barrier about the vertical, as for `DiagonalBarrier`.
     **fields
         Further fields of `RandomStepfield`.
 
@@ -111,13 +111,13 @@ def stepfield_with_barrier(
     Raises
     ------
     ScenarioError
-        If the barrier's height is to follow from posts of no numbers.
+        If the barrier's height would follow from fields that are not numbers.
 
     Notes
     -----
     "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer" drives over such
-    fields (its Table 2) without their measures. Its Figures 18 and 19 have barriers of 0.10 and
-    0.20 m; 0.15 m is the middle, and the highest obstacle of its line of wheels (Table 3). The
+    fields (Table 2) without giving their dimensions. Its Figures 18 and 19 have barriers of 0.10
+    and 0.20 m; 0.15 m is the middle, and the highest obstacle of its line of wheels (Table 3). The
     thickness is an estimate: that of a post.
 
     Examples
@@ -129,7 +129,7 @@ def stepfield_with_barrier(
     if height is None:
         rise = real_number(field.rise, "terrain.rise")
         highest = rise * real_number(field.levels, "terrain.levels")
-        height = round(1.5 * highest, 9)  # to the nanometre: 0.15 is 0.15
+        height = round(1.5 * highest, 9)  # to the nanometre, so that 0.15 stays 0.15
     return replace(field, barrier_height=height)
 
 
@@ -141,7 +141,7 @@ def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
     points : array_like, shape (n, 2)
         [m] Points (x, y) from left to right or from right to left; copied.
     goal : float
-        [m] The x that the robot must leave behind.
+        [m] The x that the whole robot must pass.
     **fields : float
         Further fields of `Points`: `edge_radius` [m], `friction` [-].
 
@@ -153,7 +153,7 @@ def from_points(points: ArrayLike, *, goal: float, **fields: float) -> Points:
     Raises
     ------
     ScenarioError
-        If `points` is no array of real numbers of that shape.
+        If `points` is not an array of real numbers of that shape.
 
     Examples
     --------

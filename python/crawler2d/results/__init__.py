@@ -1,1 +1,1 @@
-"""What came out of a run, as data: outcome, diagnosis, figures, history."""
+"""Results of a run, as data: outcome, diagnosis, figures, history."""

@@ -1,4 +1,4 @@
-"""What there is to find of a stop, as data."""
+"""The findings about a stop, as data."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Condition", "Counterfactual", "Findings", "Intrusion", "Mechanism"]
 
 
 class Mechanism(StrEnum):
-    """How the ground inside the track is held; the first that fits."""
+    """How the ground inside the track is held; the first that applies, in this order."""
 
     BELLIED = "bellied"
     FOULED = "fouled"
@@ -41,19 +41,19 @@ class Intrusion:
     Attributes
     ----------
     edge : int
-        The edge that stands out and reaches deepest.
+        The convex edge that reaches deepest.
     edges : tuple of int
-        All edges in the piece, from the left.
+        All edges of the piece, from left to right.
     bodies : tuple of int
         The bodies on either side of the deepest point, in order of belt travel.
     body_kinds : tuple of int
-        What these are, as in the contacts.
+        Kinds of these bodies, as in the contacts.
     depth, root_depth : float
-        [m] Deepest reach below the belt round the circumscribed and the root circles.
+        [m] Depth inside the belt round the circumscribed circles and round the root circles.
     x, y : float
         [m] The deepest point.
     force : float
-        [N] Normal force on the piece, in the mean.
+        [N] Mean normal force on the piece.
     """
 
     edge: int
@@ -69,19 +69,19 @@ class Intrusion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counterfactual:
-    """How a closed belt fares in the pose of a stop; `Run.counterfactual` tries it.
+    """How a closed belt fares in the pose of a stop; see `Run.counterfactual`.
 
     Attributes
     ----------
     freed : bool
-        It advanced by more than `criteria.escape_distance` within `criteria.escape_time`: the stop
-        was the wheels' fault, *unnatural*.
+        Whether it advanced more than `criteria.escape_distance` within `criteria.escape_time`. If
+        so, the wheels caused the stop: it is *unnatural*.
     distance : float
-        [m] How far it got along the command in that time.
+        [m] How far it advanced in that time, in the commanded direction.
     time : float
-        [s] How long it took to get away; inf if it did not.
+        [s] How long it took to escape; inf if it did not.
     outcome : Outcome
-        How it stood in the end.
+        Its outcome at the end of that time.
     """
 
     freed: bool
@@ -91,13 +91,13 @@ class Counterfactual:
 
     @classmethod
     def from_core(cls, plain: Mapping[str, Any]) -> Counterfactual:
-        """Read what the core says."""
+        """Convert the dictionary that the core returns."""
         return cls(**{**plain, "outcome": Outcome(plain["outcome"])})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Findings:
-    """What a `Diagnosis` holds, which says what each of them is."""
+    """The fields of a `Diagnosis`, which documents them."""
 
     outcome: Outcome
     mechanism: Mechanism | None

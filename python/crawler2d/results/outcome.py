@@ -8,7 +8,7 @@ __all__ = ["Outcome"]
 
 
 class Outcome(StrEnum):
-    """How a run ended; where several apply, the first of this list.
+    """How a run ended; if several apply, the first in this list.
 
     Examples
     --------
@@ -29,7 +29,7 @@ class Outcome(StrEnum):
 
     @property
     def is_stop(self) -> bool:
-        """Whether the robot got nowhere although commanded."""
+        """Whether the robot made no progress although commanded to move."""
         return self in _STOPS
 
 

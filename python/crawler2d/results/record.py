@@ -1,4 +1,4 @@
-"""What came out of a run, as data: outcome, figures, history."""
+"""Results of a run, as data: outcome, figures, history."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ __all__ = ["Record"]
 
 
 class Record:
-    """What a `Run` holds, which says what each of them is; pictures are made of no more than this.
+    """The data of a `Run`, which documents them; pictures need nothing else.
 
     Parameters
     ----------
     scenario : Scenario
         What was simulated.
     result : mapping
-        What the core returned.
+        Results that the core returned.
     error : Crawler2dError, optional
-        Why there is no result.
+        The reason if there is no result.
     trunk : tuple of Scenario and float, optional
-        For a branch: what was simulated before it, and until when [s].
+        For a branch: the scenario it branched off from, and when [s].
     """
 
     def __init__(
@@ -59,24 +59,24 @@ class Record:
 
     @property
     def mechanism(self) -> Mechanism | None:
-        """How ground inside the track is held, if the run ended in a stop and there is any."""
+        """How ground inside the track is held, if the run ended in a stop with such ground."""
         return None if self.diagnosis is None else self.diagnosis.mechanism
 
     @property
     def is_creeping(self) -> bool:
-        """Whether it made a little way at its end, between `criteria.creep_from` and `creep_to`."""
+        """Whether its final progress was between `criteria.creep_from` and `criteria.creep_to`."""
         criteria = self.scenario.criteria
         progress = self.metrics.get("progress", 1.0)
         return criteria.creep_from <= progress < criteria.creep_to
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """[s] End of each sample interval, shape (n,)."""
+        """[s] Time at the end of each sample interval, shape (n,)."""
         return self._recorded("time")
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """[m] Origin of the chassis frame, x and y, shape (n, 2)."""
+        """[m] x and y of the origin of the chassis frame, shape (n, 2)."""
         return self._recorded("position")
 
     @property
@@ -91,7 +91,7 @@ class Record:
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:
-        """[rad/s] Rate of the chassis angle, shape (n,)."""
+        """[rad/s] Rate of change of the chassis angle, shape (n,)."""
         return self._recorded("angular_velocity")
 
     @property
@@ -101,27 +101,27 @@ class Record:
 
     @property
     def track_speed(self) -> NDArray[np.float64]:
-        """[m/s] Surface speed of the track, the mean of the drives, shape (n,)."""
+        """[m/s] Surface speed of the track, mean over the drives, shape (n,)."""
         return self._recorded("track_speed")
 
     @property
     def track_position(self) -> NDArray[np.float64]:
-        """[m] How far the surface has run, the mean of the drives, shape (n,)."""
+        """[m] How far the track surface has run, mean over the drives, shape (n,)."""
         return self._recorded("track_position")
 
     @property
     def slip_ratio(self) -> NDArray[np.float64]:
-        """[-] 1 - v / track_speed, 0 where the track stands, shape (n,)."""
+        """[-] 1 - v / track_speed, 0 where the track stands still, shape (n,)."""
         return self._recorded("slip_ratio")
 
     @property
     def tractive_effort(self) -> NDArray[np.float64]:
-        """[N] Force of the ground along the driven surfaces, mean over the interval, shape (n,)."""
+        """[N] Force of the ground along the driven surfaces, mean of the interval, shape (n,)."""
         return self._recorded("tractive_effort")
 
     @property
     def drive_force(self) -> NDArray[np.float64]:
-        """[N] Force of all motors at the surface, mean over the interval, shape (n,)."""
+        """[N] Force of all motors at the track surface, mean of the interval, shape (n,)."""
         return self._recorded("drive_force")
 
     @property
@@ -136,17 +136,17 @@ class Record:
 
     @property
     def drive_forces(self) -> NDArray[np.float64]:
-        """[N] Force of the motor of each drive, 0 for free wheels, interval means, shape (n, k)."""
+        """[N] Motor force of each drive, 0 for free wheels, mean of the interval, shape (n, k)."""
         return self._recorded("drive_forces")
 
     @property
     def track_tension(self) -> NDArray[np.float64]:
-        """[N] Largest force in a pin of a chain of shoes, 0 for other tracks, shape (n,)."""
+        """[N] Largest force in any pin of a chain of shoes, 0 for other tracks, shape (n,)."""
         return self._recorded("track_tension")
 
     @property
     def shoe_poses(self) -> NDArray[np.float64]:
-        """[m, m, rad] Middle x, y and direction of travel of each of s shoes, shape (n, s, 3).
+        """[m, m, rad] Origin x, y and direction of travel of each of s shoes, shape (n, s, 3).
 
         The origin of a shoe lies halfway between its pins; s is 0 for other tracks.
         """
@@ -154,12 +154,12 @@ class Record:
 
     @property
     def flipper_angles(self) -> NDArray[np.float64]:
-        """[rad] Of the flippers at each of k ends, the front first, upwards > 0, shape (n, k)."""
+        """[rad] Angle of the flippers at each of k ends, front first, upwards > 0, shape (n, k)."""
         return self._recorded("flipper_angles")
 
     @property
     def flipper_torques(self) -> NDArray[np.float64]:
-        """[N m] Of their motors, both sides together, upwards > 0, of the last step; (n, k)."""
+        """[N m] Of the flipper motors, both sides together, upwards > 0, last step; (n, k)."""
         return self._recorded("flipper_torques")
 
     @property
@@ -211,7 +211,7 @@ class Record:
 
     @property
     def contacts(self) -> Table:
-        """Contacts of robot and ground, one row a contact and sample; forces are interval means."""
+        """Contacts with the ground, one row per contact and sample; forces are interval means."""
         self._recorded("time")
         return self._contacts
 
@@ -238,7 +238,7 @@ class Record:
         return type(self), (self.scenario, result, self.error, self.trunk)
 
     def __repr__(self) -> str:
-        """Say what ran and how it ended."""
+        """Show what ran and how it ended."""
         return f"{type(self).__name__}({self.title})"
 
     @property
@@ -257,5 +257,5 @@ class Record:
 
 
 def _kind(part: object) -> str:
-    # A scenario that was refused may hold anything here.
+    # An invalid scenario may hold anything here.
     return str(getattr(part, "kind", type(part).__name__))

@@ -27,34 +27,33 @@ _NAMES = {
     BodyKind.ROAD_WHEEL: "a road wheel",
     BodyKind.ROLLER: "a return roller",
 }
-"""What a reader calls the bodies that are no wheels."""
+"""Names of the bodies that are not wheels."""
 _LEAST_SHARE = 0.02
-"""Smaller shares are noise to a reader."""
+"""Smaller shares are not worth telling."""
 _LEAST_DEPTH = 5e-4
-"""[m] Smaller depths are none in whole millimetres."""
+"""[m] Smaller depths round to 0 mm."""
 _LEAST_SLIP = 5e-3
-"""[m/s] Slower surfaces do not slip to a reader."""
+"""[m/s] Slower slip is not worth telling."""
 
 _MOVES = {
     "pocket": "a closed track",
-    "belly": "a robot without its belly",
+    "belly": "removing the belly",
     "torque": "more torque",
     "friction": "twice the friction",
 }
 
 
-# What the mechanism adds to who bears.
+# What the mechanism adds to the bodies that bear on the ground inside.
 _HELD = {
-    "interlocked": ", a grouser's flank against it",
-    "pinched": ", which close the gap that it is in",
+    "interlocked": ", with the flank of a grouser against it",
+    "pinched": ", closing the gap around it",
 }
 
 
 def sentence(found: Findings) -> str:
-    """Say what was found of a stop, most telling first.
+    """Say what was found about a stop, the most telling facts first.
 
-    Every clause is a fact of its own; what follows from the outcome or from another clause is left
-    out.
+    Each clause states one fact; what follows from the outcome or from another clause is left out.
     """
     d = found
     names = [str(d.outcome), *([] if d.mechanism is None else [str(d.mechanism)])]
@@ -81,17 +80,18 @@ def _inside(d: Findings) -> str:
         where = f"between two grousers of {_NAMES.get(kind, f'wheel {rear}')}"
     else:
         where = f"at {_NAMES.get(kind, f'wheel {rear}')}"
-    below = ""
+    roots = ""
     if has_grousers and rear != front:
-        deep = f"{1e3 * piece.root_depth:.0f} mm" if piece.root_depth > _LEAST_DEPTH else "not"
-        below = f", {deep} below the roots,"
-    place = f"at x {piece.x:z.3f} m, y {piece.y:z.3f} m"
-    reach = f"edge {piece.edge} reaches {1e3 * piece.depth:.0f} mm inside the envelope"
-    return f"{reach}{below} {where}, {place}"
+        is_past = piece.root_depth > _LEAST_DEPTH
+        how_far = f"{1e3 * piece.root_depth:.0f} mm past" if is_past else "not as far as"
+        roots = f" ({how_far} the grouser roots)"
+    place = f"at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
+    reach = f"edge {piece.edge} reaches {1e3 * piece.depth:.0f} mm into the track"
+    return f"{reach}{roots} {where}, {place}"
 
 
 def _in_chain(piece: Intrusion) -> list[str]:
-    """Name the wheels that a chain runs on, on either side of an intrusion."""
+    """Name the wheels that the chain runs on, on either side of an intrusion."""
     names = [_NAMES[BodyKind(kind)] for kind in piece.body_kinds]
     return [names[0], "the next"] if names[0] == names[1] else names
 
@@ -113,15 +113,16 @@ def _on_it(d: Findings) -> str:
     names = [_name(d, body) for body in told]
     if len(names) == 2 and names[0] == names[1]:
         names[1] = "another"
-    does = ["slide" if sliding[body] > 0.5 * forces[body] else "bear" for body in told]
-    with_force = [f"with {forces[body]:.0f} N" for body in told]
+    slides = [sliding[body] > 0.5 * forces[body] for body in told]
+    does = ["slides on it under a load of" if slide else "bears on it with" for slide in slides]
+    newtons = [f"{forces[body]:.0f} N" for body in told]
     if not told:
         return ""
-    said = f"{names[0]} {does[0]}s on it {with_force[0]}"
+    said = f"{names[0]} {does[0]} {newtons[0]}"
     if len(told) == 2 and does[0] != does[1]:
-        said += f" and {names[1]} {does[1]}s on it {with_force[1]}"
+        said += f" and {names[1]} {does[1]} {newtons[1]}"
     elif len(told) == 2:
-        said += f", {names[1]} {with_force[1]}"
+        said += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
     return said + _HELD.get(str(d.mechanism), "")
 
 
@@ -132,7 +133,7 @@ def _name(d: Findings, body: int) -> str:
 
 
 def _is_belt(d: Findings) -> bool:
-    """Tell a belt, with grousers or without, by what is inside of it, or by what bears."""
+    """Whether the track is a belt, with or without grousers."""
     if d.intrusion is not None:
         return d.intrusion.body_kinds[0] == BodyKind.BELT
     kinds = d.contacts["body_kind"]
@@ -145,37 +146,38 @@ def _belly(d: Findings) -> str:
     on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == BodyKind.BELLY)
     if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != "hung_up"):
         return ""
-    return f"{_percent(d.belly_share)} of the load rests on the belly"
+    return f"the belly carries {_percent(d.belly_share)} of the load"
 
 
 def _drives(d: Findings) -> str:
-    """Say what motors and surfaces do, where the ground inside the track has not said it."""
+    """Say what motors and surfaces do, unless the ground inside the track implies it."""
     if d.stalled_share > 0.0:
-        of = "" if d.stalled_share == 1.0 else f"{d.stalled_share:.0%} of ".replace("%", " %")
-        return f"{of}its motors stand at their torque limit"
+        of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
+        return f"{of}the motors are at their torque limit"
     track = d.contacts["body_kind"] != BodyKind.BELLY
     forces = d.contacts["normal_force"][track]
     if d.outcome not in ("slipping", "cycling") or forces.sum() == 0.0:
         return ""
     slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
-    return f"its track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
+    return f"the track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
 
 
 def _progress(d: Findings) -> str:
     if d.progress < _LEAST_SHARE:
         return ""
-    return f"it creeps on at {_percent(d.progress)} of what is commanded"
+    return f"it still creeps at {_percent(d.progress)} of the commanded speed"
 
 
 def _moved_by(d: Findings) -> str:
-    """Say what would end the equilibrium: conditions relaxed, or a push."""
+    """Say what would end the equilibrium: relaxing a condition, or a push."""
     if not d.certified:
         if d.imbalance is None:
-            return "its balance could not be computed"
-        return f"no contact forces balance it: {100 * d.imbalance:.2g} % of the weight is missing"
-    # What a belt does there has been tried, and that is said on its own.
+            return "the balance of forces could not be computed"
+        residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
+        return f"no contact forces balance it: {residual}"
+    # If a closed belt has been tried, `_belt` says how it fared.
     tried = () if d.counterfactual is None else (("pocket",),)
-    ways = [" with ".join(_MOVES[each] for each in way) for way in d.cause if way not in tried]
+    ways = [" plus ".join(_MOVES[each] for each in way) for way in d.cause if way not in tried]
     push = d.escape_force
     wedged = push is not None and math.isinf(push)
     if push is not None and not wedged:
@@ -186,22 +188,24 @@ def _moved_by(d: Findings) -> str:
     if wedged:
         in_vain.append("any push")
     if ways:
-        but = f", but not {' or '.join(in_vain)}" if in_vain else ""
-        return f"{_listed(ways)} would move it on{but}"
+        no_help = "no push would" if wedged else f"{in_vain[0]} would not" if in_vain else ""
+        but = f", but {no_help}" if no_help else ""
+        return f"{_listed(ways)} would free it{but}"
     if len(in_vain) == 2:
-        return f"neither {in_vain[0]} nor {in_vain[1]} would move it on"
+        return f"neither {in_vain[0]} nor {in_vain[1]} would free it"
     if wedged:
-        return "no push would move it on"
-    return f"{in_vain[0]} would not move it on" if in_vain else ""
+        return "no push would free it"
+    return f"{in_vain[0]} would not free it" if in_vain else ""
 
 
 def _belt(d: Findings) -> str:
     if d.counterfactual is None or _is_belt(d):
         return ""
     if d.counterfactual.freed:
-        return "a closed belt gets away"
-    further = 1e3 * d.counterfactual.distance
-    return f"a closed belt gets {f'{further:.0f} mm' if further >= 0.5 else 'no'} further"
+        return "a closed belt escapes from the same pose"
+    advance = 1e3 * d.counterfactual.distance
+    how_far = f" (it advances {advance:.0f} mm)" if advance >= 0.5 else ""
+    return f"a closed belt does not escape from the same pose either{how_far}"
 
 
 def _percent(share: float) -> str:

@@ -1,1 +1,1 @@
-"""From scenarios to runs, and what can be done with a run."""
+"""Simulate scenarios, and use the resulting runs."""

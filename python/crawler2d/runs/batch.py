@@ -1,4 +1,4 @@
-"""From scenarios to runs: one, or many on several threads."""
+"""Simulate one scenario, or many on several threads."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ def simulate(
     scenario : Scenario or Robot
         What to simulate; a robot needs a terrain.
     terrain : Terrain, optional
-        The ground; replaces that of a scenario.
+        The ground; replaces the scenario's.
     record : {"full", "summary"}
         Whether to keep the history, or only outcome, metrics and events.
     sample_interval : float
-        [s] Time between two samples of the history, rounded to whole time steps.
+        [s] Time between samples of the history, rounded to whole time steps.
     counterfactual : bool
-        Whether to try a closed belt at the stop that the run ends in; see `Run.counterfactual`.
+        Whether to try a closed belt if the run ends in a stop; see `Run.counterfactual`.
     **fields : object
-        Further fields of the scenario, such as ``duration=5.0``.
+        Other fields of the scenario, such as ``duration=5.0``.
 
     Returns
     -------
@@ -60,8 +60,8 @@ def simulate(
     ScenarioError
         If the scenario breaks a rule; nothing has been simulated.
     LimitError
-        If the run needs more memory than the environment variable CRAWLER2D_MEMORY allows [GiB], 8
-        without it, or than the system gives.
+        If the run needs more memory than the system has, or than the environment variable
+        CRAWLER2D_MEMORY allows [GiB]; the default is 8.
     SimulationDiverged
         If the state became non-finite.
 
@@ -96,19 +96,19 @@ def simulate_many(
         What to simulate.
     threads : int, optional
         1 to 1024; None takes every core of this process. The environment variable
-        CRAWLER2D_THREADS limits both.
+        CRAWLER2D_THREADS is an upper limit.
     record : {"full", "summary"}
         Whether to keep the histories, or only outcomes, metrics and events.
     sample_interval : float
-        [s] Time between two samples of a history, rounded to whole time steps.
+        [s] Time between samples of the histories, rounded to whole time steps.
     counterfactual : bool
-        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
+        Whether to try a closed belt for every run that ends in a stop; see `Run.counterfactual`.
     progress : bool or callable
-        True shows a bar; a callable gets the numbers of finished runs and of all runs.
+        True shows a bar; a callable is given the number of finished runs and of all runs.
     on_error : {"raise", "record"}
-        What a scenario without a result does. "raise" ends the batch with its error: before the
-        first run if a scenario breaks a rule, after the last if a run failed. "record" keeps the
-        error in `Run.error` and all other runs, whatever one of them does.
+        What to do if a scenario gives no result. "raise" raises its error: before the first run if
+        a scenario breaks a rule, after the last run if a run failed. "record" keeps the error in
+        `Run.error`, and all other runs.
 
     Returns
     -------
@@ -121,11 +121,11 @@ def simulate_many(
         If a scenario or an argument breaks a rule; the path begins with ``scenarios[i]``.
     LimitError
         If `threads` or an environment variable is out of range, or the batch needs more memory
-        than the variable CRAWLER2D_MEMORY allows [GiB], 8 without it, or than the system gives.
+        than the system has or than CRAWLER2D_MEMORY allows [GiB]; the default is 8.
     SimulationDiverged
         If a state became non-finite.
     BatchInterrupted
-        On Ctrl-C; its `runs` keeps what was finished, and the scenarios of the others.
+        On Ctrl-C; its `runs` holds the finished runs, and the scenarios of the others.
 
     Examples
     --------
@@ -158,7 +158,7 @@ def simulate_passed(
     threads: int,
     progress: bool | Progress | None,
 ) -> list[Run]:
-    """Run what has passed the door; what was refused is a run with its error."""
+    """Simulate the valid scenarios; the others become runs with their errors."""
     passed = [scenario for scenario in checked if isinstance(scenario, _core.Passed)]
     with reporter(progress, len(passed)) as callback:
         results, interrupted = _core.simulate_many(passed, threads, *recorded, callback)
@@ -183,13 +183,13 @@ def _complete(scenario: Scenario | Robot, terrain: Terrain | None) -> Scenario:
 
 
 def _checked(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
-    """Open the door to each scenario; of those that are refused, say why."""
+    """Validate each scenario; return the error of those that break a rule."""
     results: list[_core.Passed | ScenarioError] = []
     last = None
     for index, scenario in enumerate(batch):
         place = f"scenarios[{index}]"
         if not isinstance(scenario, Scenario):
-            raise ScenarioError(place, scenario, "must be a Scenario")  # nothing a Run could hold
+            raise ScenarioError(place, scenario, "must be a Scenario")  # a Run could not hold it
         try:
             last = _core.Passed(scenario.to_json(), last)
             results.append(last)
@@ -214,6 +214,6 @@ def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> R
     error = result.get("error")
     if error is None:
         return Run(scenario, result)
-    if not isinstance(error, Crawler2dError):  # such as a MemoryError while its arrays were made
+    if not isinstance(error, Crawler2dError):  # such as a MemoryError while its arrays were created
         error = InternalError(f"{type(error).__name__}: {error}")
     return Run(scenario, {}, error)

@@ -1,4 +1,4 @@
-"""The same instant of a run with something changed."""
+"""Continue a run from one of its instants, with something changed."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ __all__ = ["branch_scenario", "branch_time", "simulate_branch", "try_belt"]
 
 
 def branch_time(run: Record, at: float | str) -> float:
-    """[s] The instant that `at` names: a time of the run, or the stop that it ended in."""
+    """[s] The instant given by `at`: a time of the run, or the stop it ended in."""
     if run.trunk is not None:
-        raise ScenarioError("run", run, "must have begun at its start; branch the run it came from")
+        raise ScenarioError("run", run, "must not be a branch itself: branch the original run")
     if run.error is not None:
-        raise ScenarioError("run", run, f"must have a result: {run.error}")
+        raise ScenarioError("run", run, f"must have a result, but ended with: {run.error}")
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
             raise ScenarioError("at", at, "must be a time: the run did not end in a stop")
@@ -39,7 +39,7 @@ def branch_time(run: Record, at: float | str) -> float:
 
 
 def branch_scenario(run: Record, changes: dict[str, Any]) -> Scenario:
-    """Change what is given of a run's scenario."""
+    """Change the given fields of a run's scenario."""
     paths = {
         "track": "robot.track",
         "friction": "terrain.friction",
@@ -53,7 +53,7 @@ def branch_scenario(run: Record, changes: dict[str, Any]) -> Scenario:
 def simulate_branch(
     run: Record, time: float, variant: Scenario, record: Recording, sample_interval: float
 ) -> dict[str, Any]:
-    """Repeat the run up to a time, and go on from there as another scenario."""
+    """Repeat the run up to a time, and continue as another scenario."""
     recorded = recording(sample_interval, record)
     return _core.branch(run.scenario.to_json(), time, variant.to_json(), *recorded)
 

@@ -1,4 +1,4 @@
-"""What Ctrl-C leaves of a batch."""
+"""The runs that a batch had finished at Ctrl-C."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class BatchInterrupted(KeyboardInterrupt):
     Parameters
     ----------
     runs : sequence of Run
-        One a scenario, in order. Where a run was not finished, its `error` is a `RunUnfinished`.
+        One per scenario, in order. An unfinished run has a `RunUnfinished` as its `error`.
     """
 
     runs: list[Run]
@@ -30,6 +30,6 @@ class BatchInterrupted(KeyboardInterrupt):
         self.runs = list(runs)
 
     def __str__(self) -> str:
-        """Say how far the batch came."""
+        """Say how many runs were finished."""
         finished = sum(not isinstance(run.error, RunUnfinished) for run in self.runs)
-        return f"interrupted after {finished} of {len(self.runs)} runs; .runs keeps them"
+        return f"interrupted after {finished} of {len(self.runs)} runs; .runs holds them"

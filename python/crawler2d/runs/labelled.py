@@ -54,7 +54,7 @@ def to_dataset(run: Record) -> xarray.Dataset:
     variables = {}
     for name, unit in UNITS.items():
         values = getattr(run, name)
-        if name == "time" or not values.size:  # a track without shoes has no poses of shoes
+        if name == "time" or not values.size:  # shoe_poses is empty for tracks without shoes
             continue
         dimensions = ("time", *_DIMENSIONS.get(name, ()))
         attributes = {"units": unit, "long_name": name.replace("_", " ")}

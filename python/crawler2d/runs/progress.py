@@ -1,4 +1,4 @@
-"""How far a batch has come, for a person: a bar where tqdm is there, else a line."""
+"""Progress of a batch: a bar if tqdm is installed, else a line of text."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from crawler2d.errors import ScenarioError
 Progress = Callable[[int, int], None]
 """Called with the number of finished runs and of all runs."""
 
-# [s] Between two lines where there is no terminal to overwrite.
+# [s] Time between two lines if the output is not a terminal.
 _BETWEEN_LINES = 5.0
 
 
 @contextlib.contextmanager
 def reporter(progress: bool | Progress | None, total: int) -> Iterator[Progress | None]:
-    """Turn the argument `progress` into a callback for the time of a batch.
+    """Turn the argument `progress` into a callback for one batch.
 
     Parameters
     ----------
     progress : bool, callable or None
-        True reports to a person, False and None to nobody; a callable is used as it is.
+        True shows a bar or a line, False and None nothing; a callable is used as it is.
     total : int
         Number of runs.
 
@@ -48,7 +48,7 @@ def reporter(progress: bool | Progress | None, total: int) -> Iterator[Progress 
 def _bar(total: int) -> Iterator[Progress]:
     try:
         tqdm = extra("tqdm.auto", "progress").tqdm
-    except ImportError:  # a line tells as much
+    except ImportError:  # then a line must do
         yield _line()
         return
     with tqdm(total=total, unit="run") as bar:
@@ -60,7 +60,7 @@ def _bar(total: int) -> Iterator[Progress]:
 
 
 def _line() -> Progress:
-    """Write one line that overwrites itself on a terminal, and one every few seconds elsewhere."""
+    """Write one line, overwritten on a terminal; elsewhere a new line every few seconds."""
     begin = last = time.monotonic()
 
     def write(done: int, total: int) -> None:

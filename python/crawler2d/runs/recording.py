@@ -1,4 +1,4 @@
-"""What to keep of a run, and whether to ask about its stop."""
+"""Arguments that say what to keep of a run."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ Recording = Literal["full", "summary"]
 
 
 def recording(sample_interval: object, record: object) -> tuple[float, str]:
-    """Check the two arguments that say what is kept."""
+    """Check the arguments that say what to keep of a run."""
     if record not in ("full", "summary"):
         raise ScenarioError("record", record, "must be one of full, summary")
     return real_number(sample_interval, "sample_interval"), str(record)
 
 
 def yes_or_no(value: object, path: str) -> bool:
-    """Take a truth value, and nothing that merely counts as one."""
+    """Accept True or False only, nothing that is merely truthy."""
     if not isinstance(value, (bool, np.bool_)):
         raise ScenarioError(path, value, "must be True or False")
     return bool(value)

@@ -1,4 +1,4 @@
-"""What came out of a run, and what can be done with it: branch, draw, replay, export."""
+"""A finished run, and what can be done with it: branch, draw, replay, export."""
 
 from __future__ import annotations
 
@@ -24,32 +24,32 @@ __all__ = ["Run"]
 
 
 class Run(Record):
-    """One finished run; `simulate` makes them.
+    """One finished run, as `simulate` returns it.
 
     Its arrays are read-only and share their first dimension, the n samples of `time`. With
-    ``record="summary"`` there is no history, and asking for it is an AttributeError that says so.
+    ``record="summary"`` there is no history; using it raises an AttributeError that says so.
 
     Attributes
     ----------
     scenario : Scenario
         What was simulated.
     outcome : Outcome or None
-        How it ended; None where `error` says why there is no result.
+        How it ended; None if there is no result, see `error`.
     diagnosis : Diagnosis or None
-        Why it stopped, if it ended in a stop; ``print(run.diagnosis)`` says it in a sentence.
+        Why it stopped, if it did; ``print(run.diagnosis)`` says it in one sentence.
     metrics : dict of str to float
-        Figures of the whole run, see the notes; ``dict(run.metrics)`` is a copy that can be
-        changed.
+        Figures of the whole run, listed below. They are read-only; ``dict(run.metrics)`` is a copy
+        that can be changed.
     edges : Table
         Corners of the ground: `id`, `lane`, `x`, `y` [m], `angle` [rad] (convex > 0), `radius` [m].
     events : Table
-        Stops, and edges inside the track, see the notes.
+        Stops, and edges inside the track; see below.
     wall_time : float
-        [s] Computing time of one thread.
+        [s] Computing time on one thread.
     error : Crawler2dError or None
-        Why there is no result, in a batch with ``on_error="record"`` or one that was interrupted.
+        Why there is no result, in a batch that was interrupted or has ``on_error="record"``.
     trunk : tuple of Scenario and float, or None
-        For a branch: what was simulated before it, and until when [s].
+        For a branch: the scenario it branched off from, and when [s].
 
     Notes
     -----
@@ -59,62 +59,61 @@ class Run(Record):
     name                     unit   meaning
     =======================  =====  ===============================================================
     `time`                   s      simulated time
-    `time_to_clear`          s      when the goal was reached and from then on held; inf if not
+    `time_to_clear`          s      when the goal was reached and then held; inf if it was not
     `final_x`, `final_y`     m      last position of the chassis frame
     `final_angle`            rad    last chassis angle
-    `distance`               m      final x less that of the start
-    `track_distance`         m      how far the track surface has run: of wheels what odometry with
-                                    the circumscribed radius reads, of belts the way of the belt
-    `path_length`            m      how far the chassis frame has truly gone, along its own axis
+    `distance`               m      final x minus initial x
+    `track_distance`         m      how far the track surface has run: for wheels, what odometry
+                                    with the circumscribed radius reads; for belts, the belt travel
+    `path_length`            m      how far the chassis frame has moved along its own axis
     `max_angle`,             rad    of the chassis
     `min_angle`
     `max_penetration`        m      deepest overlap of any part with the ground
     `drive_work`             J      work of the motors
-    `stopped_time`           s      spent in stops
-    `time_to_free`           s      longest stop from which the robot freed itself, 0 if none
+    `stopped_time`           s      time spent in stops
+    `time_to_free`           s      longest stop that the robot got out of by itself, 0 if none
     `progress`               -      share of the commanded distance made in the last stop window
     `vertical_acceleration`  m/s^2  of the chassis frame, averaged over 10 ms; root mean square
-    `angular_velocity`       rad/s  rate of the chassis angle, root mean square
-    `intrusion_depth`        m      greatest depth of the most loaded of the intrusions that last to
-                                    the end, below the circumscribed circles; 0 if there is none
-    `intrusion_root_depth`   m      the same below the root circles
+    `angular_velocity`       rad/s  rate of change of the chassis angle, root mean square
+    `intrusion_depth`        m      largest depth, below the circumscribed circles, of the most
+                                    loaded intrusion that lasts to the end; 0 if there is none
+    `intrusion_root_depth`   m      the same, below the root circles
     `intrusion_force`        N      its mean normal force
     `max_track_tension`      N      largest force in a pin of a chain of shoes; 0 without one
-    `max_pin_gap`            m      farthest that a pin was off
+    `max_pin_gap`            m      largest gap of a pin
     `max_guide_penetration`  m      deepest overlap of a shoe with guide, wheels or teeth
-    `max_sprocket_slip`      m      farthest that a chain ran ahead of its sprocket or behind; some
-                                    hundredths of a pitch are the play of the teeth
-    `solves`                 -      searches for the forces that all contacts, motors and pins agree
-                                    on
-    `solve_rounds`           -      linear systems solved in them: one a solve where the first guess
-                                    of what sticks and what slides fits
-    `descents`               -      solves in which guesses could not be mended and a descent took
+    `max_sprocket_slip`      m      largest slip between a chain and its sprocket, ahead or behind;
+                                    some hundredths of a pitch are the play of the teeth
+    `solves`                 -      searches for forces that satisfy all contacts, motors and pins
+    `solve_rounds`           -      linear systems solved in them: one per solve if the first guess
+                                    of what sticks and what slides is right
+    `descents`               -      solves in which no guess was right and a descent method took
                                     over
-    `unresolved_solves`      -      solves that ended without agreement: their friction was cut
-                                    until it added no energy
+    `unresolved_solves`      -      solves that found no consistent forces: their friction was
+                                    reduced until it added no energy
     =======================  =====  ===============================================================
 
     On level ground the track distance exceeds the path length by the slip; on gear wheels also
-    because these roll on less than their circumscribed circle. On uneven ground the two differ
-    without slip, too: the track runs less where the nose comes down over a crest, and more in a
-    hollow. A belt with grousers reads less than its way over ridges: where it stands on its ends,
-    the tips are faster than the belt.
+    because they roll on less than their circumscribed circle. On uneven ground the two differ even
+    without slip: the track runs less where the nose comes down over a crest, and more in a hollow.
+    A belt with grousers reads less than the distance driven over ridges: where it stands on its
+    ends, the tips are faster than the belt.
 
-    The events, in order of their start. One of the kind "stop" is a span without progress although
-    commanded; one of the kind "intrusion" is a span in which an edge was deeper than
-    `criteria.intrusion_depth` within the taut belt round the track's own bodies. A stop carries the
-    most loaded of the intrusions present at its end. What lasts ends with the run.
+    The events, in order of their start. A "stop" is a span without progress although commanded to
+    move; an "intrusion" is a span in which an edge was deeper than `criteria.intrusion_depth`
+    inside the taut belt round the track's own bodies. A stop has the most loaded of the intrusions
+    present at its end. Events still under way end with the run.
 
     ================  ====  =======================================================================
     column            unit  meaning
     ================  ====  =======================================================================
     `kind`                  "stop" or "intrusion"
-    `start`, `end`    s     when
+    `start`, `end`    s     start and end
     `lane`                  0 under both tracks, 1 the left one, 2 the right one, 3 the belly
     `edge`                  id of the edge, -1 if none
-    `bodies`                bodies on either side of it, in order of belt travel; () if none
-    `depth`           m     deepest reach below the belt round the circumscribed circles
-    `root_depth`      m     deepest reach below the belt round the root circles
+    `bodies`                bodies on either side of the edge, in order of belt travel; () if none
+    `depth`           m     largest depth inside the belt round the circumscribed circles
+    `root_depth`      m     largest depth inside the belt round the root circles
     `force`           N     normal force on that piece of ground, mean over the event
     ================  ====  =======================================================================
     """
@@ -130,16 +129,16 @@ class Run(Record):
         record: Recording = "full",
         sample_interval: float = 0.01,
     ) -> Run:
-        """Go on from an instant of this run with something changed.
+        """Continue from an instant of this run with something changed.
 
-        The run is repeated up to that instant, bit by bit, and goes on from the same pose and
-        speeds; what is not changed goes on as it was. Ground that is inside the new track is let
+        The run is repeated bit by bit up to that instant, and continues from the same pose and
+        speeds; what is not changed goes on as before. Ground that is inside the new track is let
         out without a push: the track is dented there, and the dent heals as the robot moves on.
 
         Parameters
         ----------
         at : float or "stop"
-            [s] When; "stop" is the instant of the diagnosis.
+            [s] The instant; "stop" is that of the diagnosis.
         track : track model, optional
             Another model of the robot's track.
         friction : float, optional
@@ -147,22 +146,22 @@ class Run(Record):
         drive : Drive, optional
             Another command.
         duration : float, optional
-            [s] How long to go on; None takes that of the scenario, counted from the instant.
+            [s] How long to continue; None takes the scenario's duration, from that instant.
         record : {"full", "summary"}
             Whether to keep the history, or only outcome, metrics and events.
         sample_interval : float
-            [s] Time between two samples of the history, rounded to whole time steps.
+            [s] Time between samples of the history, rounded to whole time steps.
 
         Returns
         -------
         Run
-            From that instant on; its stops, figures and outcome count from there.
+            The run from that instant on; stops, metrics and outcome count from there.
 
         Raises
         ------
         ScenarioError
-            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or
-            a change breaks a rule.
+            If `at` is not a time of the run, or is "stop" and the run did not end in one; if this
+            run is a branch itself; if a change breaks a rule.
 
         Examples
         --------
@@ -181,29 +180,29 @@ class Run(Record):
     def counterfactual(
         self, at: float | Literal["stop"] = "stop", *, grousers: bool = False
     ) -> Counterfactual:
-        """Try a closed belt in the pose of an instant: same envelope, force, friction and speeds.
+        """Try a closed belt in the same pose, with the same envelope, force, friction and speeds.
 
         Parameters
         ----------
         at : float or "stop"
-            [s] When; "stop" is the instant of the diagnosis.
+            [s] The instant; "stop" is that of the diagnosis.
         grousers : bool
-            Whether the belt has grousers that travel with it, as `GrouserBeltTrack`: as high as
-            those of the track, at the pitch of the outline. That is the fair one for gear wheels
-            and shoes, whose grip a smooth belt has not. Where ground lies deeper inside than
-            grousers are high, those that come to it hook on what no belt has inside: there an
-            escape tells more than a failure, and of the smooth belt both tell.
+            Whether the belt has grousers that travel with it, as `GrouserBeltTrack` has: as high as
+            those of the track, at the pitch of the outline. For gear wheels and shoes that is the
+            fair comparison, because a smooth belt lacks their grip. Where ground lies deeper inside
+            than the grousers are high, arriving grousers hook on ground that no belt would have
+            inside: then an escape means more than a failure. Of the smooth belt, both count.
 
         Returns
         -------
         Counterfactual
-            Whether it gets away, and how far.
+            Whether it escapes, and how far it gets.
 
         Raises
         ------
         ScenarioError
-            If `at` is no time of the run, the run did not end in a stop, or is a branch itself, or
-            the track has no grousers where `grousers` asks for them.
+            If `at` is not a time of the run, or is "stop" and the run did not end in one; if this
+            run is a branch itself; if `grousers` is True and the track has none.
 
         Examples
         --------
@@ -215,13 +214,13 @@ class Run(Record):
         return branching.try_belt(self, branching.branch_time(self, at), grousers)
 
     def to_xarray(self) -> xarray.Dataset:
-        """Copy the history to a labelled data set.
+        """Copy the history to a labelled dataset.
 
         Returns
         -------
         xarray.Dataset
-            One variable an array, dimensions `time`, `axis` ("x", "y") and `drive`, units in the
-            attributes; outcome, metrics and scenario are attributes of the set.
+            One variable per array, dimensions `time`, `axis` ("x", "y") and `drive`, units in the
+            attributes; outcome, metrics and scenario are attributes of the dataset.
 
         Raises
         ------
@@ -242,14 +241,14 @@ class Run(Record):
         Parameters
         ----------
         time : array_like, shape (k,), optional
-            [s] When to draw the robot; None takes about one robot length between drawings.
+            [s] When to draw the robot; None draws it about every robot length.
         axes : Axes or tuple of 4 Axes, optional
-            Where to draw: one Axes takes the side view alone. None makes a figure.
+            Where to draw; a single Axes gets the side view only. None makes a figure.
 
         Returns
         -------
         tuple of Axes
-            Side view, chassis angle, track speed, drive force; or the side view alone.
+            Side view, chassis angle, track speed, drive force; or only the side view.
 
         Raises
         ------
@@ -271,16 +270,16 @@ class Run(Record):
     def to_html(
         self, path: str | PathLike[str] | None = None, *, time: float | None = None
     ) -> str | Path:
-        """Write one HTML page that replays the run; it needs no network and no other file.
+        """Write one self-contained HTML page that replays the run.
 
-        A run of more than 3000 samples is thinned to at most so many, and the page says so.
+        A run of more than 3000 samples is thinned to at most 3000, and the page says so.
 
         Parameters
         ----------
         path : str or path-like, optional
             Where to write the page; None returns its text.
         time : float, optional
-            [s] Instant that the page opens at; None takes the end where the run stopped, else the
+            [s] Instant at which the page opens; None takes the end if the run stopped, else the
             beginning.
 
         Returns
@@ -295,7 +294,7 @@ class Run(Record):
         AttributeError
             If the run was recorded with ``record="summary"``.
         """
-        # They cost nothing until used.
+        # Imported only when used.
         from pathlib import Path  # noqa: PLC0415
 
         from crawler2d.pictures.page import replay_page  # noqa: PLC0415
@@ -307,7 +306,7 @@ class Run(Record):
         return Path(path)
 
     def _repr_html_(self) -> str:
-        """Replay the run in a notebook, or show its figures where there is no history."""
+        """Replay the run in a notebook, or show its metrics if there is no history."""
         from crawler2d.pictures.page import embedded  # noqa: PLC0415 - costs nothing until used
 
         return embedded(self)

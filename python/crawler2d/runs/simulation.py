@@ -23,26 +23,26 @@ __all__ = ["Simulation", "State"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class State:
-    """The state at one instant; the names are those of the arrays of a `Run`.
+    """The state at one instant, with the names of the arrays of a `Run`.
 
     Attributes
     ----------
     time : float
         [s] Simulated time.
     position, velocity : ndarray, shape (2,)
-        [m], [m/s] Of the origin of the chassis frame.
+        [m], [m/s] Position and velocity of the origin of the chassis frame.
     chassis_angle, angular_velocity : float
         [rad], [rad/s] Nose up > 0.
     commanded_speed : float
         [m/s] Set-point of the drivetrain, within its acceleration limits.
     track_speed : float
-        [m/s] Surface speed, the mean of the drives.
+        [m/s] Surface speed of the track, mean over the drives.
     track_position : float
-        [m] How far the surface has run, the mean of the drives.
+        [m] How far the track surface has run, mean over the drives.
     flipper_angles : ndarray, shape (k,)
-        [rad] Of the flippers at each of k ends, the front first, over the chassis, upwards > 0.
+        [rad] Of the flippers at each of k ends, front first, relative to the chassis, upwards > 0.
     contacts : Table
-        Contacts of this instant, forces of the last time step.
+        Contacts at this instant, with the forces of the last time step.
     outcome : Outcome or None
         The outcome, once it is certain.
     """
@@ -61,15 +61,15 @@ class State:
 
 
 class Simulation:
-    """A scenario under way.
+    """A running simulation of a scenario.
 
-    Nothing ends it: it can be advanced beyond the scenario's duration and outcome. Any thread may
-    use it, one at a time. A copy, also by `copy` or `pickle`, is independent, as by `snapshot`.
+    It has no end: it can be advanced beyond the scenario's duration and outcome. Any thread may use
+    it, one at a time. A copy, also one made by `copy` or `pickle`, is independent.
 
     Parameters
     ----------
     scenario : Scenario
-        What to simulate; the robot stands at its start.
+        What to simulate; the robot is at its start.
 
     Raises
     ------
@@ -99,19 +99,19 @@ class Simulation:
         return self._core.time
 
     def advance(self, duration: float) -> None:
-        """Simulate on.
+        """Advance the simulation.
 
         Parameters
         ----------
         duration : float
-            [s] For how long, rounded to whole time steps.
+            [s] By how much, rounded to whole time steps.
 
         Raises
         ------
         ScenarioError
-            If `duration` is no number or out of range.
+            If `duration` is not a number or out of range.
         SimulationDiverged
-            If the state became non-finite; the simulation cannot go on.
+            If the state became non-finite; the simulation cannot continue.
         """
         self._core.advance(real_number(duration, "duration"))
 
@@ -128,21 +128,20 @@ class Simulation:
         Parameters
         ----------
         speed : float, optional
-            [m/s] Track speed; above 0 drives towards +x, until the schedule has its next. None
-            leaves it as it is.
+            [m/s] Track speed; above 0 drives towards +x, until the next entry of the schedule.
+            None leaves it unchanged.
         flipper_angle, rear_flipper_angle : float, optional
-            [rad] Of the flippers at the front and at the rear, over the chassis, upwards > 0; from
-            now on, whatever the gait. None leaves them as they are.
+            [rad] Of the flippers at the front and at the rear, relative to the chassis, upwards >
+            0; from now on, overriding the gait. None leaves them unchanged.
         push : float, optional
-            [N] Horizontal force of the surroundings at the centre of mass, from now on; above 0
-            pushes towards +x. None leaves it as it is.
+            [N] Horizontal external force at the centre of mass, from now on; above 0 pushes towards
+            +x. None leaves it unchanged.
 
         Raises
         ------
         ScenarioError
-            If `speed` is no number or beyond the drivetrain's, an angle no number, beyond a full
-            turn or of an end without flippers, or `push` no number or beyond 1e6 N. Then nothing
-            is commanded.
+            If a value is not a number, `speed` exceeds the drivetrain's, an angle exceeds a full
+            turn or its end has no flippers, or `push` exceeds 1e6 N. Then no command changes.
         """
         given = {
             "drive.speed": speed,
@@ -155,18 +154,18 @@ class Simulation:
         )
 
     def snapshot(self) -> bytes:
-        """Write everything that the future depends on.
+        """Write the complete state.
 
         Returns
         -------
         bytes
-            For `from_snapshot` of the same build of crawler2d: about 10 kB, and the scenario.
+            For `from_snapshot` of the same build of crawler2d: about 10 kB plus the scenario.
         """
         return self._core.snapshot()
 
     @classmethod
     def from_snapshot(cls, snapshot: bytes) -> Simulation:
-        """Make the simulation of a snapshot; it goes on with the same bits.
+        """Restore a simulation from a snapshot; it continues bit by bit the same.
 
         Parameters
         ----------
@@ -176,19 +175,19 @@ class Simulation:
         Returns
         -------
         Simulation
-            Independent of the one that was written.
+            Independent of the original.
 
         Notes
         -----
-        A snapshot from a stranger is worth what a scenario from one is. It runs no code, and what
-        it holds is checked against its own robot and ground: nothing but what these could have come
-        to. That they did is not known: where the robot stands and what its run has seen so far are
-        what the stranger says.
+        A snapshot from a stranger is as safe to load as a scenario from one: it runs no code, and
+        its state is checked to be possible for its own robot and ground. Whether a simulation
+        really led to that state cannot be checked: the pose and the history so far are whatever the
+        snapshot says.
 
         Raises
         ------
         ScenarioError
-            If the bytes are no snapshot, are damaged, or were written by another build.
+            If the bytes are not a snapshot, are damaged, or were written by another build.
 
         Examples
         --------
@@ -210,27 +209,27 @@ class Simulation:
         return simulation
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copy and pickle by way of a snapshot: the twin is independent, of the same build."""
+        """Copy and pickle as a snapshot: the copy is independent, and needs the same build."""
         return type(self).from_snapshot, (self.snapshot(),)
 
     def diagnosis(self) -> Diagnosis | None:
-        """Say why the robot has stopped.
+        """Explain why the robot has stopped.
 
         Returns
         -------
         Diagnosis or None
-            None while it has not.
+            None if it has not stopped.
         """
         why = self._core.diagnosis()
         return None if why is None else Diagnosis.from_core(why)
 
     def state(self) -> State:
-        """Read the state of this instant.
+        """Return the current state.
 
         Returns
         -------
         State
-            A copy, read-only; advancing the simulation does not change it.
+            A read-only copy; advancing the simulation does not change it.
         """
         state = self._core.state()
         for name in ("position", "velocity", "flipper_angles"):
@@ -240,20 +239,20 @@ class Simulation:
         return State(**state)
 
     def intrusions(self) -> Table:
-        """Find what of the ground is inside the track now.
+        """Find the ground that is inside the track now.
 
         Returns
         -------
         Table
-            One row a connected piece of ground that lies deeper than `criteria.intrusion_depth`
-            within the taut belt round the track's own bodies, from the left. Shallower ground, such
-            as what a resting robot sinks into, neither counts nor joins two pieces. Columns: `lane`
-            (0 under both tracks, 1 the left one, 2 the right one), `edge` (the edge that stands out
-            and reaches deepest, the left of equally deep ones, -1 if none stands out), `edges` (all
-            in the piece), `bodies` (on either side of the deepest point, in order of belt travel),
-            `depth` and `root_depth` [m] (deepest reach below the belt round the circumscribed and
-            the root circles), `area` [m^2] (of what lies deeper than the criterion), `x` and `y`
-            [m] (the deepest point).
+            One row per connected piece of ground deeper than `criteria.intrusion_depth` inside the
+            taut belt round the track's own bodies, from left to right. Shallower ground, such as
+            what a resting robot sinks into, neither counts nor connects two pieces. Columns: `lane`
+            (0 under both tracks, 1 the left one, 2 the right one), `edge` (the convex edge that
+            reaches deepest, the left one of several, -1 if there is none), `edges` (all edges of
+            the piece), `bodies` (on either side of the deepest point, in order of belt travel),
+            `depth` and `root_depth` [m] (largest depth inside the belt round the circumscribed
+            circles and round the root circles), `area` [m^2] (of the ground deeper than the
+            criterion), `x` and `y` [m] (the deepest point).
 
         Examples
         --------
@@ -272,5 +271,5 @@ class Simulation:
         return Table(self._core.intrusions())
 
     def __repr__(self) -> str:
-        """Say what is simulated and how far it is."""
+        """Show the robot and the simulated time."""
         return f"Simulation({self.scenario.robot.name} at {self.time:.3f} s)"

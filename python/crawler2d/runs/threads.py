@@ -7,28 +7,28 @@ import os
 from crawler2d.common.arrays import frozen_scalar
 from crawler2d.errors import LimitError
 
-# More threads than this are a typing error; each has a stack of its own.
+# More threads than this are surely a mistake; each has a stack of its own.
 _MOST = 1024
 _VARIABLE = "CRAWLER2D_THREADS"
 
 
 def thread_count(threads: int | None) -> int:
-    """Decide on a number of threads.
+    """Determine the number of threads.
 
     Parameters
     ----------
     threads : int, optional
-        What the caller asks for, 1 to 1024; None asks for every core of this process.
+        Requested number, 1 to 1024; None requests every core of this process.
 
     Returns
     -------
     int
-        That number, or the environment variable CRAWLER2D_THREADS where it is smaller.
+        That number, or the environment variable CRAWLER2D_THREADS if that is smaller.
 
     Raises
     ------
     LimitError
-        If either is no whole number from 1 to 1024.
+        If either is not a whole number from 1 to 1024.
     """
     limit = _limit()
     if threads is None:
@@ -42,7 +42,7 @@ def thread_count(threads: int | None) -> int:
 
 
 def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):  # Linux: what this process may use, not what there is
+    if hasattr(os, "sched_getaffinity"):  # Linux: the cores this process may use, not all cores
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 

@@ -1,8 +1,8 @@
 """The seizure study: which track models get the Engineer over an edge, how often, and why not.
 
-Run it with ``python -m crawler2d.studies``; ``--help`` lists the options. With
-``chains`` it sets chains of shoes beside what stands in for them, on steps; with ``chain-steps`` it
-asks how fine a chain must be stepped; with ``flippers`` how high the Engineer gets with its arms.
+Run it with ``python -m crawler2d.studies``; ``--help`` lists the options. ``chains`` compares
+chains of shoes with simpler models on steps, ``chain-steps`` finds out how finely a chain must be
+stepped, ``flippers`` finds the highest step that the Engineer climbs with its flippers.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         nargs="?",
         choices=("seizure", "chains", "chain-steps", "flippers"),
         default="seizure",
-        help="the seizure study (default), or chains beside belt and gears, or how finely to step"
-        " them, or the highest step with flippers",
+        help="the seizure study (default); chains beside belt and gears; how finely to step"
+        " them; or the highest step with flippers",
     )
     parser.add_argument("--quick", action="store_true", help="few heights and repeats")
-    parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the results")
+    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
     parser.add_argument("--threads", type=int, default=None, help="default: all cores")
-    parser.add_argument("--seed", type=int, default=0, help="of the draws (default: 0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     try:
@@ -119,7 +119,7 @@ def _run(study: Study, out: Path) -> None:
     print(f"\n{text}\n")
     (out / "study.txt").write_text(f"{report.header(study)}\n\n\n{text}\n", encoding="utf-8")
     for obstacle, table in sweeps.items():
-        # The scenarios follow from the seed, and would take most of the file.
+        # The scenarios follow from the seed, and would be most of the file.
         frame = table.drop_vars("scenario").to_dataframe()
         frame.to_csv(out / f"runs_{obstacle.replace(' ', '_')}.csv")
     written: dict[str, list[Any]] = {

@@ -1,4 +1,4 @@
-"""How fine a chain of shoes must be stepped: gaps, height, rates against time step and substeps."""
+"""How finely to step a chain of shoes: gaps, height and rates over time step and substeps."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ __all__ = ["HEIGHTS", "STEPS", "ChainStep", "chain_steps", "chain_steps_text"]
 STEPS = tuple((1e-3 * step, substeps) for step in (0.5, 1.0, 2.0) for substeps in (1, 2, 4))
 """Time step [s] and substeps."""
 HEIGHTS = (0.11,)
-"""[m] Of the step; the chain of 22 shoes clears about half of the runs."""
+"""[m] Heights of the steps; the chain of 22 shoes clears about half of the runs."""
 
 _FRICTION = 0.9
-# [s] Of the run on flat ground, and when its speed is steady.
+# [s] Duration of the run on flat ground, and when its speed is steady.
 _FLAT, _STEADY = 10.0, 3.0
 
 
@@ -40,16 +40,16 @@ class ChainStep:
     """[s]"""
     substeps: int
     flat_gap: float
-    """[m] Widest gap of a pin on flat ground."""
+    """[m] Largest gap of a pin on flat ground."""
     gap: float
-    """[m] Widest gap of a pin in all runs at the steps."""
+    """[m] Largest gap of a pin in all runs over the steps."""
     lowest: float
-    """[m] Of the chassis frame over flat ground."""
+    """[m] Lowest and highest position of the chassis frame on flat ground."""
     highest: float
     cleared: tuple[tuple[float, float, float], ...]
-    """[-] Rate, and Wilson's 95 % interval, for each height."""
+    """[-] Rate of clearing with Wilson's 95 % interval, for each height."""
     cost: float
-    """[s] Wall time of a simulated second, all runs at the steps together."""
+    """[s] Wall time per simulated second, all runs over the steps together."""
 
 
 def chain_steps(
@@ -60,12 +60,12 @@ def chain_steps(
     threads: int | None = None,
     steps: Sequence[tuple[float, int]] = STEPS,
 ) -> list[ChainStep]:
-    """Run the Engineer's chain of 22 shoes over flat ground and steps, under the same draws.
+    """Run the Engineer's chain of 22 shoes on flat ground and steps, with the same draws.
 
     Parameters
     ----------
     heights : sequence of float
-        [m] Of the steps.
+        [m] Heights of the steps.
     repeats, seed, threads : int
         See `sweep`.
     steps : sequence of (float, int)
@@ -118,7 +118,7 @@ def chain_steps(
 
 
 def chain_steps_text(found: Sequence[ChainStep], heights: Sequence[float] = HEIGHTS) -> str:
-    """Write one row a time step and number of substeps."""
+    """Write one row per time step and number of substeps."""
     rows = [
         (
             f"{1e3 * row.time_step:g}",

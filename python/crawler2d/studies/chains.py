@@ -1,4 +1,4 @@
-"""Chains of shoes beside the models that stand in for them, on steps: how often each gets over."""
+"""Chains of shoes and the simpler models that replace them: how often each clears a step."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHAINS_QUICK = replace(QUICK, heights={"step": (0.06, 0.10)}, repeats=4)
 
 
 def chain_models() -> Mapping[str, StudyModel]:
-    """List the models: every one has the grousers of the Engineer.
+    """List the models; all have the Engineer's grousers.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The picture of the comparison of chains: success against the height of a step."""
+"""The figure that compares chains: rate of success over the height of a step."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_chains"]
 
-# Okabe and Ito's palette: told apart by colour-blind readers.
+# Okabe and Ito's palette, which colour-blind readers can tell apart.
 _COLORS = ("#222222", "#0072B2", "#CC79A7", "#E69F00", "#D55E00", "#009E73")
 _MARKERS = ("o", "s", "P", "D", "^", "v")
 _TRACKS = 4
 
 
 def plot_chains(cells: Sequence[Cell]) -> Figure:
-    """Draw the rates with their intervals: the tracks, and the wheels beside the first track.
+    """Draw the rates with their intervals: all tracks, and the wheels with the first track.
 
     Parameters
     ----------
@@ -65,5 +65,5 @@ def plot_chains(cells: Sequence[Cell]) -> Figure:
         ax.legend(fontsize="small", loc="upper right")
     panels[0].set_ylabel("cleared [%]")
     count = max(cell.count for cell in cells)
-    figure.suptitle(f"Engineer without flippers: {count} runs a point, 95 % Wilson interval")
+    figure.suptitle(f"Engineer without flippers: {count} runs per point, 95 % Wilson intervals")
     return figure

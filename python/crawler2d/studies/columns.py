@@ -13,12 +13,12 @@ def mm(length: float) -> str:
 
 
 def in_mm(heights: Iterable[float]) -> str:
-    """Write heights [m] in millimetres, one after the other."""
+    """Write heights [m] in millimetres, separated by commas."""
     return ", ".join(map(mm, heights))
 
 
 def aligned(header: Sequence[str], rows: Iterable[Sequence[str]], left: Iterable[int] = ()) -> str:
-    """Write rows as columns, to the right but for the first and those of `left`."""
+    """Write rows as columns: the first one and those in `left` flush left, others flush right."""
     lines = [list(header), *map(list, rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     lines.insert(1, ["-" * width for width in widths])

@@ -1,4 +1,4 @@
-"""The Engineer with flippers: the highest step by model of the track, and what limits each."""
+"""The Engineer with flippers: the highest step for each track model, and what limits it."""
 
 from __future__ import annotations
 
@@ -29,31 +29,31 @@ if TYPE_CHECKING:
 __all__ = ["HEIGHTS", "HighestStep", "flipper_robots", "highest_steps", "highest_steps_text"]
 
 HEIGHTS = tuple(0.02 * step for step in range(2, 21))
-"""[m] Of the steps."""
+"""[m] Heights of the steps."""
 
 _FRICTION = 0.9
-# Flippers have no form for wheels that are placed by hand.
+# Models whose wheels have a size or place given for the robot's outline.
 _WITHOUT = ("hybrid", "hybrid gears", "line of 4, touching", "16 all round, spaced")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HighestStep:
-    """How high a robot gets with a model of its tracks."""
+    """The highest step that a robot clears with one track model."""
 
     robot: str
     model: str
     height: float
-    """[m] The highest step that half of the runs clear; 0 if there is none."""
+    """[m] The highest step cleared by at least half of the runs; 0 if there is none."""
     gaps: int
-    """Lower steps that fewer clear."""
+    """Number of lower steps cleared by fewer runs."""
     limit: str
-    """How most of the others end at the next one."""
+    """How most of the other runs end at the next step."""
     paper: float | None
-    """[m] What the paper found for its models of this kind, None where it has none."""
+    """[m] What the paper reports for its models of this kind; None if it has none."""
 
 
 def flipper_robots() -> dict[str, Robot]:
-    """List the robots: without flippers, with them in front, driven backwards, and at both ends."""
+    """List the robots: without flippers, with front flippers, driven backwards, with both."""
     built = engineer()
     arms = built.flippers
     if arms is None:
@@ -74,21 +74,21 @@ def highest_steps(
     threads: int | None = None,
     models: Mapping[str, StudyModel] | None = None,
 ) -> list[HighestStep]:
-    """Run every robot under every model over steps, its flippers in the gait `Climb`.
+    """Run every robot with every track model over steps, with the gait `Climb`.
 
     Parameters
     ----------
     heights : sequence of float
-        [m] Of the steps, rising.
+        [m] Heights of the steps, ascending.
     repeats, seed, threads : int
         See `sweep`.
     models : mapping of str to StudyModel, optional
-        Those of the study that flippers can have, by default.
+        The models; by default those of the study that flippers can have.
 
     Returns
     -------
     list of HighestStep
-        One a robot and model.
+        One per robot and model.
     """
     if models is None:
         known = study_models(engineer().outline.axle_distance)
@@ -149,7 +149,7 @@ def _highest(
 
 
 def highest_steps_text(found: Sequence[HighestStep]) -> str:
-    """Write one row a model, with a column a robot, and what limits each."""
+    """Write one row per model and one column per robot, with what limits each."""
     robots = list(dict.fromkeys(row.robot for row in found))
     rows = []
     for model in dict.fromkeys(row.model for row in found):

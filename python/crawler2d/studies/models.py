@@ -1,4 +1,4 @@
-"""The track models of the seizure study, each with its place in the paper."""
+"""The track models of the seizure study, each with its source in the paper."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class StudyModel:
     source: str
     """Figure or section of the paper, or "ours"."""
     row: str | None = None
-    """The row of the paper's Table 3 that is of this kind; None: no row is."""
+    """The row of the paper's Table 3 with this kind of model; None if there is none."""
     time_step: float | None = None
-    """[s] What its rates need to be converged; None: the solver's default will do."""
+    """[s] Time step at which its rates have converged; None takes the solver's default."""
 
 
 def study_models(axle_distance: float) -> dict[str, StudyModel]:
@@ -41,12 +41,12 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
     Parameters
     ----------
     axle_distance : float
-        [m] Of the robot; wheels of a sixth of it touch in a line of four.
+        [m] Axle distance of the robot; in a line of four, wheels of a sixth of it touch.
 
     Returns
     -------
     dict of str to StudyModel
-        In the order of the tables.
+        The models, in the order of the tables.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def study_models(axle_distance: float) -> dict[str, StudyModel]:
 
 
 def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
-    """Find the models with gear wheels that are there with round ones, too.
+    """Pair each model with gear wheels with the same model with round wheels.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        From the name of each to that of its twin.
+        From the name of each model with gear wheels to that with round ones.
 
     Examples
     --------

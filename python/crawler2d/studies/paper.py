@@ -1,4 +1,4 @@
-"""The tables of the paper that introduced gear wheels, to be printed beside ours.
+"""The tables of the paper that introduced gear wheels, for comparison with ours.
 
 The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer".
 Nothing here enters a simulation.
@@ -34,10 +34,10 @@ _REVOLUTION_A_MINUTE = 2.0 * math.pi / 60.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealRobot:
-    """Table 1: what was measured on the robot, and what its maker declares."""
+    """Table 1: measured on the robot, or declared by its maker."""
 
     max_speed: float
-    """[m/s] The paper assumes that a low-level controller limits it."""
+    """[m/s] The paper assumes that it is limited by a low-level controller."""
     declared_max_speed: float
     """[m/s]"""
     max_turn_rate: float
@@ -47,7 +47,7 @@ class RealRobot:
     declared_max_slope: float
     """[rad]"""
     stopping_distance: float
-    """[m] From the largest speed."""
+    """[m] From full speed."""
 
 
 TABLE_1 = RealRobot(
@@ -62,7 +62,7 @@ TABLE_1 = RealRobot(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Success:
-    """A row of Table 2: the share of 20 runs that got over a random step environment (RSE)."""
+    """A row of Table 2: the share of 20 runs that crossed a random step environment (RSE)."""
 
     obstacle: str
     cwa: float
@@ -85,15 +85,15 @@ class Performance:
     max_speed: float
     """[m/s]"""
     max_height: float
-    """[m] Of a parallelepiped on flat ground; the robot has its flippers."""
+    """[m] Height of a parallelepiped on flat ground; this robot has flippers."""
     max_turn_rate: float
-    """[rad/s] Out of the plane of a side view."""
+    """[rad/s] Turning about the vertical, which a side view does not have."""
     braking_distance: float
     """[m]"""
     acceleration: float
     """[m/s^2]"""
     real_time_factor: float
-    """[-] Of Gazebo."""
+    """[-] Real-time factor of Gazebo."""
 
 
 TABLE_3 = tuple(

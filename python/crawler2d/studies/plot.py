@@ -1,4 +1,4 @@
-"""The pictures of the seizure study: success against height, shaking against phase, the post."""
+"""The figures of the seizure study: success over height, vibration over phase, the post."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_phases", "plot_posts", "plot_rates"]
 
-# Okabe and Ito's palette: told apart by colour-blind readers.
+# Okabe and Ito's palette, which colour-blind readers can tell apart.
 _BLUE, _ORANGE, _GREEN = "#0072B2", "#E69F00", "#009E73"
 _COLORS = (_BLUE, _ORANGE, _GREEN)
 _MARKERS = ("o", "s", "^")
-# Wide below narrow: lines that coincide stay visible.
+# Wide lines below narrow ones, so that coinciding lines stay visible.
 _WIDTHS = (3.2, 2.0, 0.9)
 _COLUMNS = 4
 _EQUATION_1 = 1.0 / 3.0
 
 
 def plot_rates(cells: Sequence[Cell]) -> Figure:
-    """Draw the rates of one robot with their intervals, one panel a model.
+    """Draw the rates of one robot with their intervals, one panel per model.
 
     Parameters
     ----------
@@ -76,13 +76,13 @@ def plot_rates(cells: Sequence[Cell]) -> Figure:
             ax.tick_params(labelbottom=True)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     count = max(cell.count for cell in cells)
-    figure.suptitle(f"Engineer without flippers: {count} runs a point, 95 % Wilson interval")
+    figure.suptitle(f"Engineer without flippers: {count} runs per point, 95 % Wilson intervals")
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure
 
 
 def plot_phases(phases: Sequence[Phase]) -> Figure:
-    """Draw the shaking of lines of gear wheels on flat ground against their phases.
+    """Draw the vibration of lines of gear wheels on flat ground over their phases.
 
     Parameters
     ----------
@@ -124,12 +124,12 @@ def plot_phases(phases: Sequence[Phase]) -> Figure:
 
 
 def plot_posts(runs: Mapping[tuple[float, bool], Run]) -> Figure:
-    """Draw where the public wheel model stopped at a post, one panel a run.
+    """Draw where the public wheel model stopped at a post, one panel per run.
 
     Parameters
     ----------
     runs : mapping of (float, bool) to Run
-        What `public_wheel_model` returned; those that cleared are left out.
+        What `public_wheel_model` returned; runs that cleared are left out.
 
     Returns
     -------

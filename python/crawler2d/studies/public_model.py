@@ -25,23 +25,23 @@ _HEIGHTS = (0.03, 0.05, 0.08)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Post:
-    """A span in which the post was between two wheels."""
+    """A time span in which the post was between two wheels."""
 
     height: float
     """[m]"""
     belly: bool
-    """Whether the robot has one."""
+    """Whether the robot has a belly."""
     outcome: str
     mechanism: str
-    """How the post is held where the run ended in a stop; "": it did not."""
+    """How the post is held if the run ended in a stop; "" if it did not."""
     bodies: str
-    """The two wheels, in order of belt travel; 2 is the foremost."""
+    """The two wheels, in order of belt travel; wheel 2 is the foremost."""
     start: float
     """[s]"""
     end: float
     """[s]"""
     depth: float
-    """[m] Deepest reach below the taut belt round the wheels."""
+    """[m] Largest depth inside the taut belt round the wheels."""
     force: float
     """[N] Mean normal force on the post."""
 
@@ -49,7 +49,7 @@ class Post:
 def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], Run]:
     """Drive the public wheel model of the Engineer against posts, with and without a belly.
 
-    The wheels are those of the public simulation model; robot, friction and speed those of the
+    The wheels are those of the public simulation model; robot, friction and speed are those of the
     study, so that only the track differs.
 
     Parameters
@@ -60,7 +60,7 @@ def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], R
     Returns
     -------
     dict of (float, bool) to Run
-        With history, by the height of the post [m] and whether the robot has a belly.
+        Runs with history, by the height of the post [m] and whether the robot has a belly.
     """
     robot = engineer(flippers=None, track="public")
     robots = {True: robot, False: replace(robot, belly=None)}
@@ -73,7 +73,7 @@ def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], R
 
 
 def posts(runs: Mapping[tuple[float, bool], Run]) -> list[Post]:
-    """List the spans in which the post was between two different wheels.
+    """List the time spans in which the post was between two different wheels.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Replays of the most telling runs of the seizure study: one a way to stop, and one of a belt."""
+"""Replays of the clearest runs of the seizure study: one per kind of stop, and one of a belt."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["Replay", "write_replays"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replay:
-    """A run that was written as a page."""
+    """A run written as a page."""
 
     file: str
     model: str
@@ -33,14 +33,14 @@ class Replay:
     repeat: int
     outcome: str
     mechanism: str
-    """Of a stop; "": none."""
+    """Mechanism of the stop; "" if there is none."""
     sentence: str
-    """What the run says of its stop; "": it did not stop."""
+    """The sentence of the diagnosis; "" if the run did not stop."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a run is in the sweeps."""
+    """The place of a run in the sweeps."""
 
     obstacle: str
     model: str
@@ -54,18 +54,18 @@ def write_replays(
     belt: str = "belt",
     threads: int | None = None,
 ) -> list[Replay]:
-    """Simulate the most telling runs again, and write each as a page.
+    """Simulate the clearest runs again, and write each as a page.
 
-    One for each outcome and mechanism that a stop has; and the belt where it cleared what stopped
-    the first of these. The most telling is one from which a closed belt gets away, and of these the
-    one with the deepest edge.
+    One run for each outcome and mechanism of a stop; and the belt where it cleared what stopped
+    the first of these. The clearest run is one that a closed belt escapes from and, among these,
+    the one with the deepest edge.
 
     Parameters
     ----------
     tables : mapping of str to xarray.Dataset
-        By obstacle: sweeps over track and height, with a belt tried at every stop.
+        Sweeps over track and height by obstacle, with a belt tried at every stop.
     folder : Path
-        Where to write; it is made. Pages of former studies in it are removed.
+        Folder for the pages; created if missing. Pages of earlier studies are removed.
     belt : str
         The model that is a belt.
     threads : int, optional
@@ -107,7 +107,7 @@ def _most_telling(tables: Mapping[str, xarray.Dataset]) -> Iterator[_Place]:
             run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
             way = (run["outcome"].item(), run["mechanism"].item())
             telling = (run["belt_freed"].item(), run["intrusion_depth"].item())
-            # Of equals the last: wheels come after mere forces.
+            # Of equal runs the last: models with wheels come after the mere forces.
             if way not in best or telling >= best[way][0]:
                 best[way] = (telling, _place(obstacle, run))
     order = {name: rank for rank, name in enumerate(STOPS)}

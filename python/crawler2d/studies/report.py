@@ -31,7 +31,7 @@ _RPM = 60.0 / (2.0 * math.pi)
 
 
 def header(study: Study) -> str:
-    """Say what runs, what is estimated of it and what is drawn."""
+    """Say what is simulated, what is estimated and what is drawn."""
     base, design = study.base, study.design
     robot, outline = base.robot, base.robot.outline
     clearance = outline.rear_radius + min((y for _, y in robot.belly or ()), default=math.inf)
@@ -43,7 +43,8 @@ def header(study: Study) -> str:
         f"build: {build}\n"
         f"estimates: mass {robot.mass} kg, centre of mass {robot.center_of_mass} m, "
         f"belly clearance {1e3 * clearance:.0f} mm,\n"
-        f"  torque {robot.drivetrain.max_torque} N m a sprocket, track mass {robot.track_mass} kg, "
+        f"  torque {robot.drivetrain.max_torque} N m per sprocket, "
+        f"track mass {robot.track_mass} kg, "
         f"friction {getattr(base.terrain, 'friction', math.nan)}, speed {base.drive.speed} m/s\n"
         "drawn for each repeat, the same for every model: approach over a quarter of the axle\n"
         "  distance, track phase over a grouser pitch, speed and friction within 2 %"
@@ -51,7 +52,7 @@ def header(study: Study) -> str:
 
 
 def rates_text(cells: Iterable[Cell]) -> str:
-    """Write how often every model got over."""
+    """Write how often each model cleared."""
     rows = [
         (
             cell.model,
@@ -64,12 +65,12 @@ def rates_text(cells: Iterable[Cell]) -> str:
         )
         for cell in cells
     ]
-    head = ("model", "obstacle", "[mm]", "cleared", "95 % interval", "poses", "the others")
+    head = ("model", "obstacle", "[mm]", "cleared", "95 % interval", "poses", "other outcomes")
     return aligned(head, rows, left=(1, 6))
 
 
 def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
-    """Write how high every model gets over, one row a model."""
+    """Write the greatest height that each model clears, one row per model."""
     obstacles = list(dict.fromkeys(climb.obstacle for climb in climbs))
     rows = []
     for name, model in models.items():
@@ -86,13 +87,13 @@ def climbs_text(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> st
     head = ("model", "paper", *obstacles, "RTF", "penetration")
     return (
         "Greatest height [mm] cleared in at least half of the runs (in brackets: smaller heights\n"
-        "that were not; +: the greatest tried), real-time factor of one thread, deepest\n"
+        "that were not; +: the greatest height tried), real-time factor on one thread, largest\n"
         "penetration of all runs [mm]\n\n"
     ) + aligned(head, rows, left=range(1, 2 + len(obstacles)))
 
 
 def robots_text(cells: Sequence[Cell]) -> str:
-    """Write how other estimates of the robot move the table."""
+    """Write how other estimates of the robot change the table."""
     robots = list(dict.fromkeys(cell.robot for cell in cells))
     names = dict.fromkeys(cell.model for cell in cells)
     heights = in_mm(dict.fromkeys(cell.height for cell in cells))
@@ -107,13 +108,13 @@ def robots_text(cells: Sequence[Cell]) -> str:
         for name in names
     ]
     count = cells[0].count
-    return (f"Other robots: runs of {count} that cleared a step of {heights} mm\n\n") + aligned(
+    return (f"Other robots: how many of {count} runs cleared a step of {heights} mm\n\n") + aligned(
         ("model", *robots), rows
     )
 
 
 def rides_text(rides: Iterable[Ride]) -> str:
-    """Write odometry and shaking on flat ground."""
+    """Write odometry error and vibration on flat ground."""
     rows = [
         (
             ride.model,
@@ -125,13 +126,13 @@ def rides_text(rides: Iterable[Ride]) -> str:
     ]
     head = ("model", "odometry [%]", "acceleration [m/s^2]", "angle rate [rad/s]")
     return (
-        "Flat ground: by how much odometry reads too much, and shaking (root mean square of\n"
+        "Flat ground: how much too far odometry reads, and vibration (root mean square of the\n"
         "vertical acceleration and of the rate of the chassis angle)\n\n"
     ) + aligned(head, rows)
 
 
 def phases_text(phases: Sequence[Phase]) -> str:
-    """Write the shaking of lines of gear wheels against their phases."""
+    """Write the vibration of lines of gear wheels over their phases."""
     counts = list(dict.fromkeys(phase.count for phase in phases))
     by_place = {(phase.count, phase.phase_fraction): phase for phase in phases}
     rows = [
@@ -144,13 +145,13 @@ def phases_text(phases: Sequence[Phase]) -> str:
     ]
     head = ("phase", *(f"{n} [m/s^2]" for n in counts), *(f"{n} [rad/s]" for n in counts))
     return (
-        "Lines of gear wheels on flat ground: shaking against the phase fraction of eq. (1),\n"
-        "where the paper has 0.333\n\n"
+        "Lines of gear wheels on flat ground: vibration over the phase fraction of eq. (1), which\n"
+        "is 0.333 in the paper\n\n"
     ) + aligned(head, rows)
 
 
 def posts_text(posts: Iterable[Post]) -> str:
-    """Write what the post did between the wheels of the public model."""
+    """Write when the post was between two wheels of the public model."""
     rows = [
         (
             mm(post.height),
@@ -165,13 +166,13 @@ def posts_text(posts: Iterable[Post]) -> str:
     ]
     head = ("post [mm]", "belly", "outcome", "between", "time [s]", "depth [mm]", "force [N]")
     return (
-        "The public wheel model, three wheels a side with slots of 26 mm, against a post 20 mm\n"
-        "thick: the spans in which it was between two wheels\n\n"
+        "The public wheel model, three wheels per side with gaps of 26 mm, against a post 20 mm\n"
+        "thick: the time spans in which it was between two wheels\n\n"
     ) + aligned(head, rows, left=(1, 2, 3))
 
 
 def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) -> str:
-    """Write the paper's Tables 2 and 3, and our models below the rows of their kind."""
+    """Write the paper's Tables 2 and 3, with our models below the rows of their kind."""
     success = [
         (row.obstacle, *(f"{100 * share:.0f}" for share in (row.cwa, row.lwa, row.gear)))
         for row in paper.TABLE_2
@@ -198,10 +199,10 @@ def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) 
         (
             "The paper's Table 2, successful runs of 20 [%]",
             aligned(("obstacle", "CWA", "LWA", "gear wheels"), success),
-            "The paper's Table 3 with ours below. Only the order of the heights compares: the\n"
-            "paper's 150 and 200 mm are those of a robot with flippers. Turning is out of the\n"
-            "plane of a side view. Heights in mm, speed in m/s, braking in m, acceleration in\n"
-            "m/s^2, turning in revolutions a minute.",
+            "The paper's Table 3, with ours below. Only the order of the heights can be compared:\n"
+            "the paper's 150 and 200 mm are those of a robot with flippers. A side view has no\n"
+            "turning. Heights in mm, speed in m/s, braking in m, acceleration in m/s^2, turning\n"
+            "in revolutions per minute.",
             aligned(
                 (
                     *("model", "barrier", "step", "knife edge"),
@@ -223,6 +224,6 @@ def _highest(climb: Climb) -> str:
 
 
 def _factor(climbs: Collection[Climb]) -> str:
-    """Write the real-time factor of one thread."""
+    """Write the real-time factor on one thread."""
     simulated = sum(climb.simulated_time for climb in climbs)
     return f"{simulated / sum(climb.computing_time for climb in climbs):.0f}"

@@ -26,7 +26,7 @@ FIGURES = (
     *("cleared", "seized", "seized_alone", "at_tips"),
     *("stopped", "unnatural_stops", "unnatural_passes"),
 )
-"""Counts of `Stops` that gear and round wheels are compared by."""
+"""Counts of `Stops` by which gear and round wheels are compared."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,21 +44,21 @@ class Stops:
     slipping: int
     cycling: int
     mechanism: str
-    """The commonest of the stops; "": of most there is none."""
+    """The commonest mechanism of the stops; "" if most have none."""
     of_mechanism: int
-    """How many stops have it."""
+    """Number of stops with that mechanism."""
     seized_alone: int
-    """Of the seized, those in no tie: nothing but a closed pocket would move them on."""
+    """Seized stops whose only cause is the pocket: nothing but closing it would free the robot."""
     at_tips: int
-    """Stops that are seized where the track is taken to reach to the circumscribed circles."""
+    """Stops that count as seized if the track is assumed to reach the circumscribed circles."""
     depth: float
-    """[m] Of the edges in seized stops, below the circumscribed circles: median; nan: none."""
+    """[m] Median depth of the edges in seized stops, below the circumscribed circles; nan: none."""
     root_depth: float
-    """[m] The same below the root circles."""
+    """[m] The same, below the root circles."""
     unnatural_stops: int
-    """Stops from which a closed belt gets away."""
+    """Stops from which a closed belt escapes."""
     unnatural_passes: int
-    """Runs that cleared where the belt of the same repeat did not."""
+    """Runs that cleared although the belt of the same repeat did not."""
 
     @property
     def stopped(self) -> int:
@@ -68,11 +68,11 @@ class Stops:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Against:
-    """How often something befell one model of a pair that differs in its wheels alone."""
+    """How often something happened to one model of a pair that differs only in its wheels."""
 
     robot: str
     obstacle: str
-    """Of all its heights together."""
+    """The obstacle, all its heights together."""
     model: str
     wheel: str
     """"round" or "gear"."""
@@ -83,12 +83,12 @@ class Against:
     """Runs with a result."""
     rate: float
     low: float
-    """[-] Of Wilson's 95 % interval."""
+    """[-] Lower bound of Wilson's 95 % interval."""
     high: float
 
 
 def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stops]:
-    """Say how the runs of a sweep over track and height ended, one row a model.
+    """Count how the runs of a sweep over track and height ended, one row per model.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stop
     obstacle : str
         What they ran over.
     belt : str
-        The model that decides what a pass is worth.
+        The model that decides whether a pass is natural.
     """
     return [
         _stops(table, obstacle, str(model), belt) for model in table["track"].to_numpy().tolist()
@@ -111,23 +111,23 @@ def gear_against_round(
     robot: str = "preset",
     belt: str = "belt",
 ) -> list[Against]:
-    """Set models with gear wheels against the same with round ones.
+    """Compare models with gear wheels with the same models with round ones.
 
     Parameters
     ----------
     table : xarray.Dataset
         See `stops`.
     obstacle, robot : str
-        What they ran over, and what ran.
+        Names of the obstacle and of the robot.
     pairs : mapping of str to str
-        From each model with gear wheels to that with round ones.
+        From each model with gear wheels to the one with round wheels.
     belt : str
         See `stops`.
 
     Returns
     -------
     list of Against
-        Round and gear of each pair, and of all pairs together.
+        Round and gear wheels of each pair, and of all pairs together.
     """
     rows = {row.model: row for row in stops(table, obstacle, belt)}
     groups = [(name, [rows[name]]) for gear, plain in pairs.items() for name in (plain, gear)]

@@ -1,4 +1,4 @@
-"""The stops of the seizure study as text for a terminal: why, and which runs to look at."""
+"""The stops of the seizure study as text for a terminal: causes, and runs to look at."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["against_text", "replays_text", "stops_text"]
 
 
 def stops_text(stops: Iterable[Stops]) -> str:
-    """Write how the runs of every model ended, and what held those that stopped."""
+    """Write how the runs of each model ended, and what held those that stopped."""
     rows = [
         (
             row.model,
@@ -39,20 +39,20 @@ def stops_text(stops: Iterable[Stops]) -> str:
         *("model", "obstacle", "runs", "cleared"),
         *(name.replace("_", " ") for name in STOPS),
         *("mechanism", "seized [%]", "alone [%]", "at tips [%]", "unnatural [%]", "passes"),
-        *("depth [mm]", "of roots [mm]"),
+        *("depth [mm]", "roots [mm]"),
     )
     return (
-        "How the runs ended, all heights together, and of those that stopped: the commonest\n"
-        "mechanism; the shares that are seized, that are so in no tie with torque, belly or\n"
-        "friction, that are seized if the track reaches to the circumscribed circles, and that\n"
-        "are unnatural: a closed belt gets away from there.\n"
+        "How the runs ended, all heights together. Of those that stopped: the commonest\n"
+        "mechanism; the share that seized; the share where the pocket is the only cause (no tie\n"
+        "with torque, belly or friction); the share that would count as seized if the track\n"
+        "reached the circumscribed circles; the share that is unnatural: a closed belt escapes.\n"
         "Passes are unnatural ones: the belt of the same repeat did not clear. Depths are medians\n"
-        "of the edges that seized, below the circumscribed and below the root circles.\n\n"
+        "of the edges that seized, below the circumscribed circles and below the root circles.\n\n"
     ) + aligned(head, rows, left=(1, 9))
 
 
 def against_text(against: Sequence[Against]) -> str:
-    """Write gear wheels against round ones, two rows a pair, figures with their intervals."""
+    """Write gear wheels beside round ones, two rows per pair, with their intervals."""
     rows: dict[tuple[str, str, str], list[str]] = {}
     for row in against:
         cells = rows.setdefault((row.robot, row.model, row.wheel), [str(row.count)])
@@ -61,9 +61,9 @@ def against_text(against: Sequence[Against]) -> str:
     head = ("model", "robot", "wheels", "runs", *figures)
     obstacle = against[0].obstacle
     return (
-        f"Gear wheels against round ones on {obstacle}s, all heights together: shares of all\n"
-        "runs [%], with Wilson's 95 % intervals. Alone: in no tie with torque, belly or friction.\n"
-        "At tips: stops that are seized if the track reaches to the circumscribed circles.\n\n"
+        f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
+        "[%], with Wilson's 95 % intervals. Alone: the pocket is the only cause.\n"
+        "At tips: would count as seized if the track reached the circumscribed circles.\n\n"
     ) + aligned(
         head,
         [(model, robot, wheel, *cells) for (robot, model, wheel), cells in rows.items()],
@@ -72,7 +72,7 @@ def against_text(against: Sequence[Against]) -> str:
 
 
 def replays_text(replays: Iterable[Replay], folder: str) -> str:
-    """Write which runs can be looked at, and what each says of itself."""
+    """Write which runs can be replayed, and the diagnosis of each."""
     said = []
     for replay in replays:
         place = f"{replay.obstacle} of {mm(replay.height)} mm, repeat {replay.repeat}"
@@ -80,7 +80,7 @@ def replays_text(replays: Iterable[Replay], folder: str) -> str:
         said.append(f"{folder}/{replay.file}")
         said.append(textwrap.indent(f"{replay.model}, {place}:", "    "))
         said += textwrap.wrap(why, 92, initial_indent="    ", subsequent_indent="    ")
-    return "Runs to look at, one a way to stop, and a belt:\n\n" + "\n".join(said)
+    return "Runs to look at: one per kind of stop, and a belt:\n\n" + "\n".join(said)
 
 
 def _of_stops(count: int, row: Stops) -> str:

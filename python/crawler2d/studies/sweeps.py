@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FULL", "QUICK", "Design", "Study", "robots_of_the_study"]
 
-# What a model of the study sets together.
+# The fields that a model of the study sets together.
 _TRACK_AND_STEP = ("robot.track", "solver.time_step")
-# [-] An estimate, as the robot's; the same everywhere.
+# [-] An estimate, like those of the robot; the same everywhere.
 _FRICTION = 0.9
 
 
@@ -35,14 +35,14 @@ class Design:
     heights: Mapping[str, tuple[float, ...]]
     """[m] By obstacle: "step", "barrier", "knife edge"."""
     repeats: int
-    """Runs of a model on an obstacle of one height; 20 in the paper."""
+    """Runs per model, obstacle and height; 20 in the paper."""
     robot_heights: tuple[float, ...]
-    """[m] Of the step that the other robots meet."""
+    """[m] Heights of the step for the other robots."""
     robot_repeats: int
     ride_repeats: int
-    """Runs on flat ground."""
+    """Runs per model on flat ground."""
     phase_fractions: tuple[float, ...]
-    """[-] Of the gear wheels on flat ground."""
+    """[-] Phase fractions of the gear wheels on flat ground."""
 
 
 FULL = Design(
@@ -68,11 +68,11 @@ QUICK = Design(
 
 
 def robots_of_the_study() -> dict[str, Robot]:
-    """List the robots: the preset, and what its estimates may have missed.
+    """List the robots: the preset, and variants that test its estimates.
 
     The centre of mass moves up with a raised arm, and forward with an arm or flippers stretched
-    out. The belly hangs lower, or is out of reach. The motors are twice as strong: a gear wheel
-    that hooks into an edge asks more of them than a round one that slides on it.
+    out. The belly hangs lower, or is removed. The motors are twice as strong: a gear wheel that
+    hooks into an edge needs more torque than a round one that slides on it.
     """
     base = engineer(flippers=None)
     strong = replace(base.drivetrain, max_torque=2.0 * base.drivetrain.max_torque)
@@ -104,22 +104,22 @@ def _models() -> dict[str, StudyModel]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """What is simulated; each method runs one sweep, under the same draws.
+    """The simulations of the study; each method runs one sweep, with the same draws.
 
     Parameters
     ----------
     design : Design
-        How much.
+        How much to simulate.
     base : Scenario
-        What all runs share: the Engineer without flippers, by default.
+        What all runs share; by default the Engineer without flippers.
     models : mapping of str to StudyModel
-        Those of `study_models`, by default.
+        The models; by default those of `study_models`.
     seed : int
-        Of the draws.
+        Seed of the draws.
     threads : int, optional
         See `simulate_many`.
     progress : bool
-        Whether to show a bar.
+        Whether to show a progress bar.
     """
 
     design: Design = FULL
@@ -130,14 +130,14 @@ class Study:
     progress: bool = True
 
     def on_obstacle(self, obstacle: str) -> xarray.Dataset:
-        """Run every model over one obstacle: track, height, repeat; with a belt at every stop."""
+        """Run every model over one obstacle: track, height, repeat; tries a belt at every stop."""
         heights = self.design.heights[obstacle]
         over = {**self._tracks(), "terrain.height": heights}
         base = self.base.replace({"terrain": _obstacles(heights[0])[obstacle]})
         return self._sweep(base, over, self.design.repeats, counterfactual=True)
 
     def on_other_robots(self) -> xarray.Dataset:
-        """Run every model of every robot over a step: robot, track, height, repeat; with belts."""
+        """Run every model of every robot over a step: robot, track, height, repeat; tries belts."""
         over: dict[Any, Any] = {
             "robot": robots_of_the_study(),
             **self._tracks(),
@@ -159,7 +159,7 @@ class Study:
         return self._sweep(base, over, self.design.ride_repeats)
 
     def _flat(self) -> Scenario:
-        # Ten times the robot's acceleration: steady speed after a fifth of a second, not two.
+        # Ten times the robot's acceleration: steady after 0.2 s, not 2 s.
         acceleration = 10.0 * self.base.robot.drivetrain.max_acceleration
         ground = terrains.flat(friction=_FRICTION)
         return self.base.replace(
@@ -167,7 +167,7 @@ class Study:
         )
 
     def _tracks(self) -> dict[Any, Any]:
-        """Sweep the models, each with the time step that it needs."""
+        """Return the axis of models, each with the time step that it needs."""
         default = self.base.solver.time_step
         points = {
             name: (model.track, model.time_step or default) for name, model in self.models.items()

@@ -1,4 +1,4 @@
-"""The tables of the seizure study: one row a dataclass, from the sweeps."""
+"""The tables of the seizure study, made from the sweeps: each row is a dataclass."""
 
 from __future__ import annotations
 
@@ -43,32 +43,32 @@ class Cell:
     count: int
     rate: float
     low: float
-    """[-] Of Wilson's 95 % interval."""
+    """[-] Lower bound of Wilson's 95 % interval."""
     high: float
     poses: int
-    """Distinct final poses, to 1 mm and 0.1 degree: where they are few, the runs were one run."""
+    """Distinct final poses, to 1 mm and 0.1 degree; if few, the runs were not independent."""
     others: str
-    """How the runs that did not clear ended, with their number."""
+    """Outcomes of the runs that did not clear, with their number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb:
-    """How high a model gets over one obstacle."""
+    """The greatest height of an obstacle that a model clears."""
 
     obstacle: str
     model: str
     highest: float
-    """[m] Greatest height cleared in at least half of the runs; nan: none."""
+    """[m] Greatest height cleared in at least half of the runs; nan if there is none."""
     gaps: tuple[float, ...]
-    """[m] Smaller heights that were cleared less often than that."""
+    """[m] Smaller heights cleared in less than half of the runs."""
     tested: float
     """[m] Greatest height tried."""
     simulated_time: float
-    """[s] Of all runs."""
+    """[s] Simulated time of all runs."""
     computing_time: float
-    """[s] Of one thread for them."""
+    """[s] Computing time of all runs on one thread."""
     max_penetration: float
-    """[m] Of all runs."""
+    """[m] Largest penetration in all runs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +77,7 @@ class Ride:
 
     model: str
     over_reading: float
-    """[-] By how much the odometry reads too much: track distance over path length, less 1."""
+    """[-] Odometry error: track distance over path length, minus 1."""
     vertical_acceleration: float
     """[m/s^2] Root mean square."""
     angular_velocity: float
@@ -97,14 +97,14 @@ class Phase:
 
 
 def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[Cell]:
-    """Count what became of the runs of a sweep over track and height.
+    """Count the outcomes of a sweep over track and height.
 
     Parameters
     ----------
     table : xarray.Dataset
         With the dimensions track, height and repeat.
     obstacle, robot : str
-        What they ran over, and what ran.
+        Names of the obstacle and of the robot.
     """
     rates = rate(table)
     found = []
@@ -133,7 +133,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
 
 
 def climbs(table: xarray.Dataset, obstacle: str) -> list[Climb]:
-    """Summarise a sweep over track and height, one row a model."""
+    """Summarise a sweep over track and height, one row per model."""
     often = rate(table)["rate"] >= 0.5
     heights = table["height"].to_numpy()
     found = []
@@ -188,7 +188,7 @@ def _shaking(runs: xarray.Dataset) -> dict[str, float]:
 
 
 def write_csv(path: Path, rows: Sequence[Any]) -> None:
-    """Write rows, which are equal dataclasses, with the names of their fields."""
+    """Write rows of one dataclass, with the names of its fields as the header."""
     names = [column.name for column in dataclasses.fields(rows[0])]
     with path.open("w", newline="") as file:
         writer = csv.writer(file)

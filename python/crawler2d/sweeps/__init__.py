@@ -1,1 +1,1 @@
-"""Many variants of one scenario, and the statistics of what came out."""
+"""Simulate many variants of one scenario, and evaluate the results."""

@@ -25,34 +25,34 @@ COLUMNS = (
     *("belt_freed", "belt_distance", "wall_time", "identity", "scenario"),
     *("rate", "low", "high", "count", "distinct"),
 )
-"""What a sweep and its rates have beside the metrics; no axis goes by such a name."""
+"""Columns of a sweep and its rates besides the metrics; no axis may have these names."""
 
 Coordinate = tuple[str, "NDArray[Any]", dict[str, str]]
-"""Dimension, values and attributes, as xarray takes them."""
+"""Dimension, values and attributes, as xarray expects them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """Fields that take their values together: one dimension of the table."""
+    """Fields that change together: one dimension of the table."""
 
     name: str
     paths: tuple[str, ...]
     values: Mapping[Label, Mapping[str, Any]]
-    """By label, then by path; what a label has no value for stays as it is."""
+    """By label, then by path; a path without a value keeps the scenario's own."""
 
     def points(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Yield what each point is called in messages, and its values by path."""
+        """Yield the name of each point, for messages, and its values by path."""
         for label, row in self.values.items():
             yield f"{self.name}={label}", row
 
 
 def read_axes(over: object) -> list[Axis]:
-    """Read the argument `over` of `sweep`, which describes it.
+    """Read the argument `over` of `sweep`.
 
     Raises
     ------
     ScenarioError
-        If it is no such mapping, a value does not fit, or a path would undo an earlier one.
+        If it is not such a mapping, a value does not fit, or a path overwrites an earlier one.
     """
     if not isinstance(over, Mapping):
         raise ScenarioError("over", over, "must be a mapping from paths to values")
@@ -73,7 +73,7 @@ def read_axes(over: object) -> list[Axis]:
 
 
 def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
-    """Write the axes as coordinates: the labels, and the numbers that are swept together."""
+    """Return the coordinates of the axes: labels, and numbers that are swept together."""
     names = short_names([path for axis in axes for path in axis.paths])
     found: dict[str, Coordinate] = {}
     for axis in axes:
@@ -82,7 +82,7 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
         columns = [_numbers([row.get(path) for row in rows]) for path in axis.paths]
         attributes = field_attributes(axis.paths)
         if columns != [labels]:
-            attributes.pop("units", None)  # a label has none, even if it is a number
+            attributes.pop("units", None)  # labels have no unit, even if they are numbers
         found[axis.name] = (axis.name, np.array(labels), attributes)
         if len(axis.paths) > 1:
             for path, numbers in zip(axis.paths, columns, strict=True):
@@ -92,7 +92,7 @@ def coordinates(axes: Sequence[Axis]) -> dict[str, Coordinate]:
 
 
 def field_attributes(paths: Sequence[str]) -> dict[str, str]:
-    """Say which fields an array is about, and the unit of the numbers of a single field."""
+    """Name the fields of an array, and the unit if there is only one."""
     lasts = [path.rpartition(".")[2] for path in paths]
     attributes = {
         "path": ", ".join(paths),
@@ -105,13 +105,13 @@ def field_attributes(paths: Sequence[str]) -> dict[str, str]:
 
 
 def short_names(paths: Sequence[str]) -> dict[str, str]:
-    """Name each path by its last part; by the whole path where that name is taken."""
+    """Name each path by its last part, or by the whole path if that name is taken."""
     uses = Counter([*map(_last, paths), *METRICS, *COLUMNS])
     return {p: _last(p) if uses[_last(p)] == 1 else _name(p) for p in paths}
 
 
 def _dimensions(axes: Sequence[tuple[str, ...]]) -> list[str]:
-    """Name the axes: paths swept together join their last names, each once."""
+    """Name the axes; the name of an axis of several paths joins their last parts."""
     names = short_names([path for paths in axes for path in paths])
     joined = ["_".join(dict.fromkeys(map(_last, paths))) for paths in axes]
     taken = [*joined, *names.values(), *METRICS, *COLUMNS]
@@ -141,7 +141,7 @@ def _refuse_undoing(paths: Sequence[str]) -> None:
     for index, path in enumerate(paths):
         for earlier in paths[:index]:
             if earlier == path:
-                raise ScenarioError("over", path, "must have each path once")
+                raise ScenarioError("over", path, "must have each path only once")
             if earlier.startswith((f"{path}.", f"{path}[")):
                 raise ScenarioError("over", path, f"must come before {earlier}, which it replaces")
 
@@ -155,5 +155,5 @@ def _row(value: Any, paths: Sequence[str], place: str) -> dict[str, Any]:
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if not isinstance(value, (tuple, list)) or len(value) != len(paths):
-        raise ScenarioError(place, value, f"must have tuples of {len(paths)} values, one a path")
+        raise ScenarioError(place, value, f"must have tuples of {len(paths)} values, one per path")
     return dict(zip(paths, value, strict=True))

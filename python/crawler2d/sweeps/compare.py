@@ -1,4 +1,4 @@
-"""Variants compared in pairs: the same scenario, the same draws, one variant against another."""
+"""Paired comparison of variants: same scenario, same draws, one variant against another."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["compare"]
 
 Variant = Parameters | Mapping[str, Any]
-"""What takes its place in the scenario, such as a track; or new values by dotted path."""
+"""A part of a scenario, such as a track, or new values by dotted path."""
 
 _COSTS = ("time_to_clear", "drive_work")
-"""Metrics that are compared where both models cleared."""
+"""Metrics that are compared if both models cleared."""
 
 
 def compare(
@@ -43,19 +43,19 @@ def compare(
     threads: int | None = None,
     progress: bool | Progress | None = True,
 ) -> xarray.Dataset:
-    """Compare models of a track, or any variants, with one of them, under the same draws.
+    """Compare track models, or any variants, with a reference model under the same draws.
 
     Parameters
     ----------
     scenario : Scenario
         What all runs share.
     models : mapping of str to model, or sequence of models
-        At least two; in a sequence their short texts are their labels. A model is a track, a robot
-        or another part of a scenario, such as a `Solver`, which takes the place of the scenario's
-        own; or a mapping from dotted paths to values, as of `Scenario.replace`, where ``{}`` is the
-        scenario as it is.
+        At least two; in a sequence, their short texts become their labels. A model is either a
+        track, a robot or another part of a scenario, such as a `Solver`, which replaces the
+        scenario's own; or a mapping from dotted paths to values, as in `Scenario.replace`, where
+        ``{}`` leaves the scenario unchanged.
     repeats : int
-        Runs a model, 1 to 1,000,000.
+        Runs per model, 1 to 1,000,000.
     seed, vary, threads, progress
         See `sweep`.
     reference : str, optional
@@ -64,18 +64,18 @@ def compare(
     Returns
     -------
     xarray.Dataset
-        The table of `sweep` with the dimensions `model` and `repeat`, and for each model, all
-        intervals of 95 %:
+        The table of `sweep` with the dimensions `model` and `repeat`. In addition, for each model,
+        with 95 % intervals:
 
-        - `rate`, `rate_low`, `rate_high`: how often it cleared, Wilson's interval;
-        - `difference`, `difference_low`, `difference_high`: that rate less the reference's,
-          Newcombe's interval for pairs;
-        - `both`, `only_model`, `only_reference`, `neither`: the numbers of pairs that cleared;
-        - `p_value` of equal rates, McNemar's exact test;
+        - `rate`, `rate_low`, `rate_high`: rate of clearing, Wilson's interval;
+        - `difference`, `difference_low`, `difference_high`: that rate minus the reference's,
+          Newcombe's interval for paired data;
+        - `both`, `only_model`, `only_reference`, `neither`: how many pairs cleared in this way;
+        - `p_value` of the hypothesis of equal rates, McNemar's exact test;
         - `time_to_clear_difference` [s] and `drive_work_difference` [J], `..._low`, `..._high`: the
-          mean of model less reference over the pairs that `both` cleared, its bootstrap interval.
+          mean of model minus reference over the pairs that `both` cleared, bootstrap interval.
 
-        The reference differs from itself by exactly 0.
+        For the reference itself, all differences are exactly 0.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def compare(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     BatchInterrupted
-        On Ctrl-C; its `runs`, model by model, keeps what was finished, and the other scenarios.
+        On Ctrl-C; its `runs`, model by model, holds the finished runs and the other scenarios.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -99,7 +99,7 @@ def compare(
     >>> found.difference.item(), found.only_reference.item(), found.p_value.item()
     (-1.0, 5, 0.0625)
 
-    One robot, with its centre of mass where it is and further back:
+    One robot, with its centre of mass as it is and further back:
 
     >>> steep = base.replace({"terrain": c2d.terrains.ramp(0.6)})
     >>> robots = {"as it is": {}, "tail heavy": {"robot.center_of_mass[0]": -0.15}}
@@ -109,7 +109,7 @@ def compare(
     """
     variants = {label: _fields(model, label) for label, model in labelled(models, "models").items()}
     if len(variants) < 2:
-        raise ScenarioError("models", models, "must be at least two")
+        raise ScenarioError("models", models, "must hold at least two models")
     labels = list(variants)
     if reference is not None and reference not in labels:
         names = ", ".join(map(str, labels))

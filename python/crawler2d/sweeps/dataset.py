@@ -1,4 +1,4 @@
-"""The runs of a sweep as an xarray data set, by cell and repeat."""
+"""The runs of a sweep as an xarray dataset, by cell and repeat."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["NO_RESULT", "to_table"]
 
 NO_RESULT = ("diverged", "refused", "failed")
-"""Outcomes of runs without a result: the state became non-finite, a rule is broken, all else."""
+"""Outcomes of runs without a result: non-finite state, broken rule, any other error."""
 
 _Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
 
@@ -39,9 +39,9 @@ def to_table(
     with_belts: bool,
     with_times: bool,
 ) -> xarray.Dataset:
-    """Arrange what is known of the runs, which are in the order of their plans; see `sweep`.
+    """Arrange the runs, which are in the order of their plans, in a table; see `sweep`.
 
-    Every column has every dimension, and none knows of other runs than its own: so tables join.
+    Every column has every dimension and depends on its own run only, so that tables can be joined.
     """
     xr = extra("xarray", "analysis")
     cells = [axis.name for axis in axes]
@@ -71,7 +71,7 @@ def to_table(
         times = [run.wall_time if run.error is None else math.nan for run in runs]
         variables["wall_time"] = by_run(times, float, units="s")
     variables["seed"] = by_run([seed] * len(runs), np.int64 if seed < 2**63 else np.uint64)
-    # Python's texts: in an array of texts each would take the room of the longest.
+    # Python strings: in a NumPy array of strings, each would take the space of the longest.
     errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
     variables["error"] = by_run([str(error) for error in errors], object)
     texts = ["" if plan.refused else plan.scenario.to_json() for plan in plans]
@@ -94,7 +94,7 @@ def _outcome(run: Run) -> str:
             return diverged
         case ScenarioError():
             return refused
-        case _:  # beyond memory, or a fault of the program
+        case _:  # out of memory, or a fault of the program
             return failed
 
 

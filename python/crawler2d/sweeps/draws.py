@@ -1,4 +1,4 @@
-"""What the repeats of a sweep draw: distributions, and the same random numbers for every cell."""
+"""The draws of a sweep's repeats: distributions, and the same random numbers in every cell."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ __all__ = [
     "uniform_int",
 ]
 
-# A float64 from 0 to 1 tells so many whole numbers apart.
+# A float64 from 0 to 1 can distinguish this many whole numbers.
 _MOST = 2**53
 
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """Every value from `low` to `high` is as likely as another.
+    """Any value from `low` to `high`, all equally likely.
 
     Parameters
     ----------
     low, high : float
-        Bounds, in the unit of the field.
+        Bounds, in units of the field.
 
     Raises
     ------
     ScenarioError
-        If they are no finite numbers in this order.
+        If they are not finite numbers with ``low <= high``.
 
     Examples
     --------
@@ -60,13 +60,13 @@ class Uniform:
         _order(self)
 
     def value(self, number: float, nominal: object) -> float:  # noqa: ARG002 - replaces it
-        """Map a uniform number from 0 to 1 to a value; the field's own does not matter."""
+        """Map a uniform number from 0 to 1 to a value; the field's own value is not used."""
         return _between(self, number)
 
 
 @dataclass(frozen=True, slots=True)
 class UniformInt:
-    """Every whole number from `low` to `high`, both included, is as likely as another.
+    """Any whole number from `low` to `high`, both included, all equally likely.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class UniformInt:
     Raises
     ------
     ScenarioError
-        If they are no whole numbers in this order, or 2^53 apart or more.
+        If they are not whole numbers with ``low <= high``, less than 2^53 apart.
 
     Examples
     --------
@@ -99,13 +99,13 @@ class UniformInt:
             raise ScenarioError("high", self.high, f"must be < low + 2^53 = {self.low + _MOST}")
 
     def value(self, number: float, nominal: object) -> int:  # noqa: ARG002 - replaces it
-        """Map a uniform number from 0 to 1 to a value; the field's own does not matter."""
+        """Map a uniform number from 0 to 1 to a value; the field's own value is not used."""
         return self.low + int((self.high - self.low + 1) * number)
 
 
 @dataclass(frozen=True, slots=True)
 class Scaled:
-    """The scenario's own value times a factor from `low` to `high`, each as likely as another.
+    """The scenario's own value times a factor from `low` to `high`, all equally likely.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Scaled:
     Raises
     ------
     ScenarioError
-        If they are no finite numbers in this order.
+        If they are not finite numbers with ``low <= high``.
 
     Examples
     --------
@@ -136,7 +136,7 @@ class Scaled:
 
 
 Distribution = Uniform | UniformInt | Scaled
-"""Every distribution."""
+"""Any distribution."""
 
 uniform = Uniform
 uniform_int = UniformInt
@@ -158,15 +158,15 @@ def _in_order(bounds: Distribution) -> None:
 
 
 def _between(bounds: Uniform | Scaled, number: float) -> float:
-    # Rounding could lead beyond the upper bound.
+    # Rounding could exceed the upper bound.
     return min(bounds.low + (bounds.high - bounds.low) * number, bounds.high)
 
 
 def uniform_numbers(path: str, seed: int, repeats: int) -> NDArray[np.float64]:
     """Draw one number from 0 to 1 for each repeat, shape (repeats,).
 
-    The number of a repeat depends on path, seed and repeat alone: neither another path, nor the
-    cell, nor how many repeats follow changes it.
+    The number of a repeat depends only on path, seed and repeat, not on other paths, the cell or
+    the number of repeats.
     """
     return np.random.default_rng((seed, *path.encode())).random(repeats)
 
@@ -177,7 +177,7 @@ _SPEED, _FRICTION = "drive.speed", "terrain.friction"
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """The distributions of a sweep by path, as `sweep` describes them."""
+    """The distributions of a sweep, by path."""
 
     distributions: Mapping[str, Distribution]
     is_default: bool
@@ -189,7 +189,7 @@ class Variation:
         Raises
         ------
         ScenarioError
-            If it is no mapping from paths to distributions, or would undo an axis.
+            If it is not a mapping from paths to distributions, or overwrites an axis.
         """
         if vary is None:
             return cls(_default(scenario, swept), is_default=True)
@@ -212,7 +212,7 @@ class Variation:
         Raises
         ------
         ScenarioError
-            If the cell lacks a path, has no number to scale there, or a whole number.
+            If the cell lacks a path, or has no number there, or has a whole number to scale.
         """
         values = {}
         for path, distribution in self.distributions.items():
@@ -220,10 +220,10 @@ class Variation:
                 continue
             nominal = read_path(cell, path)
             if not isinstance(distribution, UniformInt) and is_whole(cell, path):
-                rule = "must be drawn by uniform_int(low, high), for it is a whole number"
+                rule = "must be drawn with uniform_int(low, high), because it is a whole number"
                 raise ScenarioError(path, distribution, rule)
             if isinstance(distribution, Scaled) and type(nominal) not in (int, float):
-                raise ScenarioError(path, nominal, "must be a number to be scaled")
+                raise ScenarioError(path, nominal, "must be a number, because it is to be scaled")
             values[path] = distribution.value(numbers[path], nominal)
         return values
 

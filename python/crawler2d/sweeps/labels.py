@@ -1,4 +1,4 @@
-"""What the values of a sweep are called: numbers and texts by themselves, objects in short."""
+"""Labels for the values of a sweep: numbers and strings themselves, objects in short form."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ __all__ = ["Label", "labelled"]
 
 Label = str | int | float
 
-# Longer labels help nobody who reads a table.
+# Longer labels make tables hard to read.
 _LONGEST = 60
 
 
 def labelled(values: object, place: str) -> dict[Label, Any]:
-    """Read the values of an axis: a mapping from labels, or a sequence that names itself.
+    """Read the values of an axis: a mapping from labels, or a sequence that labels itself.
 
     Parameters
     ----------
     values : mapping or iterable
         What the user gave.
     place : str
-        The argument that held it, for messages.
+        The argument that holds them, for messages.
 
     Returns
     -------
     dict
-        Values by label, in order. The labels are all numbers, or all texts.
+        Values by label, in order. The labels are all numbers, or all strings.
 
     Raises
     ------
     ScenarioError
-        If there are no values, or one has no label of its own.
+        If there are no values, or a label is missing or not unique.
     """
     given = _given(values, place)
     if not given:
@@ -48,17 +48,17 @@ def labelled(values: object, place: str) -> dict[Label, Any]:
     found: dict[Label, Any] = {}
     for where, label, value in given:
         if label in found:
-            rule = f"must be unique: the label {label} is taken (a mapping gives others)"
+            rule = f"must have unique labels, not {label} twice: give a mapping from labels"
             raise ScenarioError(where, value, rule)
         found[label] = value
     return found
 
 
 def _given(values: object, place: str) -> list[tuple[str, Label, Any]]:
-    """List where each value stands, its label, and the value."""
+    """List the place of each value, its label, and the value."""
     if isinstance(values, Mapping):
         return [(f"{place}[{key!r}]", _key(key, place), value) for key, value in values.items()]
-    # A set has no order, and a text is one value.
+    # A set has no order, and a string is a single value.
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, set, frozenset)):
         rule = "must be a sequence of values, or a mapping from labels to values"
         raise ScenarioError(place, values, rule)
@@ -72,7 +72,7 @@ def _given(values: object, place: str) -> list[tuple[str, Label, Any]]:
 def _key(key: object, place: str) -> Label:
     label = frozen_scalar(key, whole=True)
     if type(label) not in (str, int, float):
-        raise ScenarioError(place, key, "must have texts or numbers as labels")
+        raise ScenarioError(place, key, "must have strings or numbers as labels")
     return label  # type: ignore[no-any-return]
 
 
@@ -88,7 +88,7 @@ def _label(value: object, where: str) -> Label:
 
 
 def _text(value: Any) -> str:
-    """Write a value the way it is made, without what is its default."""
+    """Write a value as the call that makes it, without defaults."""
     value = frozen_scalar(value, whole=True)
     if isinstance(value, np.ndarray):
         value = value.tolist()

@@ -1,4 +1,4 @@
-"""From the design of a sweep to the scenario of every run."""
+"""The scenario of every run of a sweep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Plan", "plan_runs"]
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """One run before it runs."""
+    """A planned run."""
 
     place: str
     """Cell and repeat, for messages."""
@@ -30,12 +30,12 @@ class Plan:
 
     @property
     def refused(self) -> ScenarioError | None:
-        """Why it does not run."""
+        """The error if the scenario breaks a rule."""
         return self.checked if isinstance(self.checked, ScenarioError) else None
 
     @property
     def identity(self) -> str:
-        """That of its scenario; none if it is refused."""
+        """Identity of its scenario; empty if that breaks a rule."""
         return "" if isinstance(self.checked, ScenarioError) else self.checked.identity
 
 
@@ -48,14 +48,14 @@ def plan_runs(
     seed: int,
     like: _core.Passed | None = None,
 ) -> list[Plan]:
-    """Make the scenario of every run: cell by cell, the repeats of a cell in order.
+    """Make the scenario of every run: cell by cell, and the repeats of a cell in order.
 
     What a cell has in common with the one before it, the first with `like`, is not built again.
 
     Raises
     ------
     ScenarioError
-        If a cell lacks a path; a scenario that breaks a rule is planned as refused.
+        If a cell lacks a path; a scenario that breaks a rule gets a plan with its error.
     """
     streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
     plans: list[Plan] = []
@@ -86,7 +86,7 @@ def plan_runs(
 
 
 def _legal(cell: Scenario, drawn: Mapping[str, float], whole: _core.Passed) -> dict[str, float]:
-    """Leave what breaks a rule at the cell's own value, which breaks none."""
+    """Drop the draws that break a rule; the cell's own values are known to be valid."""
     kept: dict[str, float] = {}
     for path, value in drawn.items():
         checked = _checked(cell.replace({**kept, path: value}), path, whole)
@@ -97,7 +97,7 @@ def _legal(cell: Scenario, drawn: Mapping[str, float], whole: _core.Passed) -> d
 
 @contextlib.contextmanager
 def _named(place: str) -> Iterator[None]:
-    """Let the path of an error begin with the place it is about."""
+    """Prefix the path of an error with the place it is about."""
     try:
         yield
     except ScenarioError as error:
@@ -107,7 +107,7 @@ def _named(place: str) -> Iterator[None]:
 def _checked(
     scenario: Scenario, place: str, like: _core.Passed | None
 ) -> _core.Passed | ScenarioError:
-    """Open the door, or say why not; doubts are told once, by what runs the batch."""
+    """Validate a scenario; warnings are left to the batch, which issues each once."""
     try:
         with _named(place):
             return _core.Passed(scenario.to_json(), like)

@@ -23,7 +23,7 @@ _STOPPED = "stopped"
 """Any outcome that is a stop."""
 
 _POSE = {"final_x": 1e-3, "final_y": 1e-3, "final_angle": math.radians(0.1)}
-"""[m], [rad] Final poses closer than this are one pose."""
+"""[m], [rad] Final poses closer than this count as one."""
 
 _SPOKEN = {
     "low": "lower bound",
@@ -40,32 +40,32 @@ def rate(
 ) -> xarray.Dataset:
     """Estimate the rate of an outcome in every cell, with Wilson's 95 % interval.
 
-    Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are runs that were
-    not made, which are missing in a table that was joined.
+    Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are the missing
+    runs of a joined table.
 
     Parameters
     ----------
     table : xarray.Dataset or iterable of str or None
-        What `sweep` returned; or outcomes, None for a run without a result.
+        The table that `sweep` returned; or outcomes, with None for a run without a result.
     outcome : str
-        Name of an `Outcome`, or "stopped" for all that are stops: cycling, seized, hung_up,
-        stalled and slipping.
+        Name of an `Outcome`, or "stopped" for any stop: cycling, seized, hung_up, stalled or
+        slipping.
     dim : str or iterable of str
-        The dimension of a table that is counted over, or several.
+        The dimension or dimensions of the table to count over.
 
     Returns
     -------
     xarray.Dataset
-        Variables `rate`, `low`, `high` and `count`, without the dimension `dim`. Of no runs the
-        rate is nan and the interval 0 to 1. Of a table with final poses also `distinct`, how many
-        of them differ by more than about 1 mm or 0.1 degree: where these are few, the runs were no
-        independent samples, and the interval is too narrow.
+        Variables `rate`, `low`, `high` and `count`, without the dimension `dim`. Without runs the
+        rate is nan and the interval 0 to 1. A table with final poses also gives `distinct`, how
+        many of them differ by more than about 1 mm or 0.1 degree: if they are few, the runs were
+        not independent samples, and the interval is too narrow.
 
     Raises
     ------
     ScenarioError
-        If there is no such outcome or dimension; the message has the nearest name. If another
-        dimension of the table is called as one of the variables.
+        If there is no such outcome or dimension; the message suggests the nearest name. If another
+        dimension of the table has the name of one of the variables.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -89,7 +89,7 @@ def rate(
     outcomes = runs["outcome"]
     given = dim if isinstance(dim, Iterable) and not isinstance(dim, str) else [dim]
     dims = [_name(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
-    with xr.set_options(keep_attrs=True):  # of the coordinates
+    with xr.set_options(keep_attrs=True):  # those of the coordinates
         made = outcomes.isin([str(each) for each in Outcome])
         counts = made.sum(dims)
         successes = outcomes.isin(counted).sum(dims)
@@ -113,7 +113,7 @@ def rate(
 
 
 def _distinct(made: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:
-    """Count the poses, in whole steps, of the runs that were made."""
+    """Count distinct poses, rounded to whole steps, of the runs with a result."""
     return len(set(zip(*(each[made].tolist() for each in steps), strict=True)))
 
 
@@ -126,7 +126,7 @@ def _texts(outcomes: Iterable[Any]) -> list[str]:
 
 
 def _name(value: object, path: str, names: Sequence[str]) -> str:
-    """Return a name that is one of a list, or tell the nearest."""
+    """Return a name from a list, or raise and suggest the nearest."""
     if isinstance(value, str) and value in names:
         return str(value)
     import difflib  # noqa: PLC0415 - only a failure needs it

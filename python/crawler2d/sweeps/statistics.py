@@ -1,4 +1,4 @@
-"""Confidence intervals of rates and differences, sound for few runs and rates of 0 and 1."""
+"""Confidence intervals of rates and differences, valid for few runs and rates of 0 and 1."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Interval", "bootstrap_mean", "mcnemar", "newcombe", "newcombe_paired", "wilson"]
 
-# Resamples of a bootstrap: its bounds then vary by about 2 % of the interval's width.
+# Resamples of a bootstrap; with this many, bounds vary by about 2 % of the interval's width.
 _RESAMPLES = 2000
 _LOG_2 = math.log(2.0)
 
@@ -31,16 +31,16 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     Parameters
     ----------
     successes : int
-        Runs that succeeded.
+        Number of successful runs.
     count : int
-        All runs.
+        Number of all runs.
     confidence : float
-        Of the interval, between 0 and 1.
+        Confidence level, between 0 and 1.
 
     Returns
     -------
     Interval
-        Rate, lower and upper bound; of no runs the rate is nan and the interval 0 to 1.
+        Rate, lower and upper bound; without runs the rate is nan and the interval 0 to 1.
 
     Raises
     ------
@@ -67,16 +67,16 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     center = rate + z**2 / (2.0 * count)
     spread = z * math.sqrt(rate * (1.0 - rate) / count + z**2 / (4.0 * count**2))
     scale = 1.0 + z**2 / count
-    # At the ends the bound is the rate itself; rounding would put it beside.
+    # At the ends the bound is exactly the rate; rounding would move it.
     low = 0.0 if successes == 0 else (center - spread) / scale
     high = 1.0 if successes == count else (center + spread) / scale
     return Interval(rate, low, high)
 
 
 def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interval:
-    """Estimate the difference of two independent rates, a / n - b / m.
+    """Estimate the difference between two independent rates, a / n - b / m.
 
-    Newcombe's hybrid of the two score intervals, his method 10.
+    Newcombe's hybrid score interval, his method 10.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interv
     n, m : int
         Sizes of the two samples, at least 1.
     confidence : float
-        Of the interval, between 0 and 1.
+        Confidence level, between 0 and 1.
 
     Returns
     -------
@@ -120,19 +120,19 @@ def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interv
 def newcombe_paired(
     both: int, first: int, second: int, neither: int, confidence: float = 0.95
 ) -> Interval:
-    """Estimate the difference of two rates of the same pairs, the first less the second.
+    """Estimate the difference between two rates from paired data, first minus second.
 
-    Newcombe's square-and-add of the two score intervals with a correlation corrected for
-    continuity, his method 10.
+    Newcombe's square-and-add interval of the two score intervals, with a continuity-corrected
+    correlation, his method 10.
 
     Parameters
     ----------
     both, neither : int
-        Pairs in which both succeeded, and in which none did.
+        Pairs in which both succeeded, and in which neither did.
     first, second : int
         Pairs in which only the first succeeded, and only the second.
     confidence : float
-        Of the interval, between 0 and 1.
+        Confidence level, between 0 and 1.
 
     Returns
     -------
@@ -175,7 +175,7 @@ def newcombe_paired(
 
 
 def mcnemar(first: int, second: int) -> float:
-    """Test whether two rates of the same pairs are equal: McNemar's test, exact and two-sided.
+    """Test whether two rates from paired data are equal: McNemar's test, exact and two-sided.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def mcnemar(first: int, second: int) -> float:
     Returns
     -------
     float
-        The p-value: how likely equal rates make pairs as unequal as these, or more.
+        The p-value: the probability of counts at least this unequal if the rates are equal.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def mcnemar(first: int, second: int) -> float:
     if min(first, second) < 0:
         raise ValueError(f"numbers of pairs must be at least 0, got {first} and {second}")
     n = first + second
-    # Logarithms: the binomial coefficients of many pairs are beyond any float.
+    # Logarithms, because the binomial coefficients of many pairs overflow.
     tail = sum(
         math.exp(math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1) - n * _LOG_2)
         for k in range(min(first, second) + 1)
@@ -209,22 +209,22 @@ def mcnemar(first: int, second: int) -> float:
 
 
 def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
-    """Estimate a mean with the percentile interval of its bootstrap.
+    """Estimate a mean with a bootstrap percentile interval.
 
-    The resamples are drawn from a fixed seed: equal values give equal bounds.
+    The resamples have a fixed seed: equal values give equal bounds.
 
     Parameters
     ----------
     values : array_like, shape (n,)
-        Independent values. Below about 20 the interval is somewhat too narrow.
+        Independent values. With less than about 20, the interval is somewhat too narrow.
     confidence : float
-        Of the interval, between 0 and 1.
+        Confidence level, between 0 and 1.
 
     Returns
     -------
     Interval
-        Mean, lower and upper bound. One value tells nothing of its spread: the bounds are infinite;
-        of no values the mean is nan too.
+        Mean, lower and upper bound. With one value the bounds are infinite, because its spread is
+        unknown; without values the mean is nan, too.
 
     Raises
     ------

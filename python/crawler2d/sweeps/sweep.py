@@ -1,4 +1,4 @@
-"""Many variants of one scenario, repeated with small variations: a table of what came out."""
+"""Simulate many variants of one scenario, repeated with small variations, into one table."""
 
 from __future__ import annotations
 
@@ -42,56 +42,58 @@ def sweep(
 ) -> xarray.Dataset:
     """Simulate every combination of some values, each several times with small variations.
 
-    The same repeat draws the same random numbers in every cell, so that cells compare in pairs.
-    What is drawn is written into the scenario of the run, so that every run replays alone.
+    A repeat draws the same random numbers in every cell, so that cells can be compared in pairs.
+    The draws are written into the scenario of each run, so that every run can be replayed alone.
 
     Parameters
     ----------
     scenario : Scenario
         What all runs share.
     over : mapping
-        From each dotted path to its values, set in this order: ``{"terrain.height": [0.05, 0.1]}``.
-        A mapping of values gives them labels: ``{"robot.track": {"belt": BeltTrack()}}``; objects
-        without are labelled by their short text. A tuple of paths sweeps them together, and takes
-        tuples of values. ``{}`` repeats the one scenario. Whole robots are swept as
-        ``{"robot": {"name": robot}}``: flippers and no flippers so, with `Robot.without_flippers`,
-        for ``robot.flippers`` set to None leaves their mass on the robot.
+        Maps each dotted path to its values, in the order in which they are set:
+        ``{"terrain.height": [0.05, 0.1]}``. A mapping of values gives them labels:
+        ``{"robot.track": {"belt": BeltTrack()}}``; objects without labels are labelled by their
+        short text. A tuple of paths sweeps them together, and takes tuples of values. ``{}`` only
+        repeats the scenario. Whole robots are swept as ``{"robot": {"name": robot}}``. To compare a
+        robot with and without flippers, sweep it so with `Robot.without_flippers`: setting
+        ``robot.flippers`` to None leaves their mass on the robot.
     repeats : int
-        Runs a cell, 1 to 1,000,000.
+        Runs per cell, 1 to 1,000,000.
     seed : int
-        Of the draws, 0 to 2^64 - 1.
+        Seed of the draws, 0 to 2^64 - 1.
     vary : mapping of str to distribution, optional
         What the repeats draw, by path: `uniform` and, for whole numbers, `uniform_int` replace a
-        value, `scaled` multiplies it. None takes the variations of the notes, ``{}`` none at all.
+        value, `scaled` multiplies it. None takes the variations below, ``{}`` none at all.
     counterfactual : bool
-        Whether to try a closed belt at every stop that a run ends in; see `Run.counterfactual`.
+        Whether to try a closed belt for every run that ends in a stop; see `Run.counterfactual`.
     wall_time : bool
-        Whether to add the computing time. No two runs have the same, so that tables with it do not
-        merge where they overlap.
+        Whether to add the computing time. It differs from run to run, so that tables with it cannot
+        be merged where they overlap.
     threads : int, optional
         See `simulate_many`.
     progress : bool or callable
         See `simulate_many`.
     on_error : {"raise", "record"}
-        What a run without a result does: end the sweep, before the first run if a scenario breaks a
-        rule, or stay in the table. A path that a variant lacks always ends it.
+        What to do about a run without a result: raise its error, before the first run if a scenario
+        breaks a rule; or record it in the table. A path that a variant lacks always raises.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions: one an entry of `over`, and `repeat`. A dimension has the last name of its path,
-        or the whole path with underscores where another path or a column of the table or of `rate`
-        is so called: ``robot.track.count`` is `robot_track_count`. That of a tuple joins the last
-        names of its paths, whose numbers are further coordinates. Every column has every dimension.
+        Dimensions: one per entry of `over`, and `repeat`. A dimension is named after the last part
+        of its path, or after the whole path with underscores if that name is taken by another path
+        or a column of the table or of `rate`: ``robot.track.count`` is `robot_track_count`. The
+        name for a tuple joins the last parts of its paths, whose numbers are further coordinates.
+        Every column has every dimension.
 
-        - `outcome`, and `error` where there is none: `diverged`, `refused` by a rule, or `failed`
-          for want of memory or by a fault of the program;
-        - `mechanism` of a stop, "" without; its `cause`, such as "pocket or belly+torque" for a tie
-          of the pocket with belly and torque together; `seized_at_tips`; with `counterfactual`,
-          `belt_freed` and `belt_distance` [m], False and nan where there was no stop;
-        - every metric of `Run.metrics`; with `wall_time`, that [s], of one thread;
+        - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
+          memory, or a fault of the program), and `error` says why;
+        - `mechanism` of a stop, "" if there is none; its `cause`, such as "pocket or belly+torque"
+          for a tie of the pocket with belly and torque together; `seized_at_tips`; with
+          `counterfactual`, `belt_freed` and `belt_distance` [m], False and nan without a stop;
+        - every metric of `Run.metrics`; with `wall_time`, the computing time [s] on one thread;
         - `scenario`, the JSON text of each run, and its `identity`;
-        - `drawn_...`, the value that was drawn for each path of `vary`, and the `seed`.
+        - `drawn_...`, the value drawn for each path of `vary`, and the `seed`.
 
     Raises
     ------
@@ -102,34 +104,35 @@ def sweep(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     BatchInterrupted
-        On Ctrl-C; its `runs`, cell by cell, keeps what was finished, and the other scenarios.
+        On Ctrl-C; its `runs`, cell by cell, holds the finished runs and the other scenarios.
     ImportError
         If xarray is missing; the message names the extra to install.
 
     Warns
     -----
     ScenarioWarning
-        If a cell takes the flippers off a robot and leaves their mass on it.
+        If a cell removes the flippers of a robot but leaves their mass on it.
 
     Notes
     -----
-    By default the repeats draw
+    By default the repeats draw:
 
-    - `start.approach`: uniform over a quarter of the axle distance about the scenario's own value,
-      and never below 0: the wheel spacing of a line of five;
+    - `start.approach`: uniform over a quarter of the axle distance, which is the wheel spacing of a
+      line of five, about the scenario's own value, and never below 0;
     - `start.track_phase`: uniform over one grouser pitch;
-    - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. Lanes have no
-      friction of their own, and keep theirs.
+    - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. Terrains of
+      lanes have a friction per lane, which is not varied.
 
-    Distances are those of `scenario`, the same for every cell. Where approach or phase are swept,
-    they are not drawn. A draw that breaks a rule, such as a speed beyond the largest of the
-    drivetrain, is dropped: the run keeps the cell's own value.
+    Distances are those of `scenario`, the same for every cell. Approach and phase are not drawn if
+    they are swept. A draw that breaks a rule, such as a speed above the drivetrain's maximum, is
+    dropped: the run keeps the cell's own value.
 
-    The number drawn for a path depends on seed, repeat and path alone. Another path in `vary`, more
-    repeats or other cells leave it as it is, and equal runs have equal rows. So xarray joins the
-    tables of one design: `xarray.merge` those with other cells or more repeats, `xarray.concat`
-    along `repeat` those with another seed, where draws are told apart by `seed` and `repeat`
-    together. What is in neither table is missing in the joined one, and `rate` does not count it.
+    The number drawn for a path depends only on seed, repeat and path. Other paths in `vary`, more
+    repeats or other cells do not change it, and equal runs have equal rows. So xarray can join the
+    tables of one design: `xarray.merge` joins tables with other cells or more repeats;
+    `xarray.concat` along `repeat` joins tables with another seed, where `seed` and `repeat`
+    together identify a draw. Runs that are in neither table are missing in the joined one, and
+    `rate` does not count them.
 
     Examples
     --------
@@ -140,14 +143,14 @@ def sweep(
     >>> table.outcome.values.tolist()
     [['cleared', 'cleared'], ['stalled', 'stalled']]
 
-    Any run replays alone, with its history.
+    Any run can be replayed alone, with its history.
 
     >>> text = table.scenario.sel(track="belt", repeat=1).item()
     >>> run = c2d.simulate(c2d.Scenario.from_json(text))
     >>> run.metrics["final_x"] == table.final_x.sel(track="belt", repeat=1).item()
     True
 
-    More repeats of the belt, and then more under another seed:
+    More repeats of the belt, then more with another seed:
 
     >>> import xarray as xr
     >>> belt = {"robot.track": {"belt": c2d.BeltTrack()}}
@@ -187,8 +190,8 @@ def tabulate(
     progress: bool | Progress | None,
     on_error: OnError,
 ) -> xarray.Dataset:
-    """Run a sweep over axes that have been read; see `sweep`."""
-    extra("xarray", "analysis")  # a missing package is found before the runs
+    """Run a sweep over the given axes; see `sweep`."""
+    extra("xarray", "analysis")  # fail before the runs if it is missing
     if not isinstance(scenario, Scenario):
         raise ScenarioError("scenario", scenario, "must be a Scenario")
     if on_error not in ("raise", "record"):

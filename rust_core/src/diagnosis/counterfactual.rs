@@ -5,12 +5,12 @@ use crate::observe::Outcome;
 /// How a closed belt fares from a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counterfactual {
-    /// It got away.
+    /// It escaped.
     pub freed: bool,
-    /// [m] How far it got along the command.
+    /// [m] How far it advanced in the commanded direction.
     pub distance: f64,
-    /// [s] How long it took to get away; infinite if it did not.
+    /// [s] How long it took to escape; infinite if it did not.
     pub time: f64,
-    /// How it stood in the end.
+    /// Its outcome at the end of that time.
     pub outcome: Outcome,
 }

@@ -1,8 +1,8 @@
-//! The push that a stop gives way to.
+//! The escape force of a stop: the largest push that can be balanced.
 //!
-//! A robot that is pushed may slip a little and catch again: what holds it is the largest push that
-//! can be balanced on its way through the next millimetres. On that way it is settled on the ground
-//! as far as its weight lets it down, surfaces slide as they did, and motors push as they did.
+//! A pushed robot may slip a little and catch again. So what holds it is the largest push that can be balanced
+//! within the next millimetres. On the way, the robot settles on the ground under its weight, surfaces keep
+//! sliding and motors keep pushing.
 
 use super::forces::Push;
 use super::linear_program::Rows;
@@ -12,17 +12,17 @@ use crate::contact::{Contact, ContactFinder};
 use crate::geometry::{Pose, Rotation, Vector, cross, right_of};
 use crate::observe::Stance;
 
-/// [m] Where the robot is looked at on its way, beyond where it stands.
+/// [m] Distances ahead at which the balance is examined.
 const WAY: [f64; 6] = [2e-4, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3];
 /// [m] Surfaces closer than this bear.
 const BEARS: f64 = 1e-5;
 /// [m] Contacts farther away than this play no part in one round of settling.
 const REACH: f64 = 5e-3;
-/// Rounds of settling at most; gaps are linear in the pose but for its square.
+/// Largest number of rounds of settling; gaps are linear in the pose to first order.
 const ROUNDS: usize = 8;
 
-/// The largest push along the command that can be balanced on the way, in weights; None if no push
-/// and no rest can.
+/// The largest push along the command that can be balanced on the way, in weights; `None` if the robot cannot be
+/// balanced at all.
 pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f64) -> Option<f64> {
     let direction = scene.direction();
     let first = here.escape(direction, tolerance)?;
@@ -55,14 +55,14 @@ pub(super) fn force(scene: &Scene, stance: &Stance, here: &Statics, tolerance: f
             Some(push) if parts(&push, &|i| contacts[i].part) == bearing => {
                 largest = largest.max(push.force);
             }
-            // Nothing holds it there, or others do: then it does not get there by slipping.
+            // Without a balance there, or with other bodies bearing, slipping does not lead there.
             _ => break,
         }
     }
     Some(largest)
 }
 
-/// A contact of a robot that is on its way along the command.
+/// A contact of the robot while it moves in the commanded direction.
 fn moving(scene: &Scene, stance: &Stance, pose: Pose, contact: &Contact) -> Support {
     let drive = scene.model.parts[contact.part].drive;
     let mut support = scene.support(pose, contact, 0.0, Role::Track);
@@ -70,17 +70,17 @@ fn moving(scene: &Scene, stance: &Stance, pose: Pose, contact: &Contact) -> Supp
         Some(k) if scene.is_moving(stance.drives[k].speed) => {
             support.slip_at(stance.drives[k].speed)
         }
-        // A surface that stands rolls on, and its motor pushes as it did.
+        // A surface that does not slide rolls, and its motor keeps pushing.
         Some(_) => 0.0,
         None => right_of(contact.normal).x * scene.direction(),
     };
     support
 }
 
-/// Lets the robot down at its x as far as the ground lets it; its contacts there, or None if it does
-/// not come to rest.
+/// Lowers the robot onto the ground, keeping its x; returns its contacts there, or `None` if it does not come to
+/// rest.
 fn settle(scene: &Scene, finder: &mut ContactFinder, pose: &mut Pose) -> Option<Vec<Contact>> {
-    /// [m], [rad] Farthest that a round moves it.
+    /// [m], [rad] Largest motion per round.
     const FARTHEST: [f64; 2] = [2e-3, 0.02];
 
     let mut contacts = Vec::new();
@@ -105,7 +105,7 @@ fn settle(scene: &Scene, finder: &mut ContactFinder, pose: &mut Pose) -> Option<
         };
         let turned = Rotation::new(turn);
         let moved = center + Vector::new(0.0, rise) + turned * (pose.translation - center);
-        // The frame keeps its x, the centre of mass does not quite.
+        // The chassis frame keeps its x; the centre of mass moves a little.
         *pose = Pose::from_parts(
             Vector::new(pose.translation.x, moved.y),
             turned * pose.rotation,

@@ -1,24 +1,24 @@
-//! Forces that could balance a stop: what a unit of each does, and the best choice of all.
+//! Forces that could balance a stop: the effect of a unit of each, and the choice with the smallest residual.
 
 use super::linear_program::Rows;
 
-/// Multiple of the weight beyond which a force counts as without limit.
+/// Multiple of the weight above which a force counts as unlimited.
 pub(super) const WITHOUT_LIMIT: f64 = 1e3;
-/// Shares of the weight by which a balance may miss besides: rounding, far below what a push feels. The
-/// next is tried where the solver finds nothing within the first.
+/// Residuals allowed besides, as shares of the weight: rounding errors, far too small for a push to matter. The
+/// next is tried if the solver finds no solution with the one before.
 const SLACKS: [f64; 3] = [1e-8, 1e-7, 1e-6];
 
-/// Columns of a linear program: what a unit of each force does, its bounds, whose it is.
+/// Columns of a linear program: the effect of a unit of each force, its bounds and its owner.
 #[derive(Clone, Default)]
 pub(super) struct Forces {
     columns: Vec<Vec<f64>>,
     bounds: Vec<(f64, f64)>,
     sources: Vec<Source>,
-    /// Loads of the last balances: the weights of arms about their pivots.
+    /// Loads of the last balances: the moments of the arms' weights about their pivots.
     hung: Vec<f64>,
 }
 
-/// Whose a force is.
+/// The owner of a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     Support(usize),
@@ -31,14 +31,14 @@ pub(super) enum Source {
 pub(super) struct Push {
     /// The push in weights; infinite if any can be balanced.
     pub force: f64,
-    /// Supports that bear then.
+    /// Supports that bear under that push.
     pub bearing: Vec<usize>,
     /// Drives with the forces of their motors, in weights.
     pub motors: Vec<(usize, f64)>,
 }
 
 impl Forces {
-    /// None yet; the last balances have to bear so much.
+    /// No columns yet; the last balances carry these loads.
     pub(super) fn bearing(hung: Vec<f64>) -> Self {
         Self {
             hung,
@@ -52,8 +52,8 @@ impl Forces {
         self.sources.push(source);
     }
 
-    /// Both ways of every balance with the weight; the forces, and as the last variable the imbalance.
-    /// A balance may miss by `slack.0` times that, and by `slack.1` besides.
+    /// Two inequalities for each balance with the weight. The variables are the forces and, last, the imbalance. A
+    /// balance may have a residual of `slack.0` times the imbalance, plus `slack.1`.
     fn rows(&self, slack: (f64, f64)) -> Rows {
         let n = self.columns.len();
         let mut rows = Rows::default();
@@ -102,7 +102,7 @@ impl Forces {
     }
 
     pub(super) fn largest_push(&self, direction: f64, tolerance: f64) -> Option<Push> {
-        /// A support with a smaller share of the weight does not bear.
+        /// Smallest share of the weight at which a support bears.
         const BEARS: f64 = 1e-6;
 
         let n = self.columns.len();

@@ -1,4 +1,4 @@
-//! Arms in the statics of a stop: each hangs on its pivot, and its motor has a limit.
+//! Arms in the statics of a stop: each is held at its pivot by a motor with a torque limit.
 
 use super::scene::Scene;
 use super::statics::Hinge;
@@ -7,7 +7,7 @@ use crate::geometry::{Pose, Vector, cross};
 use crate::robot::Mount;
 
 impl Scene<'_> {
-    /// Those of the robot in a pose.
+    /// The hinges of the robot in a pose.
     pub(super) fn hinges(&self, pose: Pose) -> Vec<Hinge> {
         let arms = self.model.flippers.iter().zip(&self.running.flippers);
         arms.map(|(arm, mounted)| {
@@ -20,8 +20,8 @@ impl Scene<'_> {
         .collect()
     }
 
-    /// The hinge of what a mount carries, and a direction there with its lever about it: an arm that turns
-    /// runs its belt along itself, since its sprocket stands.
+    /// The hinge of a mount, and a direction with its lever about that hinge. A turning arm runs its belt along
+    /// itself, because the sprocket stands still.
     pub(super) fn hung(
         &self,
         mount: Mount,

@@ -5,7 +5,7 @@ use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
-/// The solver ends when no constraint is broken, and no cost is left to save, by more than this.
+/// The solver ends when no constraint is violated, and no cost can be reduced, by more than this.
 const ACCURACY: f64 = 1e-9;
 
 /// Rows `a x <= b`.
@@ -21,7 +21,7 @@ impl Rows {
         self.bounds.push(bound);
     }
 
-    /// The point of smallest `cost`; None without one.
+    /// The point of smallest `cost`; `None` if there is none.
     pub(super) fn minimise(&self, cost: &[f64]) -> Option<Vec<f64>> {
         let n = cost.len();
         let matrix = CscMatrix::from(&self.coefficients);

@@ -13,13 +13,13 @@ pub enum Mechanism {
     Undercut,
     /// The ground reached the belly.
     Bellied,
-    /// The motors stand at their limit.
+    /// The motors are at their limit.
     Blocked,
-    /// The motors stand at their limit with a grouser's flank against it.
+    /// The motors are at their limit, with the flank of a grouser against it.
     Interlocked,
-    /// It is in the gap between two shoes of a chain, which closes as they go on.
+    /// It is in the gap between two shoes of a chain, which closes as they move on.
     Pinched,
-    /// It has got through a chain of shoes to what that runs on.
+    /// It has got through a chain of shoes to the guide or wheels that the chain runs on.
     Fouled,
 }
 
@@ -35,7 +35,7 @@ impl Mechanism {
         Self::Fouled,
     ];
 
-    /// Name as in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Straddled => "straddled",
@@ -48,8 +48,7 @@ impl Mechanism {
         }
     }
 
-    /// The mechanism that the facts show, the first that fits; None if one body sticks to the ground
-    /// and turns with it.
+    /// The first mechanism that the facts show; `None` if one body sticks to the ground and turns with it.
     pub(super) fn of(facts: &Facts, criteria: &SeizureCriteria, weight: f64) -> Option<Self> {
         let on_it = || facts.contacts.iter().filter(|c| c.in_pocket);
         let force_of = |body: usize| -> f64 {
@@ -91,18 +90,18 @@ impl Mechanism {
     }
 }
 
-/// What a stop shows.
+/// The facts of a stop.
 pub(super) struct Facts {
     /// Contacts that bear.
     pub contacts: Vec<StopContact>,
-    /// Share of the lift that the belly has.
+    /// Share of the load that the belly carries.
     pub belly_share: f64,
-    /// Share of the normal forces at contacts that slide.
+    /// Share of the normal force that is at sliding contacts.
     pub sliding_share: f64,
-    /// Share of the motors that stand at their limit.
+    /// Share of the motors that are at their limit.
     pub stalled_share: f64,
-    /// A grouser's flank bears on the ground inside the track.
+    /// The flank of a grouser bears on the ground inside the track.
     pub flank: bool,
-    /// Two neighbouring shoes bear on the ground inside the track, and go on to close the gap between them.
+    /// Two neighbouring shoes bear on the ground inside the track and are about to close the gap between them.
     pub pinched: bool,
 }

@@ -1,7 +1,7 @@
-//! Why did it stop? Outcome, mechanism and cause of a stop, from what was seen of it alone.
+//! Why did it stop? Outcome, mechanism and cause of a stop, from what was observed only.
 //!
-//! Nothing here knows a track model: contacts, forces, surface speeds, torques and the geometry of
-//! the envelope decide. docs/decisions/0005 says how, docs/conventions.md what the words mean.
+//! No track model is known here: contacts, forces, surface speeds, torques and the geometry of
+//! the envelope decide. docs/decisions/0005 explains how, docs/conventions.md defines the words.
 
 mod counterfactual;
 mod escape;
@@ -30,21 +30,21 @@ pub use statics::Condition;
 
 pub(crate) use scene::Scene;
 
-/// Why a robot that was commanded to move did not.
+/// Why a robot stopped although commanded to move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
-    /// What the stop is.
+    /// Which kind of stop it is.
     pub outcome: Outcome,
     /// How the most loaded ground inside the track is held, if there is any.
     pub mechanism: Option<Mechanism>,
-    /// The smallest sets of conditions without which there is no equilibrium; more than one is a tie.
+    /// The smallest sets of conditions without which there is no equilibrium; more than one set is a tie.
     pub cause: Vec<Vec<Condition>>,
-    /// Whether closing the pockets would end the equilibrium if the track were taken to reach to the
-    /// circumscribed circles: ground between the grousers of one wheel is then a pocket, too.
+    /// Whether closing the pockets would end the equilibrium if the track reached out to the circumscribed circles.
+    /// Ground between the grousers of one wheel then counts as in a pocket.
     pub seized_at_tips: bool,
-    /// [s] When it was looked at.
+    /// [s] When the stop was examined.
     pub time: f64,
-    /// [s] Since when it has lasted.
+    /// [s] When the stop began.
     pub since: f64,
     /// [m] Mean position of the chassis frame.
     pub position: [f64; 2],
@@ -52,67 +52,67 @@ pub struct Diagnosis {
     pub chassis_angle: f64,
     /// The most loaded ground inside the track.
     pub intrusion: Option<LoadedIntrusion>,
-    /// What bears, in the mean over the last one to two stop windows.
+    /// The contacts that bear, averaged over the last one to two stop windows.
     pub contacts: Vec<StopContact>,
-    /// Share of the normal forces' lift that the belly has, 0 to 1.
+    /// Share of the load that the belly carries, 0 to 1.
     pub belly_share: f64,
-    /// Share of the normal forces at contacts that slide.
+    /// Share of the normal force that is at sliding contacts.
     pub sliding_share: f64,
-    /// Share of the motors bearing against the ground that stand at their limit.
+    /// Share of the motors with ground contact that are at their torque limit.
     pub stalled_share: f64,
     /// Share of the commanded distance made in the last stop window.
     pub progress: f64,
-    /// The pose did not change at all.
+    /// The pose did not change.
     pub stationary: bool,
-    /// Share of the weight by which the best choice of forces misses balance; None without an answer.
+    /// Smallest residual that any choice of forces leaves, as a share of the weight; `None` if it is unknown.
     pub imbalance: Option<f64>,
     /// The imbalance is within the criteria: the pose may be an equilibrium.
     pub certified: bool,
-    /// [N] Largest push at the centre of mass along the command that can be balanced, here or within
-    /// 5 mm from here, while surfaces go on sliding and motors pushing as they do; infinite if any
-    /// can. None without a certificate, and for a state that rattles on.
+    /// [N] Largest push at the centre of mass, along the command, that can still be balanced here or within the next
+    /// 5 mm, while surfaces keep sliding and motors keep pushing; infinite if any can. `None` without a
+    /// certificate, and for a state that keeps rattling.
     pub escape_force: Option<f64>,
-    /// [N] The same, here, if every contact and motor could hold within its limits.
+    /// [N] The same, here, with every contact and motor free to hold within its limits.
     pub free_escape_force: Option<f64>,
-    /// How a closed belt fares from here, if that was asked for.
+    /// How a closed belt fares from this pose, if that was asked for.
     pub counterfactual: Option<Counterfactual>,
 }
 
 /// A connected piece of ground inside the track, with what bears on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedIntrusion {
-    /// Where it is.
+    /// Its place and size.
     pub place: Intrusion,
-    /// What the bodies on either side of it are.
+    /// Kinds of the bodies on either side of it.
     pub kinds: [BodyKind; 2],
-    /// [N] Normal force on it, in the mean.
+    /// [N] Mean normal force on it.
     pub force: f64,
 }
 
-/// A contact of a stop, in the mean.
+/// A contact of a stop, averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopContact {
     /// Its number.
     pub number: u64,
-    /// Lane that it is with.
+    /// Its lane.
     pub side: Side,
     /// Index of the part.
     pub body: usize,
-    /// What the part is.
+    /// Kind of the part.
     pub kind: BodyKind,
-    /// Facet of the ground, from the left.
+    /// Facet of the ground, counted from the left.
     pub segment: usize,
     /// Edge, or -1.
     pub edge: i32,
-    /// [m] Where.
+    /// [m] Position.
     pub point: Vector,
-    /// From the ground to the robot.
+    /// Direction from the ground to the robot.
     pub normal: Vector,
     /// [N] Normal force.
     pub normal_force: f64,
     /// [N] Friction on the robot, along the normal turned by -90 degrees.
     pub friction_force: f64,
-    /// [m/s] Velocity of the robot's surface over the ground in that direction.
+    /// [m/s] Slip velocity: that of the robot's surface relative to the ground, in that direction.
     pub surface_speed: f64,
     /// It slides at its friction limit.
     pub slides: bool,
@@ -120,14 +120,14 @@ pub struct StopContact {
     pub in_pocket: bool,
 }
 
-/// When a stop was seen.
+/// When a stop was observed.
 pub(crate) struct Seen {
     pub time: f64,
     pub since: f64,
     pub progress: f64,
 }
 
-/// Judges a stop.
+/// Diagnoses a stop.
 pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
     let criteria = scene.criteria;
     let weight = scene.model.mass * scene.gravity;
@@ -171,7 +171,7 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
         Outcome::Slipping
     };
 
-    // A state that rattles on has no pose to be pushed from.
+    // A state that keeps rattling has no pose to start a push from.
     let resting = certificate.filter(|_| stationary);
     let escape_force = resting.and_then(|s| escape::force(scene, stance, s, tolerance));
     let free_escape = resting.and_then(|s| s.free_escape(scene.direction(), tolerance));

@@ -1,18 +1,18 @@
-//! Whether neighbouring shoes of a chain pinch the ground that is between them.
+//! Whether neighbouring shoes of a chain pinch the ground between them.
 
 use super::StopContact;
 use super::scene::Scene;
 use crate::observe::Stance;
 
-/// [rad] Two shoes on a straight run are less bent.
+/// [rad] Smallest angle between two pinching shoes; on a straight run it is less.
 const BENT: f64 = 0.05;
-/// Share of the time for which each must bear: then both do so at once. Shoes that slip past one after another
-/// hold nothing.
+/// Share of the time for which each shoe must bear, so that both do so at once. Shoes that slip past one after
+/// another hold nothing.
 const STAYS: f64 = 0.5;
 
 impl Scene<'_> {
-    /// Whether two neighbouring shoes bear on the ground inside the track where the gap between them closes:
-    /// bent apart, as round an end of the track, and about to be straightened, as at the end that goes ahead.
+    /// Whether two neighbouring shoes bear on the ground inside the track where the gap between them is closing: bent
+    /// apart, as round an end of the track, and about to be straightened, as at the leading end.
     pub(super) fn pinches(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
         let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
         let mut durations = vec![0.0; self.running.shoes.len()];

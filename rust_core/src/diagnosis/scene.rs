@@ -1,4 +1,4 @@
-//! A stop in its surroundings: which ground is inside the track, what bears, what could hold it.
+//! A stop in its surroundings: ground inside the track, contacts that bear, and forces that could hold it.
 
 use super::mechanism::Facts;
 use super::statics::{Condition, Role, Statics, Support};
@@ -11,23 +11,23 @@ use crate::robot::{BodyKind, Model, Part, Running};
 use crate::scenario::{ContactMethod, SeizureCriteria};
 use crate::terrain::Profile;
 
-/// What a diagnosis looks at besides the stop.
+/// What a diagnosis needs besides the stop itself.
 pub(crate) struct Scene<'a> {
     pub model: &'a Model,
     pub lanes: &'a [Profile],
-    /// Of each track, with its lane.
+    /// Envelope of each track, with its lane.
     pub envelopes: &'a [TrackEnvelope],
-    /// Who finds contacts.
+    /// How contacts are found.
     pub contact: ContactMethod,
     pub criteria: &'a SeizureCriteria,
     pub gravity: f64,
-    /// [m/s] What the drivetrain is to do.
+    /// [m/s] Commanded speed.
     pub command: f64,
-    /// [m/s] What it is to do now, within its acceleration.
+    /// [m/s] Current set-point, within the acceleration limits.
     pub set_point: f64,
-    /// [m] Half the distance of the end axles.
+    /// [m] Half the distance between the end axles.
     pub half_length: f64,
-    /// Where the moving parts are.
+    /// Positions of the moving parts.
     pub running: Running,
 }
 
@@ -60,8 +60,8 @@ impl Scene<'_> {
         with_force.filter(|i| i.force > least).collect()
     }
 
-    /// Whether an intrusion is in a pocket: between two bodies, and below their root circles. Between
-    /// two grousers of one wheel it is grip; inside one surface it is a dent.
+    /// Whether an intrusion is in a pocket: between two bodies, and deeper than their root circles. Between two
+    /// grousers of one wheel it is grip; inside a single surface it is a dent.
     pub(super) fn is_pocket(&self, intrusion: &LoadedIntrusion) -> bool {
         let [before, after] = intrusion.place.bodies;
         before != after && intrusion.place.root_depth > self.criteria.intrusion_depth
@@ -71,26 +71,26 @@ impl Scene<'_> {
         place.bears(self.lanes, &self.model.parts, contact)
     }
 
-    /// The coefficient of friction of a part on the ground.
+    /// Friction coefficient of a part on the ground.
     fn friction(&self, part: usize) -> f64 {
         let part = &self.model.parts[part];
         part.friction_limit.min(self.lanes[part.lane].friction)
     }
 
-    /// Whether a surface speed [m/s] is more than the creep of a contact that sticks.
+    /// Whether a surface speed [m/s] is more than the creep of a sticking contact.
     pub(super) fn is_moving(&self, speed: f64) -> bool {
         speed.abs() > self.criteria.sliding_speed * self.set_point.abs()
     }
 
     fn slides(&self, bearing: &Bearing) -> bool {
-        /// Share of the friction cone that a contact in rattle must have used, in the mean.
+        /// Share of the friction cone that a rattling contact must use, on average.
         const AT_LIMIT: f64 = 0.95;
 
         let limit = self.friction(bearing.contact.part) * bearing.normal_force;
         self.is_moving(bearing.slip) && bearing.friction_force.abs() >= AT_LIMIT * limit
     }
 
-    /// What the mechanism is read from.
+    /// The facts from which the mechanism follows.
     pub(super) fn facts(&self, stance: &Stance, pocket: Option<&LoadedIntrusion>) -> Facts {
         let contacts: Vec<StopContact> = stance
             .bearings
@@ -120,7 +120,7 @@ impl Scene<'_> {
         };
         let all_lift = sum(&lift).max(f64::MIN_POSITIVE);
         let on = |is: bool, value: f64| if is { value } else { 0.0 };
-        // A wheel in the air turns whatever holds the robot.
+        // A wheel in the air turns, whatever holds the robot.
         let on_drive = |k: usize| {
             contacts
                 .iter()
@@ -143,10 +143,10 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether a surface in the pocket would move into the ground if its drive turned as commanded:
-    /// a grouser's flank.
+    /// Whether a surface in the pocket would move into the ground if its drive turned as commanded: the flank of a
+    /// grouser.
     fn bears_on_a_flank(&self, stance: &Stance, contacts: &[StopContact]) -> bool {
-        /// Share of the surface speed along the normal that a round wheel, but for rounding, lacks.
+        /// Share of the surface speed that is along the normal; zero for a round wheel, except for rounding.
         const INTO_GROUND: f64 = 0.05;
 
         let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
@@ -162,7 +162,7 @@ impl Scene<'_> {
         self.levers_at(Pose::new(stance.position, stance.angle), contact)
     }
 
-    /// Those of a contact of the robot, all of it one body, in a pose.
+    /// Levers of a contact of the robot, taken as one body, in a pose.
     fn levers_at(&self, pose: Pose, contact: &Contact) -> Levers {
         let origin = self.model.center_of_mass;
         let body = Carrier {
@@ -174,7 +174,7 @@ impl Scene<'_> {
         Levers::new(contact, &body, motion, self.model)
     }
 
-    /// The conditions that this stop has at all.
+    /// The conditions that apply to this stop.
     pub(super) fn conditions(
         &self,
         stance: &Stance,
@@ -194,7 +194,7 @@ impl Scene<'_> {
         Condition::ALL.into_iter().filter(has).collect()
     }
 
-    /// The statics of a stop whose pockets are these; None without a weight.
+    /// The statics of a stop with these pockets; `None` without a weight.
     pub(super) fn statics(&self, stance: &Stance, pockets: &[&LoadedIntrusion]) -> Option<Statics> {
         if self.model.mass * self.gravity <= 0.0 {
             return None;
@@ -215,7 +215,7 @@ impl Scene<'_> {
         Some(self.balance(pose, stance, supports, closed))
     }
 
-    /// The statics of supports in a pose.
+    /// The statics of given supports in a pose.
     pub(super) fn balance(
         &self,
         pose: Pose,
@@ -266,7 +266,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether a motor is at its torque limit, in the mean.
+    /// Whether a motor is at its torque limit, on average.
     fn is_at_limit(&self, drive: &DriveMean) -> bool {
         drive.force.abs() >= self.criteria.torque_limit * self.model.drive_force
     }
@@ -282,8 +282,8 @@ impl Scene<'_> {
         }
     }
 
-    /// What would bear on an intrusion if a belt closed the pocket, at its edge. The belt runs as the
-    /// faster of the bodies on either side, round what a chain runs on as the chain.
+    /// The support that would bear on an intrusion, at its edge, if a belt closed the pocket. The belt moves like the
+    /// faster of the bodies on either side; over what a chain runs on, it moves like the chain.
     fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
         let edge = &self.lanes[place.lane].edges[place.edge as usize];
         let point = Vector::new(edge.x, edge.y);
@@ -313,7 +313,7 @@ impl Scene<'_> {
             }
         });
         let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
-        // A free surface rolls with the ground under it.
+        // A free wheel rolls on the ground under it.
         let slides = drive.filter(|k| *k < self.model.motors).map_or(0.0, speed);
         let directions =
             [normal, right_of(normal)].map(|unit| Direction::new(unit, arm, motion, self.model));

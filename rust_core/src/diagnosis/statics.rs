@@ -1,9 +1,9 @@
 //! Plane statics of a stop: which forces within friction and torque limits could balance it?
 //!
-//! Every contact pushes along its normal and the friction that goes with it: anywhere in its cone
-//! while it sticks, against its slip at the edge of the cone while it slides. Forces, the moment
-//! about the centre of mass, and the torque of each drive must balance; how far the best choice of
-//! forces misses that is the imbalance. A condition that holds the robot is found by relaxing it.
+//! Every contact has a normal force and friction: anywhere in the friction cone while it sticks, against the slip
+//! on the edge of the cone while it slides. Forces, the moment about the centre of mass and the torque of each
+//! drive must balance; the imbalance is the smallest residual that any choice of forces leaves. A condition that
+//! holds the robot is found by relaxing it.
 
 #[cfg(test)]
 mod tests;
@@ -12,36 +12,36 @@ use super::forces::{Forces, Push, Source, WITHOUT_LIMIT};
 use crate::dynamics::{Direction, push_axis};
 use crate::robot::Model;
 
-/// A stop as forces that could be.
+/// A stop as a set of possible forces.
 #[derive(Clone, Debug)]
 pub(super) struct Statics {
     supports: Vec<Support>,
-    /// What would bear if every pocket were closed.
+    /// Supports that would bear if every pocket were closed.
     closed: Vec<Support>,
-    /// For each drive: +1 or -1, as commanded, if its motor bears against the ground; else 0.
+    /// For each drive: +1 or -1, as commanded, if its motor acts on the ground; else 0.
     motors: Vec<f64>,
-    /// For each drive: the sign of the force of a motor that stands at its limit; else 0.
+    /// For each drive: the sign of the motor's force if it is at its limit; else 0.
     stalled: Vec<f64>,
     /// Largest force of a motor, in weights.
     torque: f64,
-    /// Share of it that a motor at its limit has at least.
+    /// Smallest share of it at which a motor counts as at its limit.
     at_limit: f64,
-    /// [m] Moments count as forces at this lever.
+    /// [m] Lever arm that converts moments to forces.
     lever: f64,
     radius: f64,
-    /// Force along the chassis of a track that pushes it: direction and lever.
+    /// Force along the chassis, of a model that pushes the chassis: direction and lever.
     push: Option<(f64, f64, f64)>,
     /// Pivots of the arms.
     hinges: Vec<Hinge>,
 }
 
-/// A contact that bears or could.
+/// A contact that bears or could bear.
 #[derive(Clone, Debug)]
 pub(super) struct Support {
     pub normal: Direction,
     pub tangent: Direction,
     pub drive: Option<usize>,
-    /// Pivot of the arm that it is on.
+    /// Pivot of the arm that it is on, if any.
     pub hinge: Option<usize>,
     /// Coefficient of friction.
     pub friction: f64,
@@ -53,13 +53,13 @@ pub(super) struct Support {
 /// The pivot of the arms at one end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hinge {
-    /// [m] Moment of the arms' weight about it, over the weight of the robot; counter-clockwise held.
+    /// [m] Holding moment against the arms' weight about it, counter-clockwise, over the robot's weight.
     pub weight: f64,
-    /// [m] The largest torque of their motors over the weight of the robot.
+    /// [m] Largest torque of their motors, over the robot's weight.
     pub torque: f64,
 }
 
-/// What a support is to the diagnosis.
+/// The role of a support in the diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     /// It bears on ground in a pocket.
@@ -73,7 +73,7 @@ pub(super) enum Role {
 /// A condition of an equilibrium that can be relaxed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// The pockets of the track: closed, a belt runs over what is in them.
+    /// The pockets of the track: closed, so that a belt runs over what is in them.
     Pocket,
     /// The belly: removed.
     Belly,
@@ -87,7 +87,7 @@ impl Condition {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Pocket, Self::Belly, Self::Torque, Self::Friction];
 
-    /// Name as in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pocket => "pocket",
@@ -101,20 +101,19 @@ impl Condition {
 /// What the drives do in an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Drives {
-    /// As was seen, motors within their limits.
+    /// As observed, motors within their limits.
     AsFound,
-    /// As was seen, motors that stand at their limit held to it.
+    /// As observed, with motors at their limit held at it.
     Hold,
-    /// All turn as commanded, and the surfaces slide.
+    /// All turn as commanded, and their surfaces slide.
     Turn,
-    /// All stand, their motors at the limit.
+    /// All stand still, with their motors at the limit.
     Stand,
 }
 
 impl Statics {
-    /// `command` is the sign of the commanded speed, `torque` the largest force of a motor in weights,
-    /// `at_limit` the share of it from which a motor is at its limit, `lever` [m] makes moments
-    /// comparable with forces.
+    /// `command` is the sign of the commanded speed, `torque` the largest force of a motor in weights, `at_limit` the
+    /// share of it from which a motor counts as at its limit; `lever` [m] converts moments to forces.
     pub(super) fn new(
         model: &Model,
         angle: f64,
@@ -154,15 +153,15 @@ impl Statics {
         }
     }
 
-    /// Share of the weight by which the best choice of forces misses balance; None if the program
-    /// has no answer.
+    /// Smallest residual that any choice of forces leaves, as a share of the weight; `None` if the linear program has
+    /// no solution.
     pub(super) fn imbalance(&self) -> Option<f64> {
         self.forces(Drives::AsFound, &[]).imbalance()
     }
 
-    /// The largest push along `direction` at the centre of mass that can be balanced; None if none
-    /// can. Contacts slide and motors push as they do; but a push may load a surface until its motor
-    /// cannot turn it, and then it holds by sticking.
+    /// The largest push along `direction` at the centre of mass that can be balanced; `None` if none can. Contacts
+    /// keep sliding and motors keep pushing. But a push may load a surface until its motor cannot turn it; then it
+    /// holds by sticking.
     pub(super) fn escape(&self, direction: f64, tolerance: f64) -> Option<Push> {
         let mut statics = self.clone();
         let largest = |statics: &Self| {
@@ -179,7 +178,7 @@ impl Statics {
         Some(most)
     }
 
-    /// Lets those drives stand that turn at their limit under a push; false if there is none.
+    /// Stalls the drives that reach their limit under a push; false if there are none.
     fn stall(&mut self, push: &Push) -> bool {
         let mut any = false;
         for (k, force) in &push.motors {
@@ -193,7 +192,7 @@ impl Statics {
         any
     }
 
-    /// The same if every contact and every motor could hold within its limits.
+    /// The same, with every contact and motor free to hold within its limits.
     pub(super) fn free_escape(&self, direction: f64, tolerance: f64) -> Option<Push> {
         let mut gripping = self.clone();
         for support in &mut gripping.supports {
@@ -204,8 +203,7 @@ impl Statics {
             .largest_push(direction, tolerance)
     }
 
-    /// The smallest sets of conditions whose relaxation leaves no equilibrium within `tolerance`,
-    /// every one of that size.
+    /// All smallest sets of conditions whose relaxation leaves no equilibrium within `tolerance`.
     pub(super) fn cause(&self, tolerance: f64, given: &[Condition]) -> Vec<Vec<Condition>> {
         let subsets = || (1_u32..1 << given.len()).map(|bits| subset(given, bits));
         for size in 1..=given.len() {
@@ -219,13 +217,13 @@ impl Statics {
         Vec::new()
     }
 
-    /// Whether no equilibrium is left without these conditions.
+    /// Whether there is no equilibrium without these conditions.
     pub(super) fn ends(&self, relaxed: &[Condition], tolerance: f64) -> bool {
         let balanced = |drives| {
             let imbalance = self.forces(drives, relaxed).imbalance();
             imbalance.is_none_or(|imbalance| imbalance <= tolerance)
         };
-        // What a motor at its limit held is no longer held as it was found.
+        // Without the torque limit, motors are no longer held at it.
         let as_found = !relaxed.contains(&Condition::Torque) && balanced(Drives::Hold);
         !as_found && !balanced(Drives::Turn) && !balanced(Drives::Stand)
     }
@@ -276,7 +274,7 @@ impl Statics {
         };
         let at_limit = self.at_limit * torque;
         for (k, motor) in self.motors.iter().enumerate().filter(|(_, m)| **m != 0.0) {
-            // A motor with nothing left to bear on turns freely.
+            // A motor without a support to act on turns freely.
             let bears = self.push.is_some() || bearing.iter().any(|s| s.drive == Some(k));
             let bounds = match drives {
                 _ if !bears => (-torque, torque),
@@ -306,7 +304,7 @@ impl Statics {
         vec![0.0; 3 + self.motors.len() + self.hinges.len()]
     }
 
-    /// A unit normal force with friction along the tangent.
+    /// The effect of a unit normal force with friction along the tangent.
     fn column(&self, support: &Support, friction: f64) -> Vec<f64> {
         let (n, t) = (&support.normal, &support.tangent);
         let unit = n.unit + t.unit * friction;
@@ -323,7 +321,7 @@ impl Statics {
         column
     }
 
-    /// A unit force of a motor at the surface, and its reaction on the chassis.
+    /// The effect of a unit motor force at the surface, with its reaction on the chassis.
     fn motor_column(&self, k: usize) -> Vec<f64> {
         let mut column = self.zero();
         column[2] = self.radius / self.lever;
@@ -333,7 +331,7 @@ impl Statics {
 }
 
 impl Support {
-    /// Sign of the slip of a surface whose drive turns that way.
+    /// Sign of the slip of a surface whose drive turns in this direction.
     pub(super) fn slip_at(&self, motor: f64) -> f64 {
         // A surface speed of 1 moves the surface by -drive_lever / drive_radius.
         -self.tangent.drive_lever * motor

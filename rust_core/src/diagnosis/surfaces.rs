@@ -1,14 +1,14 @@
-//! How its drive moves the surface at a contact of a stop.
+//! How a drive moves the surface at a contact of a stop.
 //!
-//! Belts with grousers and chains go on while a robot stands: what bore at a place may be elsewhere when the
-//! stop is looked at. What is there then tells the motion.
+//! Belts with grousers and chains keep running while a robot is stopped: the part that bore at a place may be
+//! elsewhere when the stop is examined. The part that is there now then gives the motion.
 
 use super::scene::Scene;
 use crate::geometry::{Motion, Pose, Vector};
 use crate::robot::{Mount, Shape};
 
 impl Scene<'_> {
-    /// Over the chassis, for each metre that the drive of a part runs; its contact is at `point` [m] of the
+    /// Motion relative to the chassis, per metre that the drive of a part runs; its contact is at `point` [m] in the
     /// chassis frame.
     pub(super) fn motion(&self, part: usize, point: Vector) -> Motion {
         let mount = self.model.parts[part].mount;
@@ -32,10 +32,10 @@ impl Scene<'_> {
         }
     }
 
-    /// As the chain goes on, a shoe takes the place of the next one; where its neighbours are tells how, the
-    /// travel of the tensioner included.
+    /// As the chain runs, each shoe takes the place of the next one. The places of its neighbours give its motion,
+    /// including the travel of the tensioner.
     fn motion_of_shoe(&self, shoe: usize, point: Vector) -> Motion {
-        /// Pitches from its middle within which a contact is still the shoe's own.
+        /// Distance from its middle, in pitches, within which a contact belongs to the shoe.
         const OWN: f64 = 0.75;
 
         let places = &self.running.shoes;
@@ -59,11 +59,11 @@ impl Scene<'_> {
     }
 }
 
-/// The motion that leads from one place to another while a chain runs so far [m].
+/// The motion from one place to another while a chain runs so far [m].
 fn between(from: Pose, to: Pose, run: f64) -> Motion {
     let turn = (from.rotation.inverse() * to.rotation).angle();
     let half = 0.5 * turn;
-    // What is left of a chord of the turn where it begins at the middle.
+    // Share of the displacement that remains as translation when the turn is about the midpoint.
     let share = if half.abs() < 1e-6 {
         1.0
     } else {
@@ -88,7 +88,7 @@ mod tests {
             let (sine, cosine) = libm::sincos(angle);
             Pose::from_parts(Vector::new(cosine, sine) * radius, Rotation::new(angle))
         };
-        // Clockwise, as a chain drives forwards.
+        // Clockwise, as when a chain drives forwards.
         let motion = between(place(turn), place(-turn), 2.0 * turn * radius);
         for point in [Vector::new(0.05, 0.0), Vector::new(0.06, 0.01)] {
             let expected = -left_of(point) / radius;

@@ -1,4 +1,4 @@
-//! Judgements on synthetic stops of a belt.
+//! Diagnoses of synthetic stops of a belt.
 #![allow(clippy::float_cmp)] // lengths here are exact in binary
 
 use super::*;
@@ -8,11 +8,11 @@ use crate::robot::{Model, Mount};
 use crate::scenario::{Scenario, Terrain};
 use crate::terrain::Ground;
 
-/// [m] Half the distance of the end axles.
+/// [m] Half the distance between the end axles.
 const HALF: f64 = 0.25;
 /// [m] Radius at both ends.
 const RADIUS: f64 = 0.0625;
-/// [m] How far two posts on the ground stand out, and how deep they are inside the belt.
+/// [m] Height of two posts on the ground, and their depth inside the belt.
 const POST: f64 = 0.02;
 const DEPTH: f64 = 0.005;
 
@@ -146,7 +146,7 @@ fn forces_that_balance_are_certified_and_others_not() {
     let stage = Stage::new();
     let found = stage.diagnose(&stage.stance([0.5, 0.5]));
     assert!(found.certified && found.imbalance.is_some_and(|i| i < 1e-9));
-    // Posts that are both behind the centre of mass hold nobody.
+    // Two posts that are both behind the centre of mass cannot hold the robot.
     let mut stance = stage.stance([0.5, 0.5]);
     stance.bearings[1].contact.point.x = -0.15;
     let found = stage.diagnose(&stance);

@@ -1,16 +1,16 @@
-//! What no run comes near: numbers beyond are not those of a run.
+//! Bounds that no run comes near, to recognise implausible numbers.
 
 use super::Vector;
 
-/// [m], [m/s], [N], [kg] alike.
+/// In any SI unit.
 const MOST: f64 = 1e9;
 
-/// Whether a run can have come to such numbers; not to NaN.
+/// Whether a run can have produced these numbers; NaN is implausible.
 pub(crate) fn plausible(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.abs() < MOST)
 }
 
-/// The same of vectors.
+/// The same for vectors.
 pub(crate) fn plausible_vectors(vectors: &[Vector]) -> bool {
     vectors.iter().all(|v| plausible(&[v.x, v.y]))
 }

@@ -1,4 +1,4 @@
-//! What a solid below a polyline leaves inside an envelope: connected pieces, their area and depth.
+//! The part of a solid, bounded above by a polyline, that lies inside an envelope: connected pieces, area and depth.
 
 use super::Envelope;
 use super::search::maximise;
@@ -7,15 +7,15 @@ use super::{Vector, cross};
 /// [m] Shorter chords only touch the envelope.
 const TOUCHES: f64 = 1e-9;
 
-/// A stretch of the polyline inside the envelope, from left to right: the solid lies on its right.
+/// A stretch of the polyline inside the envelope, from left to right; the solid lies on its right.
 pub(crate) struct Chord {
     /// [m] Its corners; the first and the last lie on the envelope or end the polyline.
     pub points: Vec<Vector>,
     /// Indices of the polyline's points strictly inside.
     pub vertices: std::ops::Range<usize>,
-    /// Where it begins and ends on the polyline: index of the segment plus share of it.
+    /// Where it begins and ends on the polyline: index of the segment plus a share of it.
     pub span: (f64, f64),
-    /// [m] Ways along the envelope at which it comes in and leaves.
+    /// [m] Positions along the envelope at which it enters and leaves.
     enters: f64,
     leaves: f64,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Piece<'a>(Vec<&'a Chord>);
 /// The stretches of a polyline inside the envelope; `first` is the index of its first point.
 pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<Chord> {
     let mut chords: Vec<Chord> = Vec::new();
-    // The last chord goes on: it reached the end of the segment before this one.
+    // The last chord continues, because it reached the end of the previous segment.
     let mut open = false;
     for (i, ends) in (first..).zip(polyline.windows(2)) {
         let Some((from, to)) = belt.clip(ends[0], ends[1]) else {
@@ -61,7 +61,7 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<
 
 /// Joins the chords that bound the same piece.
 pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>> {
-    // Where a chord leaves, the solid's rim follows the envelope, clockwise, to the next that enters.
+    // Where a chord leaves, the rim of the solid follows the envelope clockwise to the next chord that enters.
     let next = |chord: &Chord| {
         let way = |other: &Chord| way_between(belt, chord.leaves, other.enters);
         let order = |i: &usize, j: &usize| way(&chords[*i]).total_cmp(&way(&chords[*j]));
@@ -83,10 +83,10 @@ pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>>
     pieces
 }
 
-/// [m] The way along the envelope from one place to another.
+/// [m] Distance along the envelope from one position to another.
 fn way_between(belt: &Envelope, from: f64, to: f64) -> f64 {
     let way = (to - from).rem_euclid(belt.length());
-    // Places that rounding has swapped are one.
+    // Positions in the wrong order by rounding are the same.
     if way > belt.length() - TOUCHES {
         0.0
     } else {
@@ -95,12 +95,12 @@ fn way_between(belt: &Envelope, from: f64, to: f64) -> f64 {
 }
 
 impl Piece<'_> {
-    /// The chords that bound it.
+    /// The chords that bound the piece.
     pub(crate) fn chords(&self) -> impl Iterator<Item = &Chord> {
         self.0.iter().copied()
     }
 
-    /// Stretches of the envelope that bound it, as pairs of ways [m].
+    /// Stretches of the envelope that bound the piece, as pairs of positions [m].
     pub(crate) fn rim(&self) -> impl Iterator<Item = (f64, f64)> {
         let following = self.0.iter().cycle().skip(1);
         self.0
@@ -109,7 +109,7 @@ impl Piece<'_> {
             .map(|(c, d)| (c.leaves, d.enters))
     }
 
-    /// Whether the rim passes the point of the envelope at `way`.
+    /// Whether the rim includes the point of the envelope at `way`.
     pub(crate) fn reaches(&self, belt: &Envelope, way: f64) -> bool {
         let passes = |(from, to)| way_between(belt, from, way) <= way_between(belt, from, to);
         self.rim().any(passes)
@@ -136,7 +136,7 @@ impl Piece<'_> {
         let mut deepest = of_points.fold((f64::NEG_INFINITY, Vector::ZERO), deeper);
         for ends in self.chords().flat_map(|c| c.points.windows(2)) {
             let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
-            // The depth changes by no more than the way: most segments cannot hold the deepest point.
+            // Depth changes by no more than the distance moved, so most segments cannot have the deepest point.
             let length = (ends[1] - ends[0]).length();
             if 0.5 * (belt.depth(ends[0]) + belt.depth(ends[1]) + length) > deepest.0 {
                 // The depth below a convex rim is concave along a line.
@@ -148,7 +148,7 @@ impl Piece<'_> {
     }
 }
 
-/// The deeper one of two; the first of equals.
+/// The deeper of two; the first if equal.
 fn deeper(a: (f64, Vector), b: (f64, Vector)) -> (f64, Vector) {
     if b.0 > a.0 { b } else { a }
 }

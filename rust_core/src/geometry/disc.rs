@@ -13,7 +13,7 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// A disc of no size.
+    /// A disc of radius 0.
     pub(crate) fn point(center: Vector) -> Self {
         Self {
             center,
@@ -22,7 +22,7 @@ impl Disc {
     }
 }
 
-/// The end discs of an outline, rear first.
+/// The end discs of an outline, the rear one first.
 pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
     let half = 0.5 * outline.axle_distance;
     [

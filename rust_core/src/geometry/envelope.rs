@@ -11,7 +11,7 @@ use super::search::maximise;
 use super::stretch::{Form, Stretch};
 use super::{Vector, direction};
 
-/// [m] Stretches whose distances differ by less are as near, whatever rounding says.
+/// [m] Stretches whose distances differ by less count as equally near, whatever the rounding.
 const AS_NEAR: f64 = 1e-8;
 
 /// The convex hull of discs, as arcs and straight runs.
@@ -89,21 +89,21 @@ impl Envelope {
         self.stretches.last().map_or(0.0, |p| p.start + p.length)
     }
 
-    /// The point a way [m] along the hull; the way may go round more than once.
+    /// The point at a distance `way` [m] along the hull, which may be more than once round.
     pub(crate) fn point_at(&self, way: f64) -> Vector {
         let way = way.rem_euclid(self.length());
         let stretch = self.stretch_at(way);
         stretch.point_at(way - stretch.start)
     }
 
-    /// The stretch that a way [m] from 0 to the whole length leads to.
+    /// The stretch at a distance [m] along the hull, from 0 to its length.
     pub(super) fn stretch_at(&self, way: f64) -> &Stretch {
         let next = self.stretches.partition_point(|p| p.start <= way);
         &self.stretches[next.saturating_sub(1)]
     }
 
-    /// [m] The way to the next point, along belt travel, at a straight distance from the one at
-    /// `way`; a whole round further if there is none.
+    /// [m] Position of the next point, along belt travel, at a straight distance from the point at `way`; one
+    /// whole round further if there is none.
     pub(crate) fn way_to_distance(&self, way: f64, distance: f64) -> f64 {
         let length = self.length();
         let (from, rounds) = (self.point_at(way), (way / length).floor() * length);
@@ -127,13 +127,13 @@ impl Envelope {
         way + length
     }
 
-    /// [m] Depth of a point inside the hull; outside it is negative.
+    /// [m] Depth of a point inside the hull; negative outside.
     pub(crate) fn depth(&self, point: Vector) -> f64 {
         let depths = self.stretches.iter().filter_map(|s| s.depth(point));
         depths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The nearest stretch of the hull; of some that are as near the first.
+    /// The nearest stretch of the hull; the first of several equally near ones.
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
         let depths = || self.stretches.iter().map(|s| s.depth(point));
         let depth = depths().flatten().fold(f64::INFINITY, f64::min);
@@ -144,7 +144,7 @@ impl Envelope {
         }
     }
 
-    /// The arcs of the hull: disc, outward direction [rad] where it begins, how far it turns clockwise.
+    /// The arcs of the hull: disc, outward direction [rad] at the start, and how far it turns clockwise.
     pub(crate) fn arcs(&self) -> Vec<(Disc, f64, f64)> {
         let arc = |stretch: &Stretch| match stretch.shape {
             Form::Arc {
@@ -159,7 +159,7 @@ impl Envelope {
         self.stretches.iter().filter_map(arc).collect()
     }
 
-    /// Points along the hull, an arc cut every `turn` [rad]; the last is not the first again.
+    /// Points along the hull, arcs divided every `turn` [rad]; the first point is not repeated at the end.
     pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
         let points = self.cuts(turn);
         points.map(|(s, inner)| s.point_at(inner)).collect()
@@ -181,7 +181,7 @@ impl Envelope {
         })
     }
 
-    /// The outward normal of the hull where it lies nearest to a point.
+    /// The outward normal of the hull at the place nearest to a point.
     pub(crate) fn outward_at(&self, point: Vector) -> Vector {
         match self.stretches[self.nearest(point).stretch].shape {
             Form::Arc { center, .. } => (point - center).normalize_or(Vector::NEG_Y),
@@ -189,9 +189,9 @@ impl Envelope {
         }
     }
 
-    /// The discs on either side of a point, first the one that the belt passes before it.
+    /// The discs on either side of a point; the first is the one that the belt passes before the point.
     ///
-    /// They are the nearest along the belt that reach as far out as the point lies deep.
+    /// They are the nearest discs along the belt that reach at least as far out as the point.
     pub(crate) fn neighbours(&self, point: Vector, nearest: Nearest, discs: &[Disc]) -> [usize; 2] {
         match self.stretches[nearest.stretch].shape {
             Form::Arc { disc, .. } => [disc, disc],
@@ -214,14 +214,14 @@ impl Envelope {
                 let after = candidates
                     .filter(|i| place(*i) > here)
                     .min_by(|i, j| place(*i).total_cmp(&place(*j)));
-                // Both ends of a run reach out to it; only rounding at an end leaves one side empty.
+                // Both ends of a run reach out to the belt; only rounding can leave one side empty.
                 let either = before.or(after).unwrap_or_default();
                 [before.unwrap_or(either), after.unwrap_or(either)]
             }
         }
     }
 
-    /// The part of a segment that lies inside, as shares of its length.
+    /// The part of a segment that lies inside, as fractions of its length.
     pub(crate) fn clip(&self, a: Vector, b: Vector) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut cut = |t: f64| {
@@ -231,7 +231,7 @@ impl Envelope {
         for stretch in &self.stretches {
             stretch.crossings(a, b, &mut cut);
         }
-        // An end inside has no crossing before it.
+        // An end inside has no crossing on its own side.
         if self.depth(a) > 0.0 {
             cut(0.0);
         }
@@ -241,7 +241,7 @@ impl Envelope {
         (low < high).then_some((low, high))
     }
 
-    /// [m] The way along the hull to the point of it nearest to `point`.
+    /// [m] Position along the hull of its point nearest to `point`.
     pub(crate) fn way_of(&self, point: Vector) -> f64 {
         let stretch = &self.stretches[self.nearest(point).stretch];
         let inner = match stretch.shape {
@@ -254,7 +254,7 @@ impl Envelope {
             } => {
                 let spoke = point - center;
                 let turn = (from - libm::atan2(spoke.y, spoke.x)).rem_euclid(TAU);
-                // Just before the start of the arc is its start, not a whole turn further.
+                // An angle just before the start of the arc means its start, not a whole turn further.
                 let turn = if turn > 0.5 * (sweep + TAU) {
                     0.0
                 } else {
@@ -267,7 +267,7 @@ impl Envelope {
         stretch.start + inner
     }
 
-    /// [m^2] Twice the signed area swept from the origin along the hull from one way to another.
+    /// [m^2] Twice the signed area swept from the origin along the hull between two positions.
     pub(crate) fn swept(&self, from: f64, to: f64) -> f64 {
         let length = self.length();
         let to = if to < from { to + length } else { to };
@@ -286,7 +286,7 @@ impl Envelope {
 
     /// The deepest point inside.
     pub(crate) fn deepest(&self) -> Vector {
-        // No point of a hull is farther from another than half its length.
+        // No two points of a hull are farther apart than half its length.
         let (middle, reach) = (self.point_at(0.0), 0.5 * self.length());
         let along_x = |y: f64| {
             let depth = |x: f64| self.depth(Vector::new(x, y));

@@ -3,7 +3,7 @@
 use super::{Vector, cross, direction};
 use crate::scenario::{GearWheel, ScenarioError, TrackOutline};
 
-/// A wheel with grousers, resolved for one place on a robot.
+/// A wheel with grousers, with all sizes resolved for its place on a robot.
 ///
 /// A grouser stands on a chord of the root circle; the two corners of its tip lie on the
 /// circumscribed circle.
@@ -13,25 +13,25 @@ pub struct Gear {
     pub radius: f64,
     /// [m] Radius of the root circle.
     pub root_radius: f64,
-    /// Grousers round the wheel.
+    /// Number of grousers.
     pub grousers: u32,
     /// [m] Thickness of a grouser at its tip.
     pub tip_thickness: f64,
     /// [m] Thickness of a grouser at the root circle.
     pub base_thickness: f64,
-    /// [rad] Direction of the first grouser at the start, from the chassis axis.
+    /// [rad] Direction of the first grouser at the start, relative to the chassis axis.
     pub phase: f64,
 }
 
 impl Gear {
-    /// The wheel number `index` (0 is the rearmost) with what is not given taken from the outline.
+    /// The wheel of number `index` (0 is the rearmost); sizes that are not given follow from the outline.
     ///
-    /// The paper gives the size of the large wheels' grousers only. Ours for small wheels: the height
-    /// is at most a quarter of the radius, the thickness shrinks with the height, and a wheel has at
-    /// least 8 grousers where the robot's own pitch would leave fewer than 6.
+    /// The paper gives the size of grousers for large wheels only. Our rules for small wheels: the height is at most
+    /// a quarter of the radius, the thickness shrinks with the height, and a wheel has 8 grousers if the robot's
+    /// own pitch would leave fewer than 6.
     ///
     /// # Errors
-    /// A wheel that cannot be: no root circle, no or overlapping grousers.
+    /// An impossible wheel: no root circle, no grousers, or overlapping grousers.
     pub(crate) fn new(
         wheel: &GearWheel,
         outline: &TrackOutline,
@@ -49,12 +49,12 @@ impl Gear {
             .grouser_height
             .unwrap_or(outline.grouser_height.min(0.25 * radius));
         if height <= 0.0 {
-            let rule = "must be given and > 0 m: the outline has no grousers";
+            let rule = "must be given and > 0 m, because the outline has no grousers";
             return error("grouser_height", height, rule.to_owned());
         }
         if height >= radius {
             let rule = format!(
-                "must be below the radius {radius} m of wheel {index}: no root circle is left"
+                "must be less than the radius of wheel {index}, {radius} m, to leave a root circle"
             );
             return error("grouser_height", height, rule);
         }
@@ -71,12 +71,12 @@ impl Gear {
             .tip_thickness
             .unwrap_or(outline.grouser_thickness * shrunk.min(1.0));
         if tip_thickness <= 0.0 {
-            let rule = "must be given and > 0 m: the outline's grousers have no thickness";
+            let rule = "must be given and > 0 m, because the outline's grousers have no thickness";
             return error("tip_thickness", tip_thickness, rule.to_owned());
         }
         let base_thickness = wheel.base_thickness.unwrap_or(tip_thickness);
         if base_thickness < tip_thickness {
-            let rule = format!("must not be below the thickness of the tip, {tip_thickness} m");
+            let rule = format!("must be at least the thickness at the tip, {tip_thickness} m");
             return error("base_thickness", base_thickness, rule);
         }
         let angle = std::f64::consts::TAU / f64::from(grousers);
@@ -86,16 +86,16 @@ impl Gear {
                 .base_thickness
                 .map_or("tip_thickness", |_| "base_thickness");
             let rule = format!(
-                "must be below {room} m, the room of {grousers} grousers on the root circle of wheel {index}: they would overlap"
+                "must be less than {room} m, the space for each of {grousers} grousers on the root circle of wheel {index}, or they would overlap"
             );
             return error(given, base_thickness, rule);
         }
-        // Flanks that meet the root circle from inside would leave a corner of it between them and the arc.
+        // Flanks that meet the root circle from inside would leave a corner between flank and arc.
         let leaning = libm::asin(0.5 * tip_thickness / radius) + libm::acos(root_radius / radius);
         let most = 2.0 * root_radius * libm::sin(leaning.min(std::f64::consts::FRAC_PI_2));
         if base_thickness > tip_thickness.max(most) {
             let rule = format!(
-                "must be at most {most} m on wheel {index}: wider grousers of this height would end inside the root circle"
+                "must be at most {most} m on wheel {index}, or the flanks of grousers of this height would run inside the root circle"
             );
             return error("base_thickness", base_thickness, rule);
         }
@@ -116,12 +116,12 @@ impl Gear {
         (0..self.grousers).map(move |i| phase + f64::from(i) * step)
     }
 
-    /// [rad] Angle between two grousers: the theta of eq. (1).
+    /// [rad] Angle between two grousers: theta in eq. (1).
     pub fn angle(&self) -> f64 {
         std::f64::consts::TAU / f64::from(self.grousers)
     }
 
-    /// [rad] Half the angle that a grouser takes on the circumscribed circle, and on the root circle.
+    /// [rad] Half the angle of a grouser on the circumscribed circle and on the root circle.
     fn half_angles(&self) -> (f64, f64) {
         (
             libm::asin(0.5 * self.tip_thickness / self.radius),
@@ -129,7 +129,7 @@ impl Gear {
         )
     }
 
-    /// [m] Corners of the grouser at an angle [rad] about the wheel's centre, counter-clockwise from its base.
+    /// [m] Corners of the grouser at an angle [rad] about the wheel's centre, counter-clockwise from the base.
     pub fn corners(&self, angle: f64) -> [Vector; 4] {
         let (tip, base) = self.half_angles();
         [
@@ -140,7 +140,7 @@ impl Gear {
         ]
     }
 
-    /// [m] The outline at the start, about the centre: each root arc in `points` points, then a tip.
+    /// [m] The outline at the start, about the centre: `points` points on each root arc, then a tip.
     pub fn outline(&self, points: usize) -> Vec<Vector> {
         let (_, base) = self.half_angles();
         let room = self.angle() - 2.0 * base;
@@ -186,7 +186,7 @@ impl Gear {
     }
 }
 
-/// Grousers at the robot's own pitch where that makes at least 6, else at least 8.
+/// Number of grousers at the robot's own pitch if that is at least 6, else 8.
 fn default_count(root_radius: f64, pitch: f64) -> u32 {
     let fitting = (std::f64::consts::TAU * root_radius / pitch).round();
     if fitting >= 6.0 {

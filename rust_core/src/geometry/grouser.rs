@@ -6,22 +6,22 @@ use super::{Envelope, Motion};
 use super::{Pose, Rotation, Vector};
 use crate::scenario::{MAX_GROUSERS, ScenarioError, TrackOutline};
 
-/// A grouser fixed to a belt, which carries it along its line.
+/// A grouser fixed to a belt, which carries it along.
 #[derive(Clone, Debug)]
 pub struct Grouser {
     /// The line of the belt.
     belt: Arc<Envelope>,
-    /// [m] Way along it at the start.
+    /// [m] Position along the line at the start.
     way: f64,
     /// [m] Corners, counter-clockwise, x along the belt's travel and y outwards from its line.
     corners: [Vector; 4],
 }
 
 impl Grouser {
-    /// One of a height and thickness [m] that starts a way [m] along the belt's line.
+    /// A grouser of a height and thickness [m] that starts at the position `way` [m] of the belt's line.
     pub(crate) fn new(belt: &Arc<Envelope>, way: f64, height: f64, thickness: f64) -> Self {
         let half = 0.5 * thickness;
-        // It reaches into the belt, so that no corner of the ground slips in where the belt is bent.
+        // It reaches into the belt, so that no corner of the ground can slip under it where the belt bends.
         let corner = |x: f64, y: f64| Vector::new(x, y);
         Self {
             belt: Arc::clone(belt),
@@ -35,10 +35,10 @@ impl Grouser {
         }
     }
 
-    /// Those of a belt, evenly spaced: as many as given, or as come nearest to the outline's pitch.
+    /// The grousers of a belt, evenly spaced: as many as given, or closest to the outline's pitch.
     ///
     /// # Errors
-    /// The pitch leaves more of them than a belt may have.
+    /// The pitch makes more grousers than a belt may have.
     pub(crate) fn along(
         line: &Arc<Envelope>,
         count: Option<u32>,
@@ -60,7 +60,7 @@ impl Grouser {
         &self.corners
     }
 
-    /// Its frame in that of the chassis when the belt has run so far [m].
+    /// Its frame in the chassis frame when the belt has run so far [m].
     pub fn place(&self, run: f64) -> Pose {
         let (point, outward) = self.belt.place_at(self.way + run);
         // Turns +y outwards.
@@ -68,7 +68,7 @@ impl Grouser {
         Pose::from_parts(point, rotation)
     }
 
-    /// [m] Way along the belt's line at which it starts.
+    /// [m] Position along the belt's line at which it starts.
     pub fn start(&self) -> f64 {
         self.way
     }
@@ -78,8 +78,8 @@ impl Grouser {
         self.belt.angle_at(self.way + run)
     }
 
-    /// How the belt moves what it carries at a point [m] of the chassis frame when it has run so far [m]: this
-    /// grouser, unless it is elsewhere.
+    /// How the belt moves a point [m] of the chassis frame when it has run so far [m]: as part of this grouser, unless
+    /// that is elsewhere.
     pub(crate) fn motion_where(&self, run: f64, point: Vector) -> Motion {
         let reach = self
             .corners
@@ -92,7 +92,7 @@ impl Grouser {
         self.belt.motion_at(self.belt.way_of(point), 0.0)
     }
 
-    /// How the belt moves it there, the mean while it runs from `reach` [m] before to as far behind.
+    /// How the belt moves it there, averaged while it runs from `reach` [m] before to `reach` behind.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         self.belt.motion_at(self.way + run, reach)
     }

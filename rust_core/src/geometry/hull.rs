@@ -1,10 +1,10 @@
-//! The convex hull of discs, found by turning a tangent once round.
+//! The convex hull of discs, found by rolling a tangent once round.
 
 use std::f64::consts::TAU;
 
 use super::Disc;
 
-/// [rad] Turns smaller than this are rounding of collinear tangents.
+/// [rad] Smaller turns are rounding errors of collinear tangents.
 pub(super) const SAME_TURN: f64 = 1e-12;
 
 /// One disc's share of the hull.
@@ -16,11 +16,11 @@ pub(super) struct Arc {
     pub sweep: f64,
 }
 
-/// The arcs of the hull, clockwise, found by turning a tangent once round.
+/// The arcs of the hull, clockwise, found by rolling a tangent once round.
 pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     let down = -0.25 * TAU;
     let support = |d: &Disc| d.radius - d.center.y;
-    // Of the lowest discs the rearmost: the tangent leaves them there.
+    // Start at the rearmost of the lowest discs, where the tangent leaves them.
     let first = (0..discs.len()).fold(0, |best, i| {
         let (a, b) = (&discs[i], &discs[best]);
         let lower = support(a) - support(b);
@@ -33,13 +33,13 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
     });
     let (mut disc, mut from, mut turned) = (first, down, 0.0);
     let mut arcs: Vec<Arc> = Vec::new();
-    // Fewer than two arcs a disc make a hull: more would be rounding that goes round and round.
+    // A hull has fewer than two arcs per disc; more would be an endless loop caused by rounding.
     for _ in 0..2 * discs.len() {
         let distance = |i: usize| (discs[i].center - discs[disc].center).length();
         let next = (0..discs.len())
             .filter_map(|other| Some((other, turn_to(&discs[disc], &discs[other], from)?)))
             .reduce(|best, other| {
-                // Of discs on one tangent the farthest, so that a run is one piece.
+                // Of several discs on one tangent take the farthest, so that a run is one piece.
                 let same = (best.1 - other.1).abs() < SAME_TURN;
                 let nearer = distance(other.0) < distance(best.0);
                 if (same && nearer) || (!same && best.1 < other.1) {
@@ -51,7 +51,7 @@ pub(super) fn arcs_round(discs: &[Disc]) -> Vec<Arc> {
         let (to, turn) = next.unwrap_or((disc, TAU));
         let left = TAU - turned;
         if turn > left + SAME_TURN && !arcs.is_empty() {
-            // Round: what is left belongs to the first arc, which began half-way.
+            // Once round: the rest belongs to the first arc, which began half-way.
             arcs[0].from += left;
             arcs[0].sweep += left;
             break;

@@ -1,5 +1,4 @@
-//! Pure geometry of the plane: vectors, discs, belts and chains round them, gear wheels, and what of a solid lies
-//! inside a belt.
+//! Plane geometry: vectors, discs, belts and chains round them, gear wheels, and the part of a solid inside a belt.
 
 mod bounds;
 pub(crate) mod cut;

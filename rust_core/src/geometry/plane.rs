@@ -1,4 +1,4 @@
-//! Vectors and poses of the plane: those of the engine, which nothing else names.
+//! Vectors and poses of the plane: the engine's types, which no other file names.
 
 /// A point or a direction in the plane.
 pub use rapier2d_f64::math::Vector;
@@ -19,7 +19,7 @@ pub(crate) fn right_of(v: Vector) -> Vector {
     Vector::new(v.y, -v.x)
 }
 
-/// The unit vector at an angle [rad] from +x; the same bits on every platform.
+/// The unit vector at an angle [rad] from +x; bit-identical on every platform.
 pub(crate) fn direction(angle: f64) -> Vector {
     let (sine, cosine) = libm::sincos(angle);
     Vector::new(cosine, sine)

@@ -1,9 +1,9 @@
 //! Searches along a line.
 
-/// The zero of an increasing function that changes its sign between two places, to rounding.
+/// The zero of an increasing function with a change of sign between two places, to rounding.
 ///
-/// The Illinois method (Dowell and Jarratt 1971): a false position that halves what an end is worth when the
-/// other one moves twice. A dozen calls do what takes bisection fifty.
+/// The Illinois method (Dowell and Jarratt 1971): false position, with the value at one end halved when the
+/// other end moves twice. A dozen calls do what takes bisection fifty.
 pub(crate) fn zero(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = ((low, f(low)), (high, f(high)));
     let rounding = f64::EPSILON * (low.0.abs() + high.0.abs());

@@ -1,8 +1,8 @@
 //! A closed chain of shoes round the ends of a track: the path of its pins.
 //!
-//! A taut chain lies on the straight runs with its pins, and round the ends with the middle of each shoe,
-//! so the pins go farther out there: along the circle on which chords of a pitch touch the end. It meets
-//! the run half a pitch before the run is over.
+//! The pins of a taut chain lie on the straight runs. Round the ends, the middle of each shoe touches the end, so
+//! the pins run on a larger circle, whose chords of one pitch touch the end. A run meets that circle half a pitch
+//! before its own end.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,31 +11,31 @@ use super::stretch::Form;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
 use super::{Pose, Rotation, Vector, direction, right_of};
 
-/// Places of the chain along its path over which its length is averaged.
+/// Number of positions of the chain along its path over which its length is averaged.
 const PHASES: u32 = 16;
-/// A polygon of shoes round the discs is longer than the belt by at most this.
+/// Largest ratio of the length of a polygon of shoes to that of the belt round the same discs.
 const LENGTHENED: f64 = 1.1;
-/// Share of what the pins on a sprocket go out and in by which that is lifted off the lower run: shoes that it
-/// turns down would else lift the robot.
+/// Share of the radial motion of pins on a sprocket by which the sprocket is raised above the lower run; otherwise
+/// shoes that it turns down would lift the robot.
 const LIFT: f64 = 0.5;
 
 /// The closed path of a chain, and the chain on it.
 #[derive(Clone, Debug)]
 pub struct ShoeLoop {
-    /// Discs whose hull the pin lines are tangent to, rear first.
+    /// Discs to whose hull the pin lines are tangent, rear first.
     discs: [Disc; 2],
     /// Number of shoes.
     pub count: usize,
-    /// [m] Distance of the pins of a shoe.
+    /// [m] Distance between the pins of a shoe.
     pub pitch: f64,
-    /// Teeth of the sprocket that the rear end is, if it is one.
+    /// Number of teeth of the sprocket at the rear end, if there is one.
     teeth: Option<usize>,
 }
 
 impl ShoeLoop {
-    /// A chain of `count` shoes that is taut round the discs in the mean of where it may have run to; none if
-    /// a shoe would be longer than half the distance of the discs, than the smaller one is thick, or than a
-    /// run, for it would not go round.
+    /// A chain of `count` shoes that is taut round the discs, averaged over its positions. `None` if a shoe would be
+    /// longer than half the distance of the discs, than the diameter of the smaller one or than a straight run, because
+    /// it could not go round.
     pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
         let least = Envelope::new(&discs).length() / count as f64;
         let most = LENGTHENED * least;
@@ -53,7 +53,7 @@ impl ShoeLoop {
         chain.taut_between(least, most)
     }
 
-    /// The same chain round a sprocket in place of the rear end: as many teeth as come nearest to it; none if
+    /// The same chain round a sprocket in place of the rear end, with the number of teeth closest to it; `None` if
     /// that leaves no run as long as a shoe.
     pub(crate) fn on_sprocket(self) -> Option<Self> {
         let half = 0.5 * self.pitch;
@@ -63,7 +63,7 @@ impl ShoeLoop {
         Self { teeth, ..self }.taut_between(least, most)
     }
 
-    /// With the pitch between these at which it is taut in the mean; none if its runs are too short for it.
+    /// The chain with the pitch, between these, at which it is taut on average; `None` if its runs are too short.
     fn taut_between(self, least: f64, most: f64) -> Option<Self> {
         if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
             return None;
@@ -76,7 +76,7 @@ impl ShoeLoop {
         Some(Self { pitch, ..self })
     }
 
-    /// Whether a shoe of a pitch [m] fits on the runs, even with the front end as far in as `travel` looks.
+    /// Whether a shoe of a pitch [m] fits on the runs, even with the front end as far in as `travel` searches.
     fn has_runs(&self, pitch: f64) -> bool {
         let [rear, mut front] = self.ends(pitch);
         front.center.x -= 0.5 * pitch;
@@ -84,12 +84,12 @@ impl ShoeLoop {
         apart.length_squared() - step * step >= pitch * pitch
     }
 
-    /// The teeth of its sprocket, if it has one, which reach no farther out than `most` [m] where they can.
+    /// The teeth of its sprocket, if any; if possible they reach no farther out than `most` [m].
     pub(crate) fn teeth(&self, most: f64) -> Option<Teeth> {
         self.teeth.map(|count| Teeth::new(count, self.pitch, most))
     }
 
-    /// [rad] Angle over the chassis of a seat of the sprocket when the chain has not run.
+    /// [rad] Angle of a seat of the sprocket relative to the chassis at the start.
     pub(crate) fn first_seat(&self) -> f64 {
         match self.path(self.pitch, 0.0).stretches[0].shape {
             Form::Arc { from, .. } => from,
@@ -97,10 +97,10 @@ impl ShoeLoop {
         }
     }
 
-    /// Discs whose hull the pin lines are tangent to with shoes of a pitch [m].
+    /// Discs to whose hull the pin lines are tangent, with shoes of a pitch [m].
     ///
-    /// A sprocket is as large as its teeth need, and its axle where the lower run is as without it, but for what
-    /// its polygon needs.
+    /// A sprocket is as large as its teeth need, and its axle is where the lower run stays in place, apart from the
+    /// room for its polygon.
     pub(crate) fn ends(&self, pitch: f64) -> [Disc; 2] {
         let [rear, front] = self.discs;
         let Some(teeth) = self.teeth else {
@@ -114,15 +114,15 @@ impl ShoeLoop {
         [Disc { center, radius }, front]
     }
 
-    /// [m] How far the front end must be out to keep the chain taut when it has run so far [m].
+    /// [m] How far out the front end must be to keep the chain taut when it has run so far [m].
     pub(crate) fn travel(&self, run: f64) -> f64 {
         let phase = run.rem_euclid(self.pitch);
         let reach = 0.5 * self.pitch;
         zero(-reach, reach, |out| -self.excess(self.pitch, phase, out))
     }
 
-    /// Frames of the shoes in that of the chassis when the chain has run so far [m] and is taut: x along its
-    /// travel, y outwards, the origin halfway between the pins.
+    /// Frames of the shoes in the chassis frame when the chain has run so far [m] and is taut: x along its travel, y
+    /// outwards, the origin halfway between the pins.
     pub(crate) fn places(&self, run: f64) -> Vec<Pose> {
         let phase = run.rem_euclid(self.pitch);
         let path = self.path(self.pitch, self.travel(run));
@@ -142,15 +142,14 @@ impl ShoeLoop {
             .collect()
     }
 
-    /// How the chain moves a shoe whose origin is there, for each metre that it runs: the mean while the shoe
-    /// passes by.
+    /// How the chain moves a shoe whose origin is there, per metre of chain travel, averaged while the shoe passes.
     pub(crate) fn motion_at(&self, origin: Vector) -> Motion {
         let path = Envelope::new(&self.ends(self.pitch));
         path.motion_at(path.way_of(origin), 0.5 * self.pitch)
     }
 
-    /// [m] By how much a chain of a pitch is too long with the front end so far out, and a pin that has run so
-    /// far from the beginning of the path.
+    /// [m] By how much a chain of a pitch is too long, with the front end so far out and a pin so far from the
+    /// beginning of the path.
     fn excess(&self, pitch: f64, phase: f64, out: f64) -> f64 {
         let path = self.path(pitch, out);
         let first = self.first_way(phase);
@@ -158,7 +157,7 @@ impl ShoeLoop {
         last - first - path.length()
     }
 
-    /// [m] Way along the path of a pin that has run so far from its beginning: a sprocket turns its pins evenly.
+    /// [m] Position on the path of a pin that has run so far from its beginning; a sprocket turns its pins evenly.
     fn first_way(&self, phase: f64) -> f64 {
         match self.teeth {
             Some(teeth) => {
@@ -169,7 +168,7 @@ impl ShoeLoop {
         }
     }
 
-    /// [m] Ways to the pins of a chain, and to the one after the last.
+    /// [m] Positions of the pins of a chain along its path, and of the one after the last.
     fn walk<'a>(
         &self,
         path: &'a Envelope,
@@ -180,7 +179,7 @@ impl ShoeLoop {
         std::iter::successors(Some(phase), next).take(self.count + 1)
     }
 
-    /// The path of the pins with the front end so far out [m].
+    /// The path of the pins, with the front end so far out [m].
     fn path(&self, pitch: f64, out: f64) -> Envelope {
         let mut discs = self.ends(pitch);
         discs[1].center.x += out;

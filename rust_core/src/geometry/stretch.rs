@@ -4,15 +4,15 @@ use std::f64::consts::TAU;
 
 use super::{Vector, cross, direction};
 
-/// [m, rad] Stretches overlap by this, so that no line slips through where two of them meet.
+/// [m, rad] Stretches overlap by this, so that no line can slip between two of them.
 const JOINT: f64 = 1e-9;
 
 /// One stretch of the hull.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch {
-    /// [m] Length of the hull up to here.
+    /// [m] Position of its start along the hull.
     pub start: f64,
-    /// [m] Own length.
+    /// [m] Its length.
     pub length: f64,
     pub shape: Form,
 }
@@ -58,7 +58,7 @@ impl Stretch {
         }
     }
 
-    /// [m] Way to the point, leaving `from` behind, that lies at `distance` from it.
+    /// [m] Position of the point ahead of `from` at a straight `distance` from it.
     pub(super) fn at_distance(&self, from: Vector, distance: f64) -> f64 {
         match self.shape {
             Form::Run { begin, along, .. } => {
@@ -83,7 +83,7 @@ impl Stretch {
         }
     }
 
-    /// [m] Depth of a point below this stretch, if the stretch is the nearest in its direction.
+    /// [m] Depth of a point below this stretch, if the point is within its extent.
     pub(super) fn depth(&self, point: Vector) -> Option<f64> {
         match self.shape {
             Form::Run { begin, outward, .. } => Some((begin - point).dot(outward)),
@@ -100,7 +100,7 @@ impl Stretch {
         }
     }
 
-    /// Shares of the segment at which it crosses this stretch.
+    /// Calls `cut` with the fractions of the segment at which it crosses this stretch.
     pub(super) fn crossings(&self, a: Vector, b: Vector, cut: &mut impl FnMut(f64)) {
         let way = b - a;
         match self.shape {
@@ -140,7 +140,7 @@ impl Stretch {
         }
     }
 
-    /// [m^2] Twice the signed area between the origin and this stretch from one way to another.
+    /// [m^2] Twice the signed area between the origin and this stretch between two positions.
     pub(super) fn swept(&self, from: f64, to: f64) -> f64 {
         let (p, q) = (self.point_at(from), self.point_at(to));
         match self.shape {
@@ -150,7 +150,7 @@ impl Stretch {
     }
 }
 
-/// Whether a way from the centre points through a clockwise arc, with a margin at its ends.
+/// Whether a vector from the centre points through a clockwise arc, with a margin at its ends.
 fn is_on_arc(spoke: Vector, [first, last]: [Vector; 2], sweep: f64, margin: f64) -> bool {
     let (after_first, before_last) = (cross(spoke, first), cross(last, spoke));
     if sweep > 0.5 * TAU {

@@ -1,18 +1,17 @@
 //! Teeth of a sprocket as the pins of a chain meet them.
 //!
-//! Grown by the pins, which so become points, a tooth is what lies within a pitch of both its neighbours'
-//! seats and within its tip circle: a pin whose neighbour is seated swings just past its flank. A flank
-//! thus pushes a pin along the shoe behind it and nowhere else, so that no pull lifts the chain off. Below
-//! the circle of the pins flanks are radial: no pin is wedged there, and the drum bears the shoes.
+//! With the pins shrunk to points and the teeth grown accordingly, a tooth is the region within a pitch of both
+//! neighbouring seats and within its tip circle: a pin whose neighbour is seated swings just past its flank. So a
+//! flank pushes a pin only along the shoe behind it, and no pull lifts the chain off. Below the pin circle the
+//! flanks are radial: no pin wedges there, and the drum carries the shoes.
 
 use std::f64::consts::TAU;
 
 use super::{Rotation, Vector, direction, left_of, right_of};
 
-/// [pitches] By which a seat is wider than a pin: less lets the polygon of the shoes wedge, ...
+/// [pitches] Play of a pin in its seat; with less, the polygon of shoes wedges.
 const PLAY: f64 = 0.04;
-/// ... and how far teeth reach beyond the circle of the pins, at least and at most: over low ones a chain
-/// jumps.
+/// [pitches] Smallest and largest height of the teeth above the pin circle; with lower teeth, a chain jumps.
 const HEIGHTS: [f64; 2] = [0.15, 0.25];
 
 /// The teeth of a sprocket; the middle of a seat lies on its x axis, and chains run clockwise.
@@ -20,28 +19,28 @@ const HEIGHTS: [f64; 2] = [0.15, 0.25];
 pub struct Teeth {
     /// Number of teeth.
     pub count: usize,
-    /// [m] Distance of neighbouring seats.
+    /// [m] Distance between neighbouring seats.
     pub pitch: f64,
     /// [m] Radius of the circle of the seated pins.
     pub radius: f64,
     /// [m] Radius of the circle of the tips.
     pub(crate) tip_radius: f64,
-    /// Round the seat on the x axis: where the pin behind it sits when it is driven, the one ahead when it is
-    /// braked, and its own pin, braked and driven.
+    /// Round the seat on the x axis: where the pin behind sits when driven, where the pin ahead sits when braked, and
+    /// where its own pin sits, braked and driven.
     seats: [Vector; 4],
 }
 
-/// The side of a tooth that is nearest to a pin.
+/// The side of a tooth nearest to a pin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flank {
-    /// [m]
+    /// [m] Distance between tooth and pin.
     pub gap: f64,
-    /// From the tooth to the pin.
+    /// Direction from the tooth to the pin.
     pub normal: Vector,
 }
 
 impl Teeth {
-    /// Teeth that reach out to `most` [m], as far as that is sensible.
+    /// Teeth that reach out to `most` [m], within the limits of their height.
     pub(crate) fn new(count: usize, pitch: f64, most: f64) -> Self {
         let step = TAU / count as f64;
         let radius = 0.5 * pitch / libm::sin(0.5 * step);
@@ -57,12 +56,12 @@ impl Teeth {
         }
     }
 
-    /// [m] Radius at which a turn moves the chain by as many pitches as there are teeth.
+    /// [m] Radius at which one turn moves the chain by as many pitches as there are teeth.
     pub fn drive_radius(&self) -> f64 {
         self.count as f64 * self.pitch / TAU
     }
 
-    /// The tooth behind a pin and the one ahead of it; none if it lies beyond `reach` [m] of the tips.
+    /// The tooth behind a pin and the one ahead of it; `None` if it is more than `reach` [m] from the tips.
     pub(crate) fn flanks(&self, pin: Vector, reach: f64) -> Option<[Flank; 2]> {
         let out = pin.length();
         let over = out - self.tip_radius;
@@ -113,10 +112,10 @@ impl Teeth {
         ])
     }
 
-    /// Corners of the whole wheel in its own frame, counter-clockwise, for pictures; pins of a radius [m] fit
+    /// Corners of the whole wheel in its own frame, counter-clockwise, for pictures; pins of this radius [m] fit
     /// between the teeth.
     pub fn outline(&self, pin_radius: f64) -> Vec<Vector> {
-        /// Points of one flank.
+        /// Number of points on one flank.
         const POINTS: usize = 5;
         let step = TAU / self.count as f64;
         let play = 0.5 * PLAY * self.pitch / self.radius;
@@ -124,7 +123,7 @@ impl Teeth {
         let tip = self.tip_radius - pin_radius;
         // On the drum, below the inner faces of the plates.
         let root = self.radius * libm::cos(0.5 * step) - pin_radius;
-        // A point at a distance from the axle and the pitch, less the pin, from the neighbouring seat.
+        // The point at a distance from the axle, and at the pitch minus the pin radius from the neighbouring seat.
         let angle_at = |out: f64| {
             let r = self.radius;
             if out < r {

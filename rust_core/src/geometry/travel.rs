@@ -1,4 +1,4 @@
-//! What a belt along an envelope carries: where it is, and how it moves.
+//! Position and motion of what a belt carries along an envelope.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -6,19 +6,19 @@ use super::envelope::Envelope;
 use super::stretch::{Form, Stretch};
 use super::{Pose, Vector, right_of};
 
-/// How a belt along the hull moves what it carries, for each metre that it runs.
+/// How a belt along the hull moves what it carries, per metre of belt travel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
-    /// [m] Point that it turns it about, clockwise.
+    /// [m] Centre of the clockwise turn.
     pub center: Vector,
     /// [1/m] Turn.
     pub turn: f64,
-    /// Motion along a line, besides.
+    /// Translation, in addition.
     pub along: Vector,
 }
 
 impl Motion {
-    /// The same in a frame in which its own is `pose`.
+    /// The same motion, seen from a frame in which its own frame is at `pose`.
     pub(crate) fn seen_from(self, pose: Pose) -> Self {
         Self {
             center: pose.transform_point(self.center),
@@ -27,12 +27,12 @@ impl Motion {
         }
     }
 
-    /// What it moves a point by, for each metre.
+    /// Displacement of a point, per metre of belt travel.
     pub(crate) fn at(&self, point: Vector) -> Vector {
         right_of(point - self.center) * self.turn + self.along
     }
 
-    /// A share of another motion in this one; one of them turns at most.
+    /// Mixes in a share of another motion; at most one of the two turns.
     fn mixed(self, other: Self, share: f64) -> Self {
         Self {
             center: if self.turn == 0.0 {
@@ -47,7 +47,7 @@ impl Motion {
 }
 
 impl Stretch {
-    /// How a belt moves what it carries here.
+    /// How a belt moves what it carries on this stretch.
     fn motion(&self) -> Motion {
         match self.shape {
             Form::Arc { center, radius, .. } => Motion {
@@ -64,7 +64,7 @@ impl Stretch {
 }
 
 impl Envelope {
-    /// The point a way [m] along the hull, and the outward normal there.
+    /// The point at a position `way` [m] along the hull, and the outward normal there.
     pub(crate) fn place_at(&self, way: f64) -> (Vector, Vector) {
         let way = way.rem_euclid(self.length());
         let stretch = self.stretch_at(way);
@@ -76,10 +76,10 @@ impl Envelope {
         (point, outward)
     }
 
-    /// [rad] Direction of belt travel a way [m] along the hull; it counts full turns.
+    /// [rad] Direction of belt travel at a position [m] along the hull; it counts full turns.
     pub(crate) fn angle_at(&self, way: f64) -> f64 {
         let inside = way.rem_euclid(self.length());
-        // Not of the quotient, which may be rounded up to the next round.
+        // Not the floor of the quotient, which rounding may lift to the next round.
         let rounds = ((way - inside) / self.length()).round();
         let turned = |stretch: &Stretch| match stretch.shape {
             Form::Arc { sweep, .. } if inside > stretch.start => {
@@ -95,12 +95,12 @@ impl Envelope {
         outward - FRAC_PI_2 - turns - TAU * rounds
     }
 
-    /// The mean motion of what a belt carries within `reach` [m] of a way along the hull: where an arc
-    /// joins a run, that of a tip would jump.
+    /// Mean motion of what a belt carries within `reach` [m] of a position along the hull; averaged because the
+    /// motion of a tip would jump where an arc joins a run.
     pub(crate) fn motion_at(&self, way: f64, reach: f64) -> Motion {
         let way = way.rem_euclid(self.length());
         let here = self.stretch_at(way);
-        // The nearer of its joints, and how much of the span lies beyond it.
+        // The nearer joint of the stretch, and how much of the span lies beyond it.
         let (behind, ahead) = (way - here.start, here.start + here.length - way);
         let (gap, beyond) = if behind < ahead {
             (behind, here.start - behind)

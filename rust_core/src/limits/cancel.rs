@@ -1,11 +1,11 @@
-//! How a caller asks computing that is under way to end early.
+//! How a caller asks a running computation to end early.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::Error;
 
-/// Held by the caller and by what computes; once asked, computing ends with [`Error::Interrupted`].
+/// Shared by caller and computation; once asked, the computation ends with [`Error::Interrupted`].
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<AtomicBool>);
 
@@ -20,7 +20,7 @@ impl Cancel {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Goes on, unless it was asked to end.
+    /// Returns an error if it was asked to end.
     pub(crate) fn check(&self) -> Result<(), Error> {
         if self.is_asked() {
             return Err(Error::Interrupted);

@@ -1,7 +1,7 @@
-//! How much memory a request may take, asked for before it is taken.
+//! How much memory a request may take, checked before it is allocated.
 //!
-//! Rust ends the process where an allocation fails. So whatever grows with the input is counted first: against
-//! a limit of the user's, and against what the system gives at this moment.
+//! Rust ends the process if an allocation fails. So whatever grows with the input is first checked against the
+//! user's limit, and against what the system can give at this moment.
 
 use std::collections::TryReserveError;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,7 +10,7 @@ use crate::error::{LimitError, MEMORY_VARIABLE};
 
 const DEFAULT: f64 = 8.0; // [GiB]
 const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
-/// Bytes for all the small things of a request that are not counted.
+/// Bytes for all the small parts of a request that are not counted.
 const SPARE: u64 = 32 << 20;
 
 /// What is left of the memory that a request may take.
@@ -20,10 +20,10 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// All that a request may have: the user's limit, or less if the system gives less.
+    /// All that a request may have: the user's limit, or less if the system has less.
     ///
     /// # Errors
-    /// The environment variable of the limit makes no sense.
+    /// The environment variable of the limit is invalid.
     pub(crate) fn new() -> Result<Self, LimitError> {
         let limit = limit()?;
         let given = given_now(limit.saturating_add(SPARE)).saturating_sub(SPARE);
@@ -33,10 +33,10 @@ impl Budget {
         })
     }
 
-    /// Whether there is so much left.
+    /// Checks that so many bytes are left.
     ///
     /// # Errors
-    /// There is not.
+    /// They are not.
     pub(crate) fn check(&self, what: &str, bytes: u64) -> Result<(), LimitError> {
         let left = self.left.load(Ordering::Relaxed);
         if bytes <= left {
@@ -50,10 +50,10 @@ impl Budget {
         })
     }
 
-    /// Takes so much.
+    /// Takes so many bytes.
     ///
     /// # Errors
-    /// There is not so much left.
+    /// They are not left.
     pub(crate) fn take(&self, what: &str, bytes: u64) -> Result<(), LimitError> {
         let less = |left: u64| left.checked_sub(bytes);
         match self
@@ -65,18 +65,18 @@ impl Budget {
         }
     }
 
-    /// Gives back what was taken and is not needed.
+    /// Gives back bytes that are not needed.
     pub(crate) fn give_back(&self, bytes: u64) {
         self.left.fetch_add(bytes, Ordering::Relaxed);
     }
 }
 
-/// Asks for the bytes that building something takes.
+/// Checks that the bytes for building something are available.
 ///
 /// # Errors
-/// The limit or the system does not allow them.
+/// They are not, because of the limit or the system.
 pub(crate) fn ask(what: &str, bytes: u64) -> Result<(), LimitError> {
-    // What is small is not worth asking the system for.
+    // Small requests are not worth asking the system.
     if bytes < SPARE {
         return Ok(());
     }
@@ -87,12 +87,12 @@ pub(crate) fn ask(what: &str, bytes: u64) -> Result<(), LimitError> {
 pub(crate) struct Rows<'a> {
     budget: &'a Budget,
     row_bytes: u64,
-    /// Rows that there is room for.
+    /// Rows that have room.
     room: usize,
 }
 
 impl<'a> Rows<'a> {
-    /// No room yet, for rows of so many bytes.
+    /// For rows of so many bytes; no room yet.
     pub(crate) fn new(budget: &'a Budget, row_bytes: u64) -> Self {
         Self {
             budget,
@@ -101,16 +101,16 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Makes room for so many rows in all; `reserve` is given the number of rows to have room for.
+    /// Makes room for so many rows in all; `reserve` is called with the number of rows to make room for.
     ///
     /// # Errors
-    /// There is none.
+    /// There is no room.
     pub(crate) fn make(
         &mut self,
         rows: usize,
         reserve: impl FnOnce(usize) -> Result<(), TryReserveError>,
     ) -> Result<(), LimitError> {
-        /// The first room, and what it grows by at least.
+        /// The first room, and the least that it grows by.
         const LEAST: usize = 64;
         const WHAT: &str =
             "what a run has recorded so far (a longer sample_interval, or \"summary\", takes less)";
@@ -122,7 +122,7 @@ impl<'a> Rows<'a> {
         let bytes = (room - self.room) as u64 * self.row_bytes;
         self.budget.take(WHAT, bytes)?;
         self.room = room;
-        // Where the system gives no more, no budget helps.
+        // The system may have less than the budget says.
         reserve(room).map_err(|_| LimitError::Memory {
             what: WHAT.to_owned(),
             needed: bytes,
@@ -139,10 +139,10 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Room in a column for so many entries in all.
+/// Reserves room in a column for so many entries in all.
 ///
 /// # Errors
-/// The system does not give it.
+/// The system has no more memory.
 pub(crate) fn reserve<T>(column: &mut Vec<T>, entries: usize) -> Result<(), TryReserveError> {
     column.try_reserve_exact(entries - column.len())
 }
@@ -159,7 +159,7 @@ fn limit() -> Result<u64, LimitError> {
     }
 }
 
-/// [bytes] How much of this the system gives now: nothing is written to it, so nothing is used.
+/// [bytes] How much of this the system has now; nothing is written to it, so none is used.
 fn given_now(most: u64) -> u64 {
     let mut bytes = most;
     while bytes > 1 << 20 {
@@ -167,7 +167,7 @@ fn given_now(most: u64) -> u64 {
         if Vec::<u8>::new().try_reserve_exact(asked).is_ok() {
             return bytes;
         }
-        // Steps of a quarter find most of what there is.
+        // Steps of a quarter find most of what is available.
         bytes -= bytes / 4;
     }
     0

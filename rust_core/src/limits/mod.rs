@@ -1,4 +1,4 @@
-//! How far computing may go: how it is asked to end, how much memory it may take, which rounding it needs.
+//! Limits of a computation: how it is asked to end, how much memory it may take, which rounding it needs.
 
 mod cancel;
 pub(crate) mod memory;

@@ -1,11 +1,11 @@
-//! Whether the processor rounds as every figure here takes for granted.
+//! Checks the rounding mode of the processor, on which all results depend.
 
 use std::hint::black_box;
 
 use crate::error::Error;
 
-/// Other libraries can set how the processor rounds (`fesetround`), for their thread and all that it starts.
-/// Every run would come out otherwise, without a word.
+/// Other libraries can change the rounding mode (`fesetround`) for their thread and all threads that it starts.
+/// Every result would then differ, without notice.
 ///
 /// # Errors
 /// [`Error::Internal`] if sums are not rounded to the nearest number.
@@ -15,11 +15,11 @@ pub fn check_rounding() -> Result<(), Error> {
         black_box(0.75 * f64::EPSILON),
         black_box(0.25 * f64::EPSILON),
     );
-    // Rounded downwards or towards zero the first stays one, upwards the second does not.
+    // Rounded downwards or towards zero, the first sum stays one; rounded upwards, the second does not.
     if one + most > one && one + little <= one {
         return Ok(());
     }
     let message = "this thread does not round to the nearest number, so results would differ: another library \
-                   has called fesetround, which fesetround(FE_TONEAREST) takes back";
+                   has called fesetround; fesetround(FE_TONEAREST) undoes it";
     Err(Error::Internal(message.to_owned()))
 }

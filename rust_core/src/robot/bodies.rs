@@ -1,17 +1,17 @@
-//! Masses of the wheels that a model stands for, and what they leave to the chassis.
+//! Masses of the wheels of a model, and what remains for the chassis.
 
 use super::{Model, Mount, Shape};
 use crate::geometry::{Pose, Vector};
 use crate::scenario::End;
 
-/// A wheel; both sides together, unless these meet lanes of their own.
+/// A wheel, both sides together unless each side has its own lane.
 #[derive(Clone, Debug)]
 pub struct WheelBody {
     /// Index of the part.
     pub part: usize,
     /// The body that it turns on.
     pub mount: Mount,
-    /// [m] Axle in the chassis frame, with the arms as they are at time 0.
+    /// [m] Axle in the chassis frame, with the arms as at time 0.
     pub center: Vector,
     /// [m] Radius of the circumscribed circle.
     pub radius: f64,
@@ -19,12 +19,12 @@ pub struct WheelBody {
     pub area: f64,
     /// [kg] Mass of a uniform wheel of this outline and moment of inertia.
     pub mass: f64,
-    /// [kg m^2] Its share of what circulates: mass times the square of the radius.
+    /// [kg m^2] Its share of the inertia of the moving track: moving mass times radius squared.
     pub moment_of_inertia: f64,
 }
 
 impl WheelBody {
-    /// The wheel of one side where both are together.
+    /// The wheel of one side, from both sides together.
     #[must_use]
     pub fn of_one_side(self) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl WheelBody {
     }
 }
 
-/// What the wheels leave of the robot.
+/// The robot without its wheels.
 #[derive(Clone, Copy, Debug)]
 pub struct ChassisBody {
     /// [kg] Mass.
@@ -49,7 +49,7 @@ pub struct ChassisBody {
 impl Model {
     /// The wheels of chassis and arms, in the order of the parts.
     ///
-    /// Those of the chassis turn together with the inertia of its track, those of an arm with that of the arm's.
+    /// The wheels of the chassis together have the inertia of its track, those of an arm that of the arm's track.
     pub fn wheels(&self) -> Vec<WheelBody> {
         let start = self.running_at_start(0.0);
         let round = self.parts.iter().enumerate();
@@ -92,7 +92,7 @@ impl Model {
         wheels
     }
 
-    /// What a wheel turns on, by name.
+    /// Name of the body that a wheel turns on.
     pub fn carrier(&self, mount: Mount) -> &'static str {
         match mount {
             Mount::Flipper(k) => match self.flippers[k].end {
@@ -103,11 +103,10 @@ impl Model {
         }
     }
 
-    /// The robot as an engine of bodies and joints would hold it: chassis and wheels, those of flippers
-    /// apart.
+    /// The robot as an engine of bodies and joints would model it: chassis and wheels, without the wheels of flippers.
     ///
-    /// Together they have the robot's mass, centre of mass and moment of inertia, and the wheels turn
-    /// with the inertia of its track.
+    /// Together they have the robot's mass, centre of mass and moment of inertia, and the wheels have the inertia of
+    /// its track.
     pub fn bodies(&self) -> (ChassisBody, Vec<WheelBody>) {
         let mut wheels = self.wheels();
         wheels.retain(|wheel| wheel.mount == Mount::Chassis);

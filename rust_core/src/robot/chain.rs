@@ -1,4 +1,4 @@
-//! Chains of shoes of a robot, and what they leave of it to the chassis.
+//! Chains of shoes of a robot.
 
 use std::ops::Range;
 
@@ -11,13 +11,13 @@ pub struct ChainOfShoes {
     pub number: usize,
     /// Numbers of its shoes.
     pub shoes: Range<usize>,
-    /// Its path along the pins, and how far these are from each other.
+    /// The path of its pins, and their pitch.
     pub path: ShoeLoop,
-    /// The ends of the guide that the plates slide on, or the drum of the sprocket and the idler: rear first.
+    /// The ends of the guide that the plates slide on, or sprocket drum and idler; rear first.
     pub ends: [Disc; 2],
     /// Road wheels and return rollers between them.
     pub wheels: Vec<Disc>,
-    /// What drives it; none pulls on the shoes at the rear end of a guide.
+    /// What drives it; `None`: the drive pulls on the shoes at the rear end of a guide.
     pub sprocket: Option<Sprocket>,
     /// [m] Thickness of the plates; the pins lie in their middle.
     pub plate_thickness: f64,
@@ -36,20 +36,20 @@ pub struct ChainOfShoes {
 pub struct Sprocket {
     /// Its teeth; they turn about the centre of the rear end.
     pub teeth: Teeth,
-    /// [rad] Angle over the chassis of one of its seats when it has not turned.
+    /// [rad] Angle of one of its seats relative to the chassis at the start.
     pub first_seat: f64,
     /// [kg m^2] Moment of inertia about its axle.
     pub inertia: f64,
 }
 
 impl Sprocket {
-    /// [rad] Angle over the chassis when it has moved the chain so far [m]; it drives forwards clockwise.
+    /// [rad] Angle relative to the chassis when it has moved the chain so far [m]; forwards is clockwise.
     pub fn angle(&self, run: f64) -> f64 {
         self.first_seat - run / self.teeth.drive_radius()
     }
 }
 
-/// A spring and a damper that push the front end of a guide along the chassis; it weighs nothing.
+/// A massless spring and damper that push the front end of a guide along the chassis.
 #[derive(Clone, Copy, Debug)]
 pub struct Tensioner {
     /// [N] Force in the middle of its travel.
@@ -58,13 +58,12 @@ pub struct Tensioner {
     pub stiffness: f64,
     /// [N s/m] Damping.
     pub damping: f64,
-    /// [m] How far it can be pressed in before it meets a stop.
+    /// [m] How far it can be pressed in before it meets its stop.
     pub stop: f64,
 }
 
 impl ChainOfShoes {
-    /// [m] Radius at which the drive pulls: a turn moves the chain by as many pitches as it takes shoes to go
-    /// round.
+    /// [m] Radius at which the drive pulls: one turn moves the chain by as many pitches as shoes fit round the end.
     pub(crate) fn drive_radius(&self) -> f64 {
         if let Some(sprocket) = &self.sprocket {
             return sprocket.teeth.drive_radius();

@@ -1,4 +1,4 @@
-//! A closed belt in place of a track: what a track without gaps would do in the same pose.
+//! A closed belt in place of a track, to see what a track without gaps would do in the same pose.
 
 use std::sync::Arc;
 
@@ -7,16 +7,16 @@ use crate::geometry::{Disc, Envelope, Grouser};
 use crate::scenario::{ScenarioError, TrackOutline};
 
 impl Model {
-    /// The same robot with a closed belt, taut round the bodies of each track: their circumscribed circles, all
-    /// their motors' force, their mass. With an outline it has the grousers of that where the track has some,
-    /// as high as these, and within the same circles.
+    /// The same robot with a closed belt, taut round the circumscribed circles of each track's bodies, with all their
+    /// motor force and mass. With an outline, the belt has that outline's grousers where the track has some, as high
+    /// as the track's and within the same circles.
     ///
     /// # Errors
-    /// Its pitch leaves more of them than a belt may have.
+    /// The pitch makes more grousers than a belt may have.
     pub(crate) fn closed(&self, grousers: Option<&TrackOutline>) -> Result<Self, ScenarioError> {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
         let belt = Envelope::new(&round(Mount::Chassis));
-        // A closed belt shields a belly that lies inside of it.
+        // A closed belt covers a belly that lies inside it.
         let reaches_out = |part: &&Part| match &part.shape {
             Shape::Polygon { corners } if part.mount == Mount::Chassis => {
                 corners.iter().any(|c| belt.depth(*c) < 0.0)
@@ -61,26 +61,26 @@ impl Model {
             .any(|mount| self.grouser_height(mount, outline) > 0.0)
     }
 
-    /// [m] Height of the grousers of the track that a mount carries: gears have their own, chains and belts
-    /// those of the outline.
+    /// [m] Height of the grousers of the track on a mount: gears have their own, chains and belts those of the
+    /// outline.
     fn grouser_height(&self, mount: Mount, outline: &TrackOutline) -> f64 {
         let of_part = |part: &Part| match &part.shape {
             Shape::Gear { gear, .. } => gear.radius - gear.root_radius,
             Shape::Hull { grouser_height, .. } if *grouser_height > 0.0 => outline.grouser_height,
             _ => 0.0,
         };
-        // What travels with a belt is told by the belt.
+        // Parts that travel with a belt are covered by the belt itself.
         let bears_them = |part: &&Part| {
             let is_other = matches!(part.kind, BodyKind::Belly | BodyKind::Grouser);
             part.mount == mount && !is_other
         };
         let heights = self.parts.iter().filter(bears_them).map(of_part);
-        // Wheels of several sizes have several heights; the least fits in all of them.
+        // Wheels of several sizes have several heights; the smallest fits all of them.
         heights.reduce(f64::min).unwrap_or(0.0)
     }
 }
 
-/// The hull of circumscribed circles, and what travels along it.
+/// The hull of the circumscribed circles, and the grousers that travel along it.
 fn shapes(
     tips: Vec<Disc>,
     height: f64,

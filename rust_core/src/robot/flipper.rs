@@ -1,44 +1,44 @@
-//! Flippers of a robot: arms that pivot on its end axles, and what they leave of it to the chassis.
+//! Flippers of a robot: arms that pivot on its end axles.
 
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::scenario::{End, Robot};
 
-/// The arms at one end of a robot, those of both sides together.
+/// The arms at one end of a robot, both sides together.
 #[derive(Clone, Debug)]
 pub struct Flipper {
     /// [m] The pivot in the chassis frame.
     pub pivot: Vector,
-    /// [m] From the pivot to its centre of mass, midway between its axles: the origin of its own frame.
+    /// [m] From the pivot to its centre of mass, which is midway between its axles and the origin of its frame.
     pub arm: Vector,
     /// [kg] Mass.
     pub mass: f64,
     /// [kg m^2] Moment of inertia about its centre of mass.
     pub moment_of_inertia: f64,
-    /// [m] From the pivot to the farthest point.
+    /// [m] Distance from the pivot to its farthest point.
     pub reach: f64,
-    /// [m] Radius about the pivot.
+    /// [m] Radius at the pivot.
     pub root_radius: f64,
-    /// [rad/s] Fastest turn over the chassis that it is commanded to make.
+    /// [rad/s] Largest commanded turning rate relative to the chassis.
     pub rate_limit: f64,
     /// [N m] Largest torque of its motor.
     pub torque_limit: f64,
-    /// [rad] At time 0, upwards > 0.
+    /// [rad] Angle at time 0, upwards > 0.
     pub start_angle: f64,
-    /// Where it is.
+    /// The end of the robot that it is on.
     pub end: End,
 }
 
-/// Where a flipper is on the chassis.
+/// Position of a flipper on the chassis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mounted {
-    /// Its frame in that of the chassis.
+    /// Its frame in the chassis frame.
     pub pose: Pose,
-    /// [m] How far a belt has run along it because it has turned about its sprocket.
+    /// [m] How far its belt has run because the arm turned about its sprocket.
     pub run: f64,
 }
 
 impl Flipper {
-    /// The arms of a robot, the front first.
+    /// The arms of a robot, front first.
     pub(crate) fn of(robot: &Robot) -> Vec<Self> {
         let Some(flippers) = &robot.flippers else {
             return Vec::new();
@@ -68,13 +68,13 @@ impl Flipper {
         self.end.sign()
     }
 
-    /// [kg] What moves at the speed of its track where that has a drive of its own: a tenth, our assumption.
+    /// [kg] Mass that moves at the speed of its track if that has its own drive: a tenth of its mass, our assumption.
     pub(crate) fn mass_of_track(&self) -> f64 {
         0.1 * self.mass
     }
 
-    /// [m] From the chassis' centre of mass, which is there in its frame, to the pivot, and from there to its
-    /// own, when these are turned so far over ground [rad].
+    /// [m] From the chassis' centre of mass, given in its frame, to the pivot, and from the pivot to its own centre of
+    /// mass, with chassis and arm at these angles over ground [rad].
     pub(crate) fn spokes(&self, center_of_mass: Vector, [chassis, arm]: [f64; 2]) -> [Vector; 2] {
         [
             Rotation::new(chassis) * (self.pivot - center_of_mass),
@@ -82,7 +82,7 @@ impl Flipper {
         ]
     }
 
-    /// Where it is when turned by `angle` [rad] over the chassis, counter-clockwise.
+    /// Its position when turned by `angle` [rad] relative to the chassis, counter-clockwise.
     pub(crate) fn mounted(&self, angle: f64, drive_radius: f64) -> Mounted {
         Mounted {
             pose: Pose::new(self.pivot, angle) * Pose::from_translation(self.arm),
@@ -92,7 +92,7 @@ impl Flipper {
 
     /// [m] How far a belt has run along it because it has turned by `angle` [rad] over the chassis.
     pub(crate) fn run(angle: f64, drive_radius: f64) -> f64 {
-        // The sprocket turns with the chassis: over the arm it turns back.
+        // The sprocket turns with the chassis; relative to the arm it turns back.
         drive_radius * angle
     }
 }

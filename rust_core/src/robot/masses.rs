@@ -1,10 +1,10 @@
-//! What chains and flippers weigh, and what they leave of the robot to the chassis.
+//! Masses of chains and flippers, and what remains for the chassis.
 
 use super::{ChainOfShoes, Flipper, Model, Running};
 use crate::geometry::Vector;
 
 impl Model {
-    /// Leaves to the chassis what the arms do not weigh.
+    /// Takes the mass of the arms off the chassis.
     pub(crate) fn with_flippers(mut self, arms: Vec<Flipper>) -> Self {
         if arms.is_empty() {
             return self;
@@ -25,7 +25,7 @@ impl Model {
         self
     }
 
-    /// Leaves to the chassis what the chains do not weigh.
+    /// Takes the mass of the chains off the chassis.
     pub(crate) fn with_chains(mut self, chains: Vec<ChainOfShoes>) -> Self {
         if chains.is_empty() {
             return self;
@@ -51,7 +51,7 @@ impl Model {
         let of_chassis = mass * about(self.center_of_mass);
         self.moment_of_inertia = locked - of_shoes - of_chassis - of_sprockets;
         self.mass = mass;
-        // The first drives are those of the chains; the others keep what turns with them.
+        // The first drives are those of the chains, which have their own mass; the others keep theirs.
         self.drive_masses[..chains.len()].fill(0.0);
         if let Some(sprocket) = chains.first().and_then(|chain| chain.sprocket.as_ref()) {
             self.drive_radius = sprocket.teeth.drive_radius();
@@ -70,12 +70,12 @@ impl Model {
         self.mass + of_chains + of_flippers
     }
 
-    /// Whether nothing but drives moves over the chassis.
+    /// Whether nothing but drives moves relative to the chassis.
     pub(crate) fn is_one_body(&self) -> bool {
         self.chains.is_empty() && self.flippers.is_empty()
     }
 
-    /// The same with all that moves over the chassis fixed to it where it is.
+    /// The same, with all parts that move relative to the chassis fixed where they are.
     pub(crate) fn as_one_body(&self, running: &Running) -> Self {
         let (mass, center_of_mass) = self.mass_center(running);
         Self {
@@ -104,7 +104,7 @@ impl Model {
         (mass, moment / mass)
     }
 
-    /// The same robot with the mass of its chains at the drives, as where no shoes are simulated.
+    /// The same robot with the mass of its chains at the drives, as if no shoes were simulated.
     pub(crate) fn with_circulating_mass(&self) -> Self {
         let start = |chain: &ChainOfShoes| chain.path.places(0.0);
         let running = Running {

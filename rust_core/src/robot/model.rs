@@ -21,25 +21,25 @@ pub struct Model {
     pub motors: usize,
     /// [kg] Mass that moves at the surface speed of each drive.
     pub drive_masses: Vec<f64>,
-    /// [m] Radius that joins surface speed and spin of a drive.
+    /// [m] Radius that relates surface speed and spin of a drive.
     pub drive_radius: f64,
     /// [N] Largest traction of each motor.
     pub drive_force: f64,
-    /// The drive pushes the chassis along its axis, whatever touches the ground.
+    /// The drive pushes the chassis along its axis, whether it touches the ground or not.
     pub pushes_chassis: bool,
-    /// Chains of shoes, each with the drive of its number; then `mass`, `center_of_mass` and
+    /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
     /// `moment_of_inertia` are those of the chassis without them.
     pub chains: Vec<ChainOfShoes>,
-    /// Arms that pivot on it; these, too, are then not in the figures of the chassis.
+    /// Arms that pivot on it; their mass is not included in those figures either.
     pub flippers: Vec<Flipper>,
 }
 
 impl Model {
-    /// The model of a robot, both tracks lumped: mass, centre of mass and moments of inertia are the
-    /// built robot's, whatever the track model.
+    /// The model of a robot, both tracks lumped; mass, centre of mass and moments of inertia are those of the real
+    /// robot for every track model.
     ///
     /// # Errors
-    /// Wheels that do not fit the robot; shoes and arms that leave no chassis.
+    /// Wheels that do not fit the robot; shoes and arms that leave nothing for the chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
         let mut parts = track.parts;
@@ -57,7 +57,7 @@ impl Model {
         }
         let radius = robot.outline.rear_radius;
         let flippers = Flipper::of(robot);
-        // A chain is all of the track's mass and has all of its force; beside it, only flippers have drives.
+        // A chain has all of the track's mass and force; only flippers have drives besides.
         let has_chain = !track.chains.is_empty();
         let (sharers, of_track) = if has_chain {
             (1, 1)
@@ -87,7 +87,7 @@ impl Model {
         let left = model.moment_of_inertia;
         if left <= 0.0 {
             let rule = format!(
-                "must exceed that of all that moves over the chassis, which is left {left} kg m^2"
+                "must exceed that of all moving parts; it leaves the chassis {left} kg m^2"
             );
             let path = "robot.moment_of_inertia";
             return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
@@ -95,7 +95,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Where what moves over the chassis is at time 0, when its tracks have run by `track_phase` [m].
+    /// Positions of the moving parts at time 0, with the tracks advanced by `track_phase` [m].
     pub(crate) fn running_at_start(&self, track_phase: f64) -> Running {
         let mut running = Running::default();
         let drives = std::iter::repeat_n(track_phase, self.drives);
@@ -136,12 +136,12 @@ impl Model {
         self.moment_of_inertia + drives.sum::<f64>()
     }
 
-    /// Number of shoes of all chains.
+    /// Number of shoes in all chains.
     pub(crate) fn shoes(&self) -> usize {
         self.chains.iter().map(|chain| chain.shoes.len()).sum()
     }
 
-    /// Number of lanes that tracks meet.
+    /// Number of lanes under the tracks.
     pub(crate) fn tracks(&self) -> usize {
         let of_tracks = self
             .parts
@@ -150,13 +150,13 @@ impl Model {
         of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
     }
 
-    /// What carries a closed belt: the chassis and the flippers.
+    /// The mounts that carry a track: the chassis and the flippers.
     pub fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + use<> {
         let flippers = (0..self.flippers.len()).map(Mount::Flipper);
         std::iter::once(Mount::Chassis).chain(flippers)
     }
 
-    /// Circumscribed and root circles of the bodies of the track on a lane that this carries.
+    /// Circumscribed and root circles of the bodies of the track on a mount and a lane.
     pub(crate) fn discs_of_track(
         &self,
         lane: usize,
@@ -167,8 +167,8 @@ impl Model {
         of_track.flat_map(|part| part.discs().collect::<Vec<_>>())
     }
 
-    /// The taut belts round the circumscribed and the root circles of the bodies of a track, as points of
-    /// the frame of what carries it, counter-clockwise; an arc is cut every `turn` [rad].
+    /// The taut belts round the circumscribed and the root circles of a track's bodies, as points in the frame of the
+    /// mount, counter-clockwise; arcs are divided every `turn` [rad].
     pub fn envelopes(&self, on: Mount, turn: f64) -> [Vec<Vector>; 2] {
         let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0, on).unzip();
         [tips, roots].map(|discs| {
@@ -178,11 +178,11 @@ impl Model {
         })
     }
 
-    /// [m] Farthest point of any part from the centre of mass.
+    /// [m] Largest distance of any part from the centre of mass.
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
-            // Never beyond the tips of the hull that it travels round but by a corner.
+            // Shoes and arms: at most a corner beyond the hull that they travel round.
             _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
             // Never beyond the tips of the belt's hull.

@@ -5,14 +5,14 @@
 pub enum Mount {
     /// The chassis.
     Chassis,
-    /// The shoe of that number.
+    /// The shoe of this number.
     Shoe(usize),
-    /// The arms at one end, of that number.
+    /// The arms at one end, by number.
     Flipper(usize),
 }
 
 impl Mount {
-    /// The number of its shoe.
+    /// Number of the shoe, if it is one.
     pub fn shoe(self) -> Option<usize> {
         match self {
             Self::Shoe(shoe) => Some(shoe),

@@ -1,12 +1,12 @@
-//! A robot on lanes: what lies under the left track, the right one, and the belly between them.
+//! A robot on lanes, which lie under the left track, the right track and the belly.
 
 use super::{BodyKind, ChainOfShoes, Model, Mount, Part, Sprocket, Tensioner};
 use crate::scenario::{Robot, ScenarioError};
 use crate::terrain::Ground;
 
 impl Model {
-    /// The model of a robot on a ground: both tracks lumped where they meet the same, else side by side,
-    /// each with half of mass and force.
+    /// The model of a robot on a ground: both tracks lumped if they meet the same profile, else side by side, each
+    /// with half of mass and force.
     ///
     /// # Errors
     /// Wheels that do not fit the robot.
@@ -14,7 +14,7 @@ impl Model {
         Ok(Self::new(robot)?.placed_on(ground))
     }
 
-    /// The same of a robot whose tracks are lumped.
+    /// The same, from a robot whose tracks are lumped.
     pub(crate) fn placed_on(self, ground: &Ground) -> Self {
         let mut model = if ground.tracks > 1 {
             self.side_by_side()
@@ -29,7 +29,7 @@ impl Model {
         model
     }
 
-    /// The parts of the left track, those of the right, the belly; so their drives, those with a motor
+    /// Parts of the left track, then of the right, then the belly; drives in the same order, those with a motor
     /// first. A force along the chassis has no side and stays one.
     fn side_by_side(self) -> Self {
         let shared = usize::from(self.pushes_chassis);

@@ -1,4 +1,4 @@
-//! Where a robot stands at time 0.
+//! Position of the robot at time 0.
 
 use super::{Model, Shape};
 use crate::geometry::{Disc, Pose, Vector, end_discs, lower_tangent};
@@ -18,7 +18,7 @@ pub(crate) fn start_position(
         ..d
     };
     let running = model.running_at_start(scenario.start.track_phase);
-    // What touches each lane: discs, and segments between points.
+    // The shapes above each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
     for part in &model.parts {
         let Touching { discs, segments } = &mut touching[part.lane];
@@ -62,7 +62,7 @@ pub(crate) fn start_position(
             }
         }
     }
-    // The built outline sets where the robot begins, too, although it need not touch the ground.
+    // The outline counts for where the robot begins, even if the model does not touch there.
     let outline = end_discs(&scenario.robot.outline).into_iter();
     let tips = model.parts.iter().flat_map(|part| {
         let mount = running.mounted(part.mount, Pose::IDENTITY);
@@ -88,7 +88,7 @@ pub(crate) fn start_position(
     let (low, high) = ground.extent();
     if x + rear < low || x + front > high {
         let rule = format!(
-            "must reach under the whole robot at its start, from x = {:.4} to {:.4} m",
+            "must reach under the whole robot at its start, from x = {:.4} m to {:.4} m",
             x + rear,
             x + front
         );
@@ -105,7 +105,7 @@ pub(crate) fn start_position(
     Ok(Vector::new(x, heights.fold(f64::NEG_INFINITY, f64::max)))
 }
 
-/// What of a robot touches one lane, in the chassis frame turned by its angle.
+/// The shapes of a robot above one lane, in the chassis frame turned by its angle.
 #[derive(Clone, Default)]
 struct Touching {
     discs: Vec<Disc>,
@@ -113,7 +113,7 @@ struct Touching {
 }
 
 impl Touching {
-    /// [m] Height of the chassis frame, placed at `x`, at which it only touches the ground.
+    /// [m] Height of the chassis frame, placed at `x`, at which the robot just touches the ground.
     fn lowest_height(&self, profile: &Profile, x: f64) -> f64 {
         let shift = Vector::new(x, 0.0);
         let of_discs = self

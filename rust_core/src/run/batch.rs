@@ -1,4 +1,4 @@
-//! Many scenarios, one world a thread, results in the order given.
+//! Simulates many scenarios on several threads, with the results in the given order.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -11,26 +11,26 @@ use crate::error::{Error, LimitError, caught};
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 
-/// Whether a batch goes on.
+/// Whether a batch continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// Go on.
+    /// Continue.
     Continue,
-    /// Finish no further run.
+    /// Finish no more runs.
     Stop,
 }
 
-/// What a run came to; `None` if it was not finished.
+/// Result of a run; `None` if it was not finished.
 type Slot = Option<Result<Run, Error>>;
 
-/// What the threads of a batch share.
+/// Data shared by the threads of a batch.
 struct Work {
     scenarios: Arc<[Checked]>,
     record: Record,
     budget: Budget,
     next: AtomicUsize,
     done: AtomicUsize,
-    /// Threads that have ended.
+    /// Number of threads that have ended.
     ended: AtomicUsize,
     cancel: Cancel,
     slots: Vec<Mutex<Slot>>,
@@ -38,9 +38,9 @@ struct Work {
 
 /// Simulates every scenario on `threads` threads.
 ///
-/// While they run, the calling thread asks `watch(done)` about 50 times a second whether to go on. If not, it
+/// Meanwhile the calling thread asks `watch(done)` about 50 times per second whether to continue. If not, it
 /// returns at once; threads that are within a step, or build something, end soon after. A run that was not
-/// finished is `None`. Whatever one run does, a panic included, the others are not affected. The results do
+/// finished is `None`. Whatever happens in one run, a panic included, does not affect the others. The results do
 /// not depend on the number of threads.
 ///
 /// # Errors
@@ -85,8 +85,8 @@ pub fn simulate_many(
     Ok(taken.collect())
 }
 
-/// Starts as many threads as the system gives, and says how many; none does no harm, for the calling thread can
-/// work, too.
+/// Starts as many threads as the system allows, and returns how many; none is no problem, because the calling
+/// thread can work, too.
 fn start(work: &Arc<Work>, threads: usize) -> usize {
     let caller = std::thread::current();
     let spawn = |_| {
@@ -104,7 +104,7 @@ fn start(work: &Arc<Work>, threads: usize) -> usize {
 }
 
 impl Work {
-    /// Takes one scenario after the other, until none is left.
+    /// Simulates one scenario after another until none is left.
     fn run_all(&self) {
         while !self.cancel.is_asked() {
             let i = self.next.fetch_add(1, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! How many bytes a batch needs, from what its runs build and will record.
+//! Number of bytes that a batch needs, from what its runs build and will record.
 
 use super::Checked;
 use super::needs::{BYTES_A_CORNER, corners};
@@ -9,14 +9,14 @@ use crate::robot::Model;
 
 /// Bytes of the stack of a thread.
 pub(crate) const STACK: usize = 2 << 20;
-/// Bytes that the edges of a run take, a corner, as they are and as columns of a table.
+/// Bytes per corner that the edges of a run take, including their copy as table columns.
 const BYTES_AN_EDGE: u64 = 128;
-/// Bytes of all else that a run builds and gives back.
+/// Bytes of everything else that a run builds and returns.
 const BYTES_A_RUN: u64 = 64 << 10;
-/// Asks for what a batch needs, and hands on what its runs may record.
+/// Checks that the memory for a batch is available, and returns the budget for its records.
 ///
 /// # Errors
-/// It is more than the batch may have; the message says what takes less.
+/// The batch needs more than it may have; the message says what would need less.
 pub(crate) fn of_batch(
     scenarios: &[Checked],
     record: Record,
@@ -55,7 +55,7 @@ fn described(scenarios: &[Checked], record: Record) -> String {
     }
 }
 
-/// Bytes of a sample as the robot stands: half of its parts touch.
+/// Bytes of a sample with half of the robot's parts in contact.
 fn bytes_of_sample(model: &Model) -> u64 {
     let columns = Columns::of(model);
     let touching = (columns.parts / 2).max(2);

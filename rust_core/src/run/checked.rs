@@ -1,4 +1,4 @@
-//! The door: a scenario that passes it can be run, and comes out with what was built to know so.
+//! Validation: a checked scenario can be run, and keeps the robot and ground that were built to check it.
 
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::robot::{Model, Part, start_position};
 use crate::scenario::{Doubt, Scenario, ScenarioError, parse};
 use crate::terrain::Ground;
 
-/// Bytes of the longest text that is read: three lanes of the most points that there can be take half of it.
+/// Longest text that is read, in bytes; three lanes with the largest number of points take half of it.
 const LONGEST_TEXT: usize = 64 << 20;
 
-/// A scenario that keeps every rule, with the robot on its ground as it was built to check that.
+/// A valid scenario, with the robot and the ground that were built to check it.
 #[derive(Clone, Debug)]
 pub struct Checked {
     scenario: Scenario,
@@ -24,10 +24,10 @@ pub struct Checked {
     doubts: Vec<Doubt>,
 }
 
-/// Whether a text is not too long to be read.
+/// Checks that a text is not too long to be read.
 ///
 /// # Errors
-/// It is, or more than memory holds.
+/// It is too long, or needs more memory than available.
 fn check_text(text: &str) -> Result<(), Error> {
     if text.len() > LONGEST_TEXT {
         let rule = format!("must be at most {} MiB of JSON", LONGEST_TEXT >> 20);
@@ -41,12 +41,12 @@ impl Checked {
     /// Reads and checks a scenario.
     ///
     /// # Errors
-    /// The first broken rule, with the path of its field; a text or a ground beyond what memory holds.
+    /// The first broken rule, with the path of its field; a text or a ground that needs too much memory.
     pub fn from_json(text: &str) -> Result<Self, Error> {
         Self::from_json_like(text, None)
     }
 
-    /// The same; a robot or a ground that is equal to that of another scenario is not built again.
+    /// The same; a robot or a ground equal to that of another scenario is not built again.
     ///
     /// # Errors
     /// As [`Self::from_json`].
@@ -55,7 +55,7 @@ impl Checked {
         Self::of_value(&parse(text)?, other)
     }
 
-    /// Checks a scenario that was put together in Rust by the same rules as one read from JSON.
+    /// Checks a scenario that was made in Rust, with the same rules as for one read from JSON.
     ///
     /// # Errors
     /// As [`Self::from_json`].
@@ -85,7 +85,7 @@ impl Checked {
         self.position
     }
 
-    /// What is legal in it but unlikely to be meant.
+    /// Values that are legal but unlikely to be meant.
     pub fn doubts(&self) -> &[Doubt] {
         &self.doubts
     }
@@ -135,7 +135,7 @@ impl Checked {
 }
 
 impl Scenario {
-    /// Reads and checks a scenario, to change it before it runs; [`Checked`] keeps what was built.
+    /// Reads and checks a scenario, so that it can be changed before it runs; [`Checked`] keeps what was built.
     ///
     /// # Errors
     /// As [`Checked::from_json`].
@@ -144,7 +144,7 @@ impl Scenario {
     }
 }
 
-/// Rules that join the sizes of a track model's parts with speeds, time step and criteria.
+/// Rules that relate the sizes of a track model's parts to speeds, time step and criteria.
 fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError> {
     let smallest = (f64::INFINITY, f64::INFINITY);
     let (tip, root) =
@@ -165,20 +165,20 @@ fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError>
     check_turn(time_step, "robot.flippers.rate_limit", rate_of_arms)?;
     let depth = scenario.criteria.intrusion_depth;
     if depth >= root {
-        let rule = format!("must be below the smallest radius of the track model, {root} m");
+        let rule = format!("must be less than the smallest radius of the track model, {root} m");
         return Err(ScenarioError::new("criteria.intrusion_depth", depth, rule));
     }
     Ok(())
 }
 
-/// What turns farther than this between two collision checks passes over corners unseen.
+/// Checks a turning rate: larger turns per step would pass over corners without contact.
 fn check_turn(time_step: f64, name: &str, rate: f64) -> Result<(), ScenarioError> {
     const FARTHEST: f64 = 0.7; // [rad]
     let turn = rate * time_step;
     if turn <= FARTHEST {
         return Ok(());
     }
-    let rule = format!("must keep {name} x time_step <= {FARTHEST} rad a step, here {turn:.3}");
+    let rule = format!("must keep {name} x time_step <= {FARTHEST} rad (here {turn:.3} rad)");
     Err(ScenarioError::new("solver.time_step", time_step, rule))
 }
 

@@ -3,12 +3,12 @@
 use super::Simulation;
 use crate::observe::{Event, EventKind, Reading};
 
-/// Figures of a whole run.
+/// Metrics of a whole run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
     /// [s] Simulated time.
     pub time: f64,
-    /// [s] Time at which the goal was reached and from then on held; infinite if not.
+    /// [s] Time at which the goal was reached and then held; infinite if it was not.
     pub time_to_clear: f64,
     /// [m] Final position of the chassis frame.
     pub final_x: f64,
@@ -16,7 +16,7 @@ pub struct Metrics {
     pub final_y: f64,
     /// [rad] Final chassis angle.
     pub final_angle: f64,
-    /// [m] Final x less that of the start.
+    /// [m] Final x minus initial x.
     pub distance: f64,
     /// [m] How far the track surface has run: what odometry with the circumscribed radius reads.
     pub track_distance: f64,
@@ -32,18 +32,18 @@ pub struct Metrics {
     pub drive_work: f64,
     /// [s] Time spent in stops.
     pub stopped_time: f64,
-    /// [s] Longest stop from which the robot freed itself; 0 if there was none.
+    /// [s] Longest stop that the robot got out of by itself; 0 if there was none.
     pub time_to_free: f64,
     /// Share of the commanded distance made in the last stop window.
     pub progress: f64,
     /// [m/s^2] Root mean square of the vertical acceleration, averaged over 10 ms.
     pub vertical_acceleration: f64,
-    /// [rad/s] Root mean square of the rate of the chassis angle.
+    /// [rad/s] Root mean square of the rate of change of the chassis angle.
     pub angular_velocity: f64,
     /// [m] Depth of the most loaded intrusion at the end of the run, below the circumscribed circles;
     /// 0 if there is none.
     pub intrusion_depth: f64,
-    /// [m] The same below the root circles.
+    /// [m] The same, below the root circles.
     pub intrusion_root_depth: f64,
     /// [N] Its mean normal force.
     pub intrusion_force: f64,
@@ -53,20 +53,20 @@ pub struct Metrics {
     pub max_pin_gap: f64,
     /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe.
     pub max_guide_penetration: f64,
-    /// [m] Farthest that a chain has run ahead of its sprocket or stayed behind; 0 without a sprocket.
+    /// [m] Largest slip between a chain and its sprocket, ahead or behind; 0 without a sprocket.
     pub max_sprocket_slip: f64,
-    /// Searches for the forces that all contacts, motors and pins agree on.
+    /// Searches for forces that satisfy all contacts, motors and pins.
     pub solves: f64,
-    /// Linear systems solved in them; as many as there are solves where every first guess fits.
+    /// Linear systems solved in them; one per solve if every first guess is right.
     pub solve_rounds: f64,
-    /// Descents, where guesses could not be mended.
+    /// Solves in which no guess was right and a descent method took over.
     pub descents: f64,
-    /// Solves that ended without agreement: their friction was cut until it added no energy.
+    /// Solves that found no consistent forces: their friction was reduced until it added no energy.
     pub unresolved_solves: f64,
 }
 
 impl Metrics {
-    /// Those of a run that began as `start` and went through these events.
+    /// Metrics of a run that began at `start` and had these events.
     pub(super) fn of(simulation: &Simulation, start: &Reading, events: &[Event]) -> Self {
         let end = simulation.reading();
         let monitor = simulation.monitor();

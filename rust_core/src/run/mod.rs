@@ -1,4 +1,4 @@
-//! Runs: a scenario is checked and built, simulated step by step or to its end, alone or with many others.
+//! Runs: scenarios are checked and built, then simulated step by step or to the end, alone or in batches.
 
 mod batch;
 mod budget;

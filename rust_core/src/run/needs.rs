@@ -1,28 +1,28 @@
-//! How many bytes reading and building a scenario take.
+//! Number of bytes that reading and building a scenario takes.
 
 use crate::error::LimitError;
 use crate::limits::memory;
 use crate::scenario::Terrain;
 
-/// Bytes of the ground and its index while a run is built and under way, a corner; measured: 250, and as much
-/// again while it is built.
+/// Bytes per corner of the ground and its index during a run; measured: 250, and as much again while they are
+/// built.
 pub(super) const BYTES_A_CORNER: u64 = 600;
-/// Bytes of the tree that a text is read into, a character of it, at most: `[0],` is a row of one number.
+/// Largest number of bytes per character that a parsed text takes: `[0],` is a row of one number.
 const BYTES_A_CHARACTER: u64 = 40;
 
-/// Asks for what reading a scenario takes.
+/// Checks that the memory for reading a scenario is available.
 pub(crate) fn ask_for_text(text: &str) -> Result<(), LimitError> {
     memory::ask("reading a scenario", text.len() as u64 * BYTES_A_CHARACTER)
 }
 
-/// Asks for what building the ground of a scenario takes.
+/// Checks that the memory for building the ground of a scenario is available.
 pub(crate) fn ask_for_ground(terrain: &Terrain) -> Result<(), LimitError> {
     memory::ask("the ground", corners(terrain) * BYTES_A_CORNER)
 }
 
-/// Corners of a ground at most, all its lanes together: facets of rounded edges are corners, too.
+/// Largest possible number of corners of a ground, all lanes together, including facets of rounded edges.
 pub(super) fn corners(terrain: &Terrain) -> u64 {
-    /// Of a rounded edge that turns by a right angle, and of all on a lane at most.
+    /// Facets of a rounded edge that turns by a right angle, and the maximum of a lane.
     const FACETS: (u64, u64) = (90, 1_000_000);
 
     let rounded = |corners: u64, radius: f64| {

@@ -1,4 +1,4 @@
-//! What to keep of a run, and what that has.
+//! What to keep of a run, and how much that is.
 
 use crate::robot::Model;
 use crate::scenario::Scenario;
@@ -10,7 +10,7 @@ pub struct Record {
     pub sample_interval: f64,
     /// Keep the trace and the contact table; without it only outcome, metrics and events.
     pub history: bool,
-    /// Try a closed belt at the stop that a run ends in.
+    /// Try a closed belt if the run ends in a stop.
     pub counterfactual: bool,
 }
 
@@ -33,18 +33,18 @@ impl Record {
         }
     }
 
-    /// Steps of the time step `dt` [s] between two samples.
+    /// Number of time steps `dt` [s] between two samples.
     pub(super) fn steps_a_sample(&self, dt: f64) -> u64 {
         (self.sample_interval / dt).round().max(1.0) as u64
     }
 
-    /// Samples of a run that lasts as long as it may.
+    /// Number of samples of a run of full duration.
     pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
         scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
     }
 }
 
-/// What a robot has that is recorded.
+/// Numbers of the recorded things that a robot has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
     pub parts: usize,

@@ -1,4 +1,4 @@
-//! One scenario to its end.
+//! Simulates one scenario to its end.
 
 use std::time::Instant;
 
@@ -13,12 +13,12 @@ use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
 use crate::terrain::Edge;
 
-/// What came out of a run.
+/// The results of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// How it ended.
     pub outcome: Outcome,
-    /// Why it stopped, if that is how it ended.
+    /// Why it stopped, if it ended in a stop.
     pub diagnosis: Option<Diagnosis>,
     /// Figures of the whole run.
     pub metrics: Metrics,
@@ -43,14 +43,14 @@ pub struct Run {
 /// Simulates a scenario to its end.
 ///
 /// # Errors
-/// [`Error::Limit`] before anything runs or if more was recorded than memory holds, [`Error::Simulation`] if the
+/// [`Error::Limit`] before the run or if the record needs too much memory, [`Error::Simulation`] if the
 /// state became non-finite.
 pub fn simulate(checked: &Checked, record: Record) -> Result<Run, Error> {
     let budget = budget::of_batch(std::slice::from_ref(checked), record, 1)?;
     simulate_within(checked, record, (&budget, &Cancel::default()))
 }
 
-/// The same within a budget of memory, ending early with [`Error::Interrupted`] once asked to.
+/// The same within a budget of memory; ends early with [`Error::Interrupted`] if asked to.
 pub(crate) fn simulate_within(
     checked: &Checked,
     record: Record,
@@ -61,7 +61,7 @@ pub(crate) fn simulate_within(
     advance(&mut Simulation::new(checked), last, record, limits, begin)
 }
 
-/// Simulates `scenario` up to the time `at` [s], then goes on as `variant`, for its whole duration.
+/// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration.
 ///
 /// # Errors
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
@@ -83,7 +83,7 @@ pub fn branch(
 /// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
 ///
 /// # Errors
-/// As [`simulate`], [`Error::Scenario`] if the track has no grousers and the belt is to have some, and
+/// As [`simulate`], [`Error::Scenario`] if the belt is to have grousers but the track has none, and
 /// [`Error::Interrupted`] once `cancel` is asked.
 pub fn counterfactual(
     scenario: &Checked,
@@ -110,10 +110,10 @@ fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Er
     Ok(simulation)
 }
 
-/// What a run may take: memory, and time until it is asked to end.
+/// Limits of a run: memory, and a request to end.
 type Limits<'a> = (&'a Budget, &'a Cancel);
 
-/// Simulates on to the step `last` or a certain outcome.
+/// Simulates up to the step `last`, or until the outcome is certain.
 fn advance(
     simulation: &mut Simulation,
     last: u64,

@@ -7,10 +7,10 @@ use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};
 use crate::observe::Readings;
 
-/// Samples of the state; every column has one entry a sample (two a sample for x, y pairs).
+/// Samples of the state; every column has one entry per sample (two for x, y pairs).
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// [s] End of the step.
+    /// [s] Time at the end of the step.
     pub time: Vec<f64>,
     /// [m] Origin of the chassis frame, x and y.
     pub position: Vec<f64>,
@@ -18,38 +18,38 @@ pub struct Trace {
     pub velocity: Vec<f64>,
     /// [rad] Nose up > 0.
     pub chassis_angle: Vec<f64>,
-    /// [rad/s] Its rate.
+    /// [rad/s] Its rate of change.
     pub angular_velocity: Vec<f64>,
     /// [m/s] Set-point of the drivetrain.
     pub commanded_speed: Vec<f64>,
-    /// [m/s] Surface speed, the mean of the drives.
+    /// [m/s] Surface speed of the track, mean over the drives.
     pub track_speed: Vec<f64>,
-    /// [m] How far the surface has run, the mean of the drives.
+    /// [m] How far the track surface has run, mean over the drives.
     pub track_position: Vec<f64>,
-    /// 1 - v / track speed; 0 where the track stands.
+    /// 1 - v / track speed; 0 where the track stands still.
     pub slip_ratio: Vec<f64>,
-    /// [N] Force of the ground on the robot along its driven surfaces, mean over the interval.
+    /// [N] Force of the ground on the robot along its driven surfaces, mean of the interval.
     pub tractive_effort: Vec<f64>,
-    /// [N] Force of all motors at the surface, mean over the interval.
+    /// [N] Force of all motors at the surface, mean of the interval.
     pub drive_force: Vec<f64>,
     /// [m/s] Surface speed of each drive.
     pub drive_speeds: Vec<f64>,
     /// [m] How far the surface of each drive has run.
     pub drive_positions: Vec<f64>,
-    /// [N] Force of each motor, mean over the interval.
+    /// [N] Force of each motor, mean of the interval.
     pub drive_forces: Vec<f64>,
     /// [N] Largest force in a pin of a chain; 0 without chains.
     pub track_tension: Vec<f64>,
     /// [m, m, rad] Middle between the pins and direction of travel of each shoe.
     pub shoe_poses: Vec<f64>,
-    /// [rad] Angle of the flippers at each end over the chassis, upwards > 0.
+    /// [rad] Angle of the flippers at each end relative to the chassis, upwards > 0.
     pub flipper_angles: Vec<f64>,
-    /// [N m] Torque of their motors, mean over the last step.
+    /// [N m] Torque of their motors, mean of the last step.
     pub flipper_torques: Vec<f64>,
 }
 
 impl Trace {
-    /// Every column, with its entries a sample.
+    /// Every column, with its number of entries per sample.
     fn columns(&mut self, robot: Columns) -> [(&mut Vec<f64>, usize); 18] {
         let Columns {
             drives,
@@ -81,7 +81,7 @@ impl Trace {
 }
 
 impl Columns {
-    /// Bytes of a sample without its contacts.
+    /// Bytes per sample without its contacts.
     pub(crate) fn bytes(self) -> u64 {
         let entries: usize = Trace::default()
             .columns(self)
@@ -92,7 +92,7 @@ impl Columns {
     }
 }
 
-/// Collects samples while a run goes on.
+/// Collects samples during a run.
 pub(crate) struct Recorder<'a> {
     every: u64,
     steps: u64,
@@ -106,7 +106,7 @@ pub(crate) struct Recorder<'a> {
     contact_rows: Rows<'a>,
 }
 
-/// [m/s] Below this the track stands and has no slip.
+/// [m/s] Below this, the track counts as standing and has no slip.
 const STANDS: f64 = 1e-3;
 
 impl<'a> Recorder<'a> {
@@ -146,7 +146,7 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// What was recorded, with what is left of an interval that the run cut short.
+    /// The record, including the interval that the end of the run cut short.
     pub(crate) fn finish(
         mut self,
         simulation: &Simulation,

@@ -1,27 +1,27 @@
-//! What is legal but unlikely to be meant: a size in another unit, an angle in degrees, a field that others overrule.
+//! What is legal but unlikely to be meant: a size in the wrong unit, an angle in degrees, a field without effect.
 //!
-//! Bounds are lengths of the robot itself where they can be, and lie far beyond what anyone builds or drives over.
+//! Where possible, bounds are lengths of the robot itself, and lie far beyond what anyone builds or drives over.
 
 use std::f64::consts::PI;
 
 use super::fields::joined;
 use super::{CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, Terrain, Track};
 
-/// So many times the robot's length is farther than it climbs; so many times a run's way, than it was cut short by.
+/// Obstacles larger than this many robot lengths are doubtful; so is a goal this many times farther than a run gets.
 const FAR: f64 = 3.0;
 
-/// Of a field; nothing is refused for it.
+/// A doubt about a field; the scenario is accepted all the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// Dotted path of the field, for example `terrain.height`.
     pub path: String,
-    /// What was found there.
+    /// The value found there.
     pub value: f64,
-    /// What makes it doubtful, beginning with a verb: "is usually ...".
+    /// Why it is doubtful: "is usually ...".
     pub reason: String,
 }
 
-/// Doubts as they are found.
+/// Collects doubts.
 #[derive(Default)]
 struct Doubts(Vec<Doubt>);
 
@@ -35,7 +35,7 @@ impl Doubts {
         });
     }
 
-    /// Doubts a magnitude beyond what is usual, which is what the words say.
+    /// Doubts a magnitude beyond `most`; `what` says in words what that is.
     fn at_most(&mut self, path: String, value: f64, (most, unit): (f64, &str), what: &str) {
         if value.abs() > most {
             self.add(
@@ -51,14 +51,14 @@ impl Doubts {
             self.add(
                 path,
                 value,
-                "is usually between -3.14 and 3.14 rad, as angles are in radians",
+                "is usually between -3.14 and 3.14 rad, because angles are in radians",
             );
         }
     }
 }
 
 impl Scenario {
-    /// Everything that is doubtful, `to_goal` [m] before its goal; no more than a few comparisons.
+    /// All doubts about a scenario whose goal is `to_goal` [m] away; costs only a few comparisons.
     pub(crate) fn doubts(&self, to_goal: f64) -> Vec<Doubt> {
         let mut doubts = Doubts::default();
         self.robot.add_doubts(&mut doubts);
@@ -97,10 +97,11 @@ impl Scenario {
             return;
         }
         let (time, reach) = (self.duration, fastest * self.duration);
-        let gets = format!("{fastest} m/s gets the robot {reach:.3} m in {time} s");
-        // A run of a few lengths is a short look, and one that ends on a terrain may be cut short, but by less.
+        let gets = format!("{fastest} m/s takes the robot {reach:.3} m in {time} s");
+        // A short run may be just a look, and a run on a ready-made terrain may stop before its goal, but not far
+        // before.
         if reach > FAR * self.robot.length() {
-            let way = format!("it is {to_goal:.3} m to there, and {gets}");
+            let way = format!("it is {to_goal:.3} m away, and {gets}");
             match self.goal {
                 Some(goal) if to_goal > reach => {
                     doubts.add("goal", goal, format!("cannot be reached: {way}"));
@@ -124,7 +125,7 @@ impl Scenario {
 }
 
 impl Robot {
-    /// [m] Of its track.
+    /// [m] Length of its track.
     fn length(&self) -> f64 {
         let o = &self.outline;
         o.axle_distance + o.front_radius + o.rear_radius
@@ -168,17 +169,17 @@ impl Flippers {
         let Some(radius) = line.wheel_radius else {
             return;
         };
-        // The wheels of a line may be a little smaller than what was built, so that they just touch.
+        // Wheels of a line may be a little smaller than the outline, so that they just touch.
         if (radius - self.tip_radius).abs() > 0.1 * self.tip_radius {
             let reason = format!(
-                "has no effect beside {path}.wheel_radius = {radius} m, which all wheels of the arms take"
+                "has no effect, because {path}.wheel_radius = {radius} m sets the radius of all wheels of the arms"
             );
             doubts.add("robot.flippers.tip_radius", self.tip_radius, reason);
         }
     }
 }
 
-/// Wheels that are no part of a track of this size: `radii` of its ends and `length` between its axles.
+/// Doubts wheels that do not fit a track of this size: `radii` of its ends and `length` between its axles.
 fn add_doubts_of_wheels(
     track: &Track,
     path: &str,
@@ -210,7 +211,7 @@ fn add_doubts_of_wheels(
 }
 
 impl Terrain {
-    /// Obstacles that no robot of that length [m] could be sent over.
+    /// Doubts obstacles that no robot of that length [m] could drive over.
     fn add_doubts(&self, path: &str, length: f64, doubts: &mut Doubts) {
         let mut size = |name: &str, value: f64| {
             let what = "three times the robot's length";

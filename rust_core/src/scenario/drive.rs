@@ -8,7 +8,7 @@ use super::fields::{Fields, Range, one_of};
 use super::flippers::ANGLE;
 
 const SPEED: Range = Range::between(-100.0, 100.0, "m/s");
-/// Entries of a schedule at most.
+/// Largest number of entries of a schedule.
 const MOST: usize = 10_000;
 
 /// The commands of a run.
@@ -16,9 +16,9 @@ const MOST: usize = 10_000;
 pub struct Drive {
     /// [m/s] Track speed; positive drives towards +x.
     pub speed: f64,
-    /// [s], [m/s] Times from which other speeds hold, in their order; none keeps the speed.
+    /// [s], [m/s] Increasing times and the speeds that apply from then on; `None` keeps the speed.
     pub schedule: Option<Vec<[f64; 2]>>,
-    /// How the flippers move; none holds them where they start.
+    /// How the flippers move; `None` holds them where they start.
     pub gait: Option<Gait>,
 }
 
@@ -26,31 +26,31 @@ pub struct Drive {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Gait {
-    /// Angles by the clock.
+    /// Angles by a schedule.
     Hold(Hold),
-    /// Up to meet an obstacle, down to lift the chassis over it.
+    /// Reach up to meet an obstacle, sweep down to lift the chassis over it.
     Climb(Climb),
 }
 
-/// Holds the flippers at an angle, at others from given times on.
+/// Holds the flippers at an angle, which a schedule can change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hold {
-    /// [rad] Upwards > 0.
+    /// [rad] Angle relative to the chassis, upwards > 0.
     pub angle: f64,
-    /// [s], [rad] Times from which other angles hold, in their order; none keeps the angle.
+    /// [s], [rad] Increasing times and the angles that apply from then on; `None` keeps the angle.
     pub schedule: Option<Vec<[f64; 2]>>,
 }
 
 /// Angles of the flippers in the phases of a climb.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Climb {
-    /// [rad] Of those at the front over the chassis, until they bear on something.
+    /// [rad] Of the front flippers relative to the chassis, until they bear on something.
     pub reach_angle: f64,
-    /// [rad] Of the same over level ground, from then on until the chassis has come over.
+    /// [rad] Of the front flippers relative to the horizontal, from then on until the chassis is over.
     pub sweep_angle: f64,
-    /// [rad] Of those at the rear over level ground, as long as the chassis is raised.
+    /// [rad] Of the rear flippers relative to the horizontal, as long as the chassis is raised.
     pub push_angle: f64,
-    /// [rad] The chassis is raised beyond this angle.
+    /// [rad] Chassis angle above which the chassis counts as raised.
     pub level_angle: f64,
 }
 
@@ -69,7 +69,7 @@ impl Drive {
         Ok(drive)
     }
 
-    /// No speed beyond that of the drivetrain is commanded.
+    /// Checks that no commanded speed exceeds the drivetrain's.
     pub(crate) fn check(&self, drivetrain: &Drivetrain) -> Result<(), ScenarioError> {
         let limit = drivetrain.max_speed;
         let (path, speed) = self.fastest();
@@ -80,7 +80,7 @@ impl Drive {
         Err(ScenarioError::new(path, speed, rule))
     }
 
-    /// [m/s] The fastest speed that is commanded, in magnitude, with the path of its field.
+    /// [m/s] The commanded speed of largest magnitude, with the path of its field.
     fn fastest(&self) -> (String, f64) {
         let later = self.schedule.iter().flatten().enumerate();
         let later = later.map(|(i, [_, speed])| (format!("drive.schedule[{i}][1]"), *speed));
@@ -116,7 +116,7 @@ impl Gait {
     }
 }
 
-/// Rows of a time [s] and a value, the times rising.
+/// Reads rows of a time [s] and a value, with increasing times.
 fn read_schedule(
     f: &mut Fields,
     value: (&str, Range),
@@ -129,7 +129,7 @@ fn read_schedule(
     for i in 1..rows.len() {
         if rows[i][0] <= rows[i - 1][0] {
             let rule = format!(
-                "must be later than the entry before it, {} s",
+                "must be later than the previous entry, {} s",
                 rows[i - 1][0]
             );
             return Err(f.error(&format!("schedule[{i}][0]"), rows[i][0], rule));

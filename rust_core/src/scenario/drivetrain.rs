@@ -5,26 +5,26 @@ use serde::Serialize;
 use super::fields::{Fields, Range};
 use super::{ScenarioError, TrackOutline};
 
-/// What drives the track, and within which limits.
+/// What drives the tracks, and its limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Drivetrain {
     /// [m/s] Largest track speed.
     pub max_speed: f64,
-    /// [m/s^2] Largest rate at which the commanded speed grows in magnitude.
+    /// [m/s^2] Largest rate at which the commanded speed rises in magnitude.
     pub max_acceleration: f64,
     /// [m/s^2] Largest rate at which the commanded speed falls in magnitude.
     pub max_deceleration: f64,
     /// [N m] Largest torque of one sprocket at the belt radius; the robot has two.
     pub max_torque: f64,
-    /// Who shares the torque.
+    /// How the torque is shared.
     pub torque_sharing: TorqueSharing,
 }
 
-/// How the torque of a track is shared by its wheels.
+/// How the wheels of a track share its torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TorqueSharing {
-    /// One motor a track: all surfaces keep one speed, the sum of their traction is limited.
+    /// One motor per track: all surfaces have one speed, and the sum of their traction is limited.
     Track,
     /// Every wheel has its own servo and an equal share of the torque.
     Wheel,

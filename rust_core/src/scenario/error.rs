@@ -15,7 +15,7 @@ pub struct ScenarioError {
 }
 
 impl ScenarioError {
-    #[allow(clippy::needless_pass_by_value)] // numbers and texts come as they are at hand
+    #[allow(clippy::needless_pass_by_value)] // callers pass numbers and strings alike
     pub(crate) fn new(
         path: impl Into<String>,
         value: impl ToString,
@@ -29,7 +29,7 @@ impl ScenarioError {
     }
 }
 
-/// Long values (point lists) would bury the message.
+/// Shortens long values, such as lists of points, which would bury the message.
 fn shorten(text: &str) -> String {
     const LONGEST: usize = 80;
     if text.chars().count() <= LONGEST {

@@ -1,4 +1,4 @@
-//! Reads one JSON object field by field and names the path, the value and the rule of what is wrong.
+//! Reads one JSON object field by field; an error names path, value and rule.
 
 use serde_json::{Map, Value};
 
@@ -14,7 +14,7 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// Everything above `low`, up to and including `high`.
+    /// Above `low`, up to and including `high`.
     pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
             low,
@@ -57,10 +57,10 @@ impl Range {
     }
 }
 
-/// [kg] Masses a crawler and its arms can have.
+/// [kg] Plausible masses of a tracked robot and its arms.
 pub(super) const MASS: Range = Range::between(1e-3, 1e6, "kg");
 
-/// One JSON object being read; every field is asked for once, the rest are unknown.
+/// A JSON object being read: every known field is read once; the others are errors.
 pub(crate) struct Fields<'a> {
     path: String,
     map: &'a Map<String, Value>,
@@ -99,7 +99,10 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn value(&mut self, name: &'static str) -> Result<&'a Value, ScenarioError> {
-        self.known.push(name);
+        // A field is read twice where null has a meaning of its own.
+        if !self.known.contains(&name) {
+            self.known.push(name);
+        }
         let map = self.map;
         map.get(name)
             .ok_or_else(|| ScenarioError::new(self.path(name), "nothing", "must be given"))
@@ -158,13 +161,13 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
-        /// Characters of a name.
+        /// Largest number of characters.
         const LONGEST: usize = 1000;
 
         let value = self.value(name)?;
         let text = value
             .as_str()
-            .ok_or_else(|| self.error(name, value, "must be a text"))?;
+            .ok_or_else(|| self.error(name, value, "must be a string"))?;
         if text.chars().nth(LONGEST).is_some() {
             let rule = format!("must have at most {LONGEST} characters");
             return Err(self.error(name, text, rule));
@@ -172,7 +175,7 @@ impl<'a> Fields<'a> {
         Ok(text)
     }
 
-    /// One of a closed set of names.
+    /// Reads one of a fixed set of names.
     pub(crate) fn choice<T: Copy>(
         &mut self,
         name: &'static str,
@@ -197,7 +200,7 @@ impl<'a> Fields<'a> {
         row(&self.path(name), value, [("x", range), ("y", range)])
     }
 
-    /// A list of rows of numbers, named for the message; the path of a wrong one has its index, from 0.
+    /// Reads a list of rows of numbers; the path of an error includes the index, from 0.
     pub(crate) fn rows<const N: usize>(
         &mut self,
         name: &'static str,
@@ -223,7 +226,7 @@ impl<'a> Fields<'a> {
             .collect()
     }
 
-    /// A list of points.
+    /// Reads a list of points.
     pub(crate) fn points(
         &mut self,
         name: &'static str,
@@ -238,7 +241,7 @@ impl<'a> Fields<'a> {
         Fields::new(&self.path(name), value)
     }
 
-    /// Refuses every field that was not asked for.
+    /// Returns an error if the object has an unknown field.
     pub(crate) fn finish(self) -> Result<(), ScenarioError> {
         match self
             .map
@@ -250,8 +253,8 @@ impl<'a> Fields<'a> {
                 self.path(name),
                 value,
                 format!(
-                    "must not be given: {}",
-                    one_of(Some(name), &self.known).replacen("must be", "the fields are", 1)
+                    "must be a known field: {}",
+                    one_of(Some(name), &self.known).replacen("must be one of ", "", 1)
                 ),
             )),
         }
@@ -280,7 +283,7 @@ fn row<const N: usize>(
 }
 
 fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioError> {
-    // Non-finite numbers do not exist in JSON and cross as text, so that the field can be named.
+    // JSON has no non-finite numbers; they are passed as strings, so that the error can name the field.
     let x = match value {
         Value::String(text) if matches!(text.as_str(), "NaN" | "Infinity" | "-Infinity") => {
             return Err(ScenarioError::new(path, text, range.rule()));
@@ -292,16 +295,16 @@ fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioErro
     if !range.holds(x) {
         return Err(ScenarioError::new(path, value, range.rule()));
     }
-    // Subnormal inputs are typing errors or overflow elsewhere; they would lose digits silently.
+    // Subnormal inputs are surely mistakes, and would silently lose digits.
     if x.is_subnormal() {
-        let rule = format!("must be 0 or at least {:e} in size", f64::MIN_POSITIVE);
+        let rule = format!("must be 0 or at least {:e} in magnitude", f64::MIN_POSITIVE);
         return Err(ScenarioError::new(path, value, rule));
     }
-    // There is one zero: -0.0 equals it, and has to be the same scenario and the same motion.
+    // Turns -0.0 into 0.0: equal numbers must make the same scenario and the same motion.
     Ok(x + 0.0)
 }
 
-/// "must be one of ...", with the nearest name where there is one.
+/// "must be one of ...", with the nearest name if there is one.
 pub(crate) fn one_of(given: Option<&str>, names: &[&str]) -> String {
     let list = names.join(", ");
     let nearest = given.and_then(|g| {
@@ -333,7 +336,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Path of a field of the object at a path.
+/// Path of a field of the object at `path`.
 pub(super) fn joined(path: &str, name: &str) -> String {
     if path.is_empty() {
         name.to_owned()

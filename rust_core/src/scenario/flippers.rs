@@ -7,29 +7,29 @@ use super::fields::{Fields, MASS, Range};
 use super::outline::{LENGTH, TrackOutline};
 use super::track::Track;
 
-/// [rad] Of an arm over the chassis: a turn either way.
+/// [rad] Angle of an arm relative to the chassis: up to a full turn either way.
 pub(super) const ANGLE: Range = Range::between(-6.3, 6.3, "rad");
 
-/// Arms of one form at one end of the robot or at both; one on either side of it.
+/// Identical arms at one end of the robot or at both, one on each side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Flippers {
-    /// [m] From the pivot to the axle at the tip.
+    /// [m] Distance from the pivot to the axle at the tip.
     pub length: f64,
-    /// [m] Radius about the pivot, to the grouser tips.
+    /// [m] Radius at the pivot, measured to the grouser tips.
     pub root_radius: f64,
-    /// [m] Radius about the axle at the tip, to the grouser tips.
+    /// [m] Radius at the tip, measured to the grouser tips.
     pub tip_radius: f64,
-    /// [kg] Mass of one arm, spread evenly from the pivot to the axle at the tip.
+    /// [kg] Mass of one arm, spread evenly between pivot and tip axle.
     pub mass: f64,
-    /// Where they are.
+    /// The ends of the robot that have arms.
     pub ends: Ends,
     /// [rad] Angle of the arms at time 0: 0 points away from the robot, upwards > 0.
     pub angle: f64,
-    /// [rad/s] Fastest turn over the chassis.
+    /// [rad/s] Largest turning rate relative to the chassis.
     pub rate_limit: f64,
     /// [N m] Largest torque of the motor of one arm.
     pub torque_limit: f64,
-    /// How their tracks are modelled; none takes the robot's model.
+    /// How their tracks are modelled; `None` takes the robot's model.
     pub track: Option<Track>,
 }
 
@@ -41,7 +41,7 @@ pub enum Ends {
     Front,
     /// The rear.
     Rear,
-    /// Both of them.
+    /// Both ends.
     Both,
 }
 
@@ -87,14 +87,14 @@ impl Flippers {
             },
         };
         if (flippers.root_radius - flippers.tip_radius).abs() >= flippers.length {
-            let rule = "must differ from root_radius by less than the length: one end would swallow the other";
+            let rule = "must differ from root_radius by less than the length: otherwise one end would enclose the other";
             return Err(f.error("tip_radius", flippers.tip_radius, rule));
         }
         f.finish()?;
         Ok(flippers)
     }
 
-    /// The ends that have them, the front first.
+    /// The ends that have arms, the front first.
     pub(crate) fn ends(&self) -> impl Iterator<Item = End> + Clone {
         let ends: &[End] = match self.ends {
             Ends::Front => &[End::Front],
@@ -104,7 +104,7 @@ impl Flippers {
         ends.iter().copied()
     }
 
-    /// The side view of the track of an arm at an end, its outline's frame midway between its axles.
+    /// Outline of the track of an arm at an end, in a frame midway between its axles.
     pub(crate) fn outline(&self, end: End, robot: &TrackOutline) -> TrackOutline {
         let (rear_radius, front_radius) = match end {
             End::Front => (self.root_radius, self.tip_radius),
@@ -118,7 +118,7 @@ impl Flippers {
         }
     }
 
-    /// How the track of an arm is modelled.
+    /// The track model of an arm.
     pub(crate) fn track_model(&self, robot: &Track) -> Track {
         self.track.clone().unwrap_or_else(|| match robot {
             Track::Segmental(_) => Track::GrouserBelt(super::GrouserBeltTrack {

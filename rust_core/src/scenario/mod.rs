@@ -1,4 +1,4 @@
-//! What is simulated: plain data with one set of rules, read from JSON and written back without losing a bit.
+//! What is simulated: plain data with one set of rules, read from JSON and written back exactly.
 
 mod doubts;
 mod drive;
@@ -40,7 +40,7 @@ pub use wheel::{GearWheel, Wheel};
 /// The only version of the format so far.
 pub const SCHEMA: u32 = 1;
 
-/// One run, complete: the same scenario and build give the same bits.
+/// Everything that defines a run: the same scenario and build give the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scenario {
     /// Version of the format.
@@ -53,25 +53,25 @@ pub struct Scenario {
     pub drive: Drive,
     /// How the robot stands at time 0.
     pub start: Start,
-    /// [m] The x that must be left behind; none takes the terrain's.
+    /// [m] The x that the whole robot must pass; `None` takes the terrain's.
     pub goal: Option<f64>,
-    /// [m/s^2] Gravity, downwards.
+    /// [m/s^2] Acceleration of gravity, downwards.
     pub gravity: f64,
     /// [s] Longest simulated time.
     pub duration: f64,
     /// How the equations are solved.
     pub solver: Solver,
-    /// When a stop counts as one.
+    /// When a run ends, and what counts as a stop.
     pub criteria: SeizureCriteria,
 }
 
 impl Scenario {
-    /// The one canonical text of this scenario: fixed order of fields, shortest exact numbers.
+    /// The canonical JSON of this scenario: fields in a fixed order, shortest exact numbers.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
     }
 
-    /// The identity of a run: SHA-256 of the canonical JSON, in hexadecimal.
+    /// The identity of a scenario: SHA-256 of the canonical JSON, in hexadecimal.
     pub fn identity(&self) -> String {
         let digest = Sha256::digest(self.to_json().as_bytes());
         digest
@@ -81,13 +81,13 @@ impl Scenario {
 
     /// Number of steps of the whole run; a remainder counts as one more step.
     pub fn step_count(&self) -> u64 {
-        // The tolerance takes 15 s / 1 ms as 15,000 steps although neither number is exact.
+        // The tolerance makes 15 s / 1 ms 15,000 steps, although 1 ms is not exact in binary.
         (self.duration / self.solver.time_step - 1e-9)
             .ceil()
             .max(0.0) as u64
     }
 
-    /// Reads the tree; the rules that need the built robot and ground are those of `check`.
+    /// Reads the fields; rules that need the built robot and ground are checked elsewhere.
     pub(crate) fn read(value: &Value) -> Result<Self, ScenarioError> {
         let mut f = Fields::new("", value)?;
         let schema = f.integer("schema", SCHEMA, SCHEMA)?;

@@ -1,4 +1,4 @@
-//! The robot as it is built: masses, outline, belly, drivetrain, and how its track is modelled.
+//! The robot as built, with masses, outline, belly and drivetrain, and the model of its track.
 
 use serde::Serialize;
 
@@ -11,26 +11,26 @@ use super::track::Track;
 
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
-/// A tracked robot with both its tracks, arms at angle 0.
+/// A tracked robot with both tracks and with its arms at angle 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Robot {
-    /// Name for tables and plots.
+    /// Name shown in tables and plots.
     pub name: String,
-    /// [kg] Total mass, tracks included.
+    /// [kg] Total mass, including tracks and arms.
     pub mass: f64,
     /// [m] Centre of mass in the chassis frame.
     pub center_of_mass: [f64; 2],
     /// [kg m^2] Moment of inertia of the whole robot about its centre of mass.
     pub moment_of_inertia: f64,
-    /// [kg] Mass of both tracks together, all of it moving at belt speed.
+    /// [kg] Mass of both tracks together, all of it moving at track speed.
     pub track_mass: f64,
     /// The side view of the track.
     pub outline: TrackOutline,
-    /// [m] Convex polygon in the chassis frame, counter-clockwise; none if the body never touches.
+    /// [m] Convex polygon in the chassis frame, counter-clockwise; `None` if it never touches.
     pub belly: Option<Vec<[f64; 2]>>,
     /// Pivoting arms.
     pub flippers: Option<Flippers>,
-    /// [m] Lateral distance of the tracks.
+    /// [m] Lateral distance between the tracks.
     pub gauge: f64,
     /// Motors and their limits.
     pub drivetrain: Drivetrain,
@@ -67,13 +67,13 @@ impl Robot {
         Ok(robot)
     }
 
-    /// Rules that join several fields.
+    /// Checks rules that involve several fields.
     fn check(&self, f: &Fields) -> Result<(), ScenarioError> {
         if self.track_mass >= self.mass {
             return Err(f.error(
                 "track_mass",
                 self.track_mass,
-                format!("must be below robot.mass = {} kg", self.mass),
+                format!("must be less than robot.mass = {} kg", self.mass),
             ));
         }
         let o = &self.outline;
@@ -83,13 +83,13 @@ impl Robot {
             return Err(f.error(
                 "moment_of_inertia",
                 self.moment_of_inertia,
-                format!("must exceed track_mass x radius^2 = {circulating} kg m^2, the part that turns with the track"),
+                format!("must exceed track_mass x radius^2 = {circulating} kg m^2, the inertia of the moving track"),
             ));
         }
         Ok(())
     }
 
-    /// Rules that join it with its flippers.
+    /// Checks rules that involve robot and flippers.
     fn check_flippers(&self, flippers: &Flippers) -> Result<(), ScenarioError> {
         let error = |field: &str, value: f64, rule: String| {
             let path = format!("robot.flippers.{field}");
@@ -104,7 +104,7 @@ impl Robot {
         let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
         if of_arms + self.track_mass >= self.mass {
             let rule = format!(
-                "must leave a chassis: {of_arms} kg of arms and robot.track_mass exceed robot.mass = {} kg",
+                "must leave mass for the chassis: arms ({of_arms} kg) and robot.track_mass together reach robot.mass = {} kg",
                 self.mass
             );
             return error("mass", flippers.mass, rule);
@@ -119,13 +119,13 @@ impl Robot {
         let is_force = |track: &Track| matches!(track, Track::Force(_));
         match &flippers.track {
             None if matches!(self.track, Track::Hybrid(_)) => {
-                refused("must be given: the robot's own has its wheels placed by hand")
+                refused("must be given, because the robot's own track has wheels placed by hand")
             }
             Some(Track::Segmental(_)) => refused(
-                "must not be segmental: chains run round the chassis only; grouser_belt comes nearest",
+                "must not be segmental, because chains run round the chassis only (grouser_belt comes closest)",
             ),
             Some(track) if is_force(track) != is_force(&self.track) => {
-                refused("must be a force track where robot.track is one, and only there")
+                refused("must be a force track if robot.track is one, and only then")
             }
             Some(track) => track.check(self.drivetrain.torque_sharing),
             None => Ok(()),
@@ -133,7 +133,7 @@ impl Robot {
     }
 }
 
-/// A convex counter-clockwise polygon of non-zero area.
+/// Reads a convex counter-clockwise polygon of non-zero area.
 fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
     const MOST: usize = 64;
     if f.value("belly")?.is_null() {
@@ -160,13 +160,13 @@ fn read_belly(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
             ));
         }
     }
-    // Left turns alone may still add up to more than one round, as in a pentagram.
+    // A polygon with left turns only may still go round more than once, as a pentagram does.
     let is_up = |i: usize| {
         let ([ax, ay], [bx, by]) = (points[i % n], points[(i + 1) % n]);
         (by, bx) > (ay, ax)
     };
     if (0..n).filter(|i| !is_up(*i) && is_up(i + 1)).count() != 1 {
-        let rule = "must be a convex counter-clockwise polygon: this one goes round more than once";
+        let rule = "must be a convex counter-clockwise polygon, which goes round only once";
         return Err(f.error("belly", format!("{n} points"), rule));
     }
     Ok(Some(points))

@@ -1,4 +1,4 @@
-//! Start, solver and criteria: the scenario's small parts.
+//! Start, solver and criteria: the small parts of a scenario.
 
 use serde::Serialize;
 
@@ -10,86 +10,86 @@ use super::{Robot, ScenarioError, Track};
 pub struct Start {
     /// [m] From the robot's foremost point to the first edge at or beyond x = 0.
     pub approach: f64,
-    /// [m] Common advance of all wheels or of the belt.
+    /// [m] Initial advance of all wheels or of the belt.
     pub track_phase: f64,
-    /// [rad] Chassis angle, nose up.
+    /// [rad] Chassis angle, nose up > 0.
     pub angle: f64,
 }
 
-/// Who finds the contacts.
+/// How contacts are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// Our own: outlines against the faces and corners of the lane.
+    /// Own exact geometry: outlines against the faces and corners of the lane.
     Own,
-    /// The engine's geometric queries on one oriented polyline a lane.
+    /// The engine's geometric queries, on one oriented polyline per lane.
     Reference,
 }
 
 /// How the equations of motion are solved; docs/decisions says how the defaults were found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solver {
-    /// Who finds the contacts.
+    /// How contacts are found.
     pub contact: ContactMethod,
-    /// [s] Time between two collision checks.
+    /// [s] Time between two searches for contacts.
     pub time_step: f64,
-    /// Substeps of a step.
+    /// Substeps per step.
     pub substeps: u32,
-    /// Most rounds in search of what all constraints of half a substep agree on, each with guesses and a
-    /// descent; none takes the solver's own. A chain of shoes has one round of its own kind, and so none to limit.
+    /// Largest number of rounds in the search for forces that satisfy all constraints of half a substep; each is a
+    /// few guesses and a descent. `None` takes the solver's own. A chain of shoes always has one round of its own kind.
     pub iterations: Option<u32>,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,
     /// Damping ratio of the contact softness.
     pub contact_damping_ratio: f64,
-    /// [m/s] Fastest push out of a penetration.
+    /// [m/s] Largest speed at which a penetration is pushed out.
     pub max_push_speed: f64,
-    /// [m] Contacts are looked for up to this gap.
+    /// [m] Gap up to which contacts are searched for.
     pub prediction_distance: f64,
 }
 
-/// When a run ends, and when a stop counts as one.
+/// When a run ends, and what counts as a stop.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SeizureCriteria {
-    /// [s] Shortest time without progress that is a stop.
+    /// [s] Shortest time without progress that counts as a stop.
     pub stop_window: f64,
     /// Grouser pitches at the commanded speed that must pass without progress.
     pub stop_pitches: f64,
     /// Share of the commanded distance below which there is no progress.
     pub stop_progress: f64,
-    /// [m] Largest change of pose of a stationary state.
+    /// [m] Largest change of pose that still counts as stationary.
     pub stationary_distance: f64,
-    /// Windows for which a stationary state must last to end the run early.
+    /// Stop windows for which a state must be stationary to end the run early.
     pub stationary_windows: u32,
-    /// [s] Time for which the goal must be held.
+    /// [s] How long the robot must stay beyond the goal.
     pub clear_time: f64,
-    /// [rad] Largest angle between chassis and ground at the goal.
+    /// [rad] Largest angle between chassis and ground at which the goal counts.
     pub clear_angle: f64,
     /// [rad] Chassis angle at which the robot has tipped over.
     pub tip_over_angle: f64,
-    /// [m] An edge inside the envelope of the track is an intrusion from this depth.
+    /// [m] Depth inside the envelope of the track from which ground is an intrusion.
     pub intrusion_depth: f64,
-    /// Share of the weight from which an intrusion is loaded.
+    /// Share of the weight from which an intrusion counts as loaded.
     pub intrusion_load: f64,
     /// Share of the weight on the belly from which a stop without a seizure is a hang-up.
     pub belly_load: f64,
-    /// Share of the commanded speed from which a surface slides on the ground, or a drive turns.
+    /// Share of the commanded speed from which a surface slides, or a drive turns.
     pub sliding_speed: f64,
-    /// Share of the torque limit from which a motor is at its limit.
+    /// Share of the torque limit from which a motor counts as at its limit.
     pub torque_limit: f64,
     /// [m] A robot that moves to and fro by this much during a stop window is cycling.
     pub cycling_distance: f64,
-    /// Share of the weight that an equilibrium of a stationary state may leave unbalanced.
+    /// Share of the weight that may stay unbalanced in the equilibrium of a stationary state.
     pub imbalance: f64,
-    /// The same for the means of a state that is not stationary.
+    /// The same for the mean forces of a state that is not stationary.
     pub mean_imbalance: f64,
-    /// Share of the commanded distance from which a robot creeps.
+    /// Share of the commanded distance from which the robot counts as creeping.
     pub creep_from: f64,
-    /// Share of the commanded distance up to which a robot creeps.
+    /// Share of the commanded distance up to which the robot counts as creeping.
     pub creep_to: f64,
-    /// [m] Advance that counts as getting away from a stop.
+    /// [m] Advance that counts as escaping from a stop.
     pub escape_distance: f64,
-    /// [s] Time that a closed belt is given to get away from a stop.
+    /// [s] Time that a closed belt has to escape from a stop.
     pub escape_time: f64,
 }
 
@@ -130,12 +130,12 @@ impl Solver {
 }
 
 impl Solver {
-    /// Whether it suits a robot.
+    /// Checks that it suits a robot.
     pub(crate) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
         let is_chain = matches!(robot.track, Track::Segmental(_));
         match self.iterations {
             Some(given) if is_chain => {
-                let rule = "must not be given with a chain of shoes, whose solves have one round of at most 16 steps";
+                let rule = "must not be given for a chain of shoes, whose solver always takes one round of at most 16 steps";
                 Err(ScenarioError::new("solver.iterations", given, rule))
             }
             _ => Ok(()),

@@ -1,17 +1,17 @@
-//! The ground as the user describes it: parametric, left to right, the obstacle beginning at x = 0.
+//! The ground as the user describes it: from left to right, with the obstacle beginning at x = 0.
 
 use serde::Serialize;
 
 use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
 
-/// Largest number of points of one profile; 100,000 build in well under a second.
+/// Largest number of points of one profile; 100,000 are built in well under a second.
 pub const MAX_POINTS: usize = 200_000;
 
 const FRICTION: Range = Range::between(0.0, 100.0, "");
 const EDGE_RADIUS: Range = Range::between(0.0, 10.0, "m");
 const HEIGHT: Range = Range::above(0.0, 100.0, "m");
-/// 80 degrees: beyond, a barrier lies along the track.
+/// 80 degrees; with more, a barrier would lie along the track.
 const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
 const LENGTH: Range = Range::between(1e-3, 1e4, "m");
 
@@ -21,7 +21,7 @@ const LENGTH: Range = Range::between(1e-3, 1e4, "m");
 pub enum Terrain {
     /// Level ground.
     Flat {
-        /// [m] Where the goal lies.
+        /// [m] Distance from x = 0 to the goal.
         length: f64,
         /// Coulomb friction with the robot.
         friction: f64,
@@ -39,7 +39,7 @@ pub enum Terrain {
     Ramp {
         /// [rad] Angle of the slope.
         angle: f64,
-        /// [m] Horizontal extent of the slope.
+        /// [m] Horizontal length of the slope.
         length: f64,
         /// [m] Radius of the convex edge; 0 is sharp.
         edge_radius: f64,
@@ -50,7 +50,7 @@ pub enum Terrain {
     Barrier {
         /// [m] Height.
         height: f64,
-        /// [m] Extent along x.
+        /// [m] Thickness along x.
         thickness: f64,
         /// [m] Radius of the convex edges; 0 is sharp.
         edge_radius: f64,
@@ -70,7 +70,7 @@ pub enum Terrain {
     },
     /// A trench with vertical walls, from x = 0.
     Gap {
-        /// [m] Extent along x.
+        /// [m] Width along x.
         width: f64,
         /// [m] Depth.
         depth: f64,
@@ -83,9 +83,9 @@ pub enum Terrain {
     Stairs {
         /// Number of steps.
         count: u32,
-        /// [m] Height of each.
+        /// [m] Height of each step.
         rise: f64,
-        /// [m] Extent of each along x.
+        /// [m] Depth of each step along x.
         run: f64,
         /// [m] Radius of the convex edges; 0 is sharp.
         edge_radius: f64,
@@ -99,13 +99,13 @@ pub enum Terrain {
         /// Coulomb friction with the robot.
         friction: f64,
     },
-    /// A barrier whose front face is turned about the vertical: the tracks meet it one after the other.
+    /// A barrier whose front face is turned about the vertical, so that the tracks meet it one after the other.
     DiagonalBarrier {
-        /// [rad] Turn, counter-clockwise seen from above: the left track meets it first if above 0.
+        /// [rad] Turn, counter-clockwise seen from above; above 0 the left track meets it first.
         yaw: f64,
         /// [m] Height.
         height: f64,
-        /// [m] Extent across its front face.
+        /// [m] Thickness at right angles to its front face.
         thickness: f64,
         /// [m] Radius of the convex edges; 0 is sharp.
         edge_radius: f64,
@@ -114,11 +114,11 @@ pub enum Terrain {
     },
     /// Square posts of random heights from x = 0, a row under each track.
     RandomStepfield(Stepfield),
-    /// A profile of the user's own.
+    /// A user-defined profile.
     Points {
         /// [m] Points (x, y) from left to right or right to left; vertical faces are allowed.
         points: Vec<[f64; 2]>,
-        /// [m] The x that must be left behind.
+        /// [m] The x that the whole robot must pass.
         goal: f64,
         /// [m] Radius of every convex edge; 0 is sharp.
         edge_radius: f64,
@@ -131,12 +131,12 @@ pub enum Terrain {
         left: Box<Terrain>,
         /// Under the right track.
         right: Box<Terrain>,
-        /// Under the belly; none takes the upper envelope of the two.
+        /// Under the belly; `None` takes the higher of the two.
         middle: Option<Box<Terrain>>,
     },
 }
 
-/// Where the high posts of a field stand.
+/// Where the high posts of a field are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldPattern {
@@ -144,30 +144,30 @@ pub enum FieldPattern {
     Flat,
     /// On a ridge across the field.
     Hill,
-    /// On a ridge that lies askew: sooner under the left track.
+    /// On an oblique ridge, met first by the left track.
     Diagonal,
 }
 
 /// A random step field (Jacoff et al. 2008).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stepfield {
-    /// Of the heights.
+    /// Seed of the heights.
     pub seed: u32,
-    /// Where the high posts stand.
+    /// Where the high posts are.
     pub pattern: FieldPattern,
     /// Posts in a row.
     pub posts: u32,
-    /// [m] Side of a post.
+    /// [m] Side length of a post.
     pub post: f64,
-    /// [m] Height of a level.
+    /// [m] Height of one level.
     pub rise: f64,
-    /// Levels above the ground.
+    /// Number of levels above the ground.
     pub levels: u32,
-    /// [m] Height of a barrier across its middle; 0 is none.
+    /// [m] Height of a barrier across its middle; 0 for none.
     pub barrier_height: f64,
-    /// [m] Extent of that barrier across its front face.
+    /// [m] Thickness of that barrier at right angles to its front face.
     pub barrier_thickness: f64,
-    /// [rad] Its turn, as that of a diagonal barrier.
+    /// [rad] Turn of that barrier, as for a diagonal barrier.
     pub barrier_yaw: f64,
     /// [m] Radius of the convex edges; 0 is sharp.
     pub edge_radius: f64,
@@ -280,7 +280,7 @@ impl Terrain {
             Self::RandomStepfield(_) => "random_stepfield",
             _ => return Ok(Box::new(lane)),
         };
-        Err(f.error(name, lanes, "must be a terrain of one lane"))
+        Err(f.error(name, lanes, "must be a terrain with a single profile"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! From JSON text to its tree, without losing anything in silence: every key once, every number as it is written.
+//! Parses JSON text strictly, so that nothing gets lost silently: every key once, every number exactly as written.
 
 use serde::Deserializer;
 use serde::de::{MapAccess, Visitor};
@@ -8,17 +8,17 @@ use serde_json::{Error, Map, Value, from_str};
 use super::ScenarioError;
 use super::fields::joined;
 
-/// Objects and lists within each other at most; a scenario has six. Each level is read once more.
+/// Deepest nesting of objects and lists; a scenario has six levels. Each level is parsed once more.
 const DEEPEST: usize = 12;
 
-/// Reads a text; an error has the path of what is wrong.
+/// Parses a text; an error has the path of the faulty value.
 pub(crate) fn parse(text: &str) -> Result<Value, ScenarioError> {
     let whole: &RawValue = from_str(text)
         .map_err(|e| ScenarioError::new("scenario", text, format!("must be JSON ({e})")))?;
     tree(&Place::Root, whole, 0)
 }
 
-/// Where a value is; written out only for an error, for there may be hundreds of thousands.
+/// Where a value is; turned into a path only for an error, because there may be hundreds of thousands.
 enum Place<'a> {
     Root,
     Field(&'a Place<'a>, &'a str),
@@ -45,7 +45,7 @@ impl Place<'_> {
 
 fn tree(place: &Place, raw: &RawValue, depth: usize) -> Result<Value, ScenarioError> {
     let text = raw.get();
-    // What is read here has been found to be JSON before, but for the half of a character.
+    // The text is known to be JSON; only half of a surrogate pair can still be wrong.
     let not_unicode = |_: Error| place.error(raw, "must be valid Unicode");
     let first = text.as_bytes().first().copied().unwrap_or_default();
     if matches!(first, b'{' | b'[') && depth == DEEPEST {
@@ -58,7 +58,7 @@ fn tree(place: &Place, raw: &RawValue, depth: usize) -> Result<Value, ScenarioEr
             for (name, value) in entries(text).map_err(not_unicode)? {
                 let inner = Place::Field(place, &name);
                 if map.contains_key(&name) {
-                    return Err(inner.error(value, "must be given once"));
+                    return Err(inner.error(value, "must be given only once"));
                 }
                 let value = tree(&inner, value, depth + 1)?;
                 map.insert(name, value);
@@ -82,13 +82,13 @@ fn tree(place: &Place, raw: &RawValue, depth: usize) -> Result<Value, ScenarioEr
     }
 }
 
-/// Whether a number is written as 0: one that is not may be read as 0 if it lies below every float64.
+/// Whether a number is written as 0; another one may be read as 0 if it is too small for a float64.
 fn is_zero(number: &str) -> bool {
     let digits = number.split(['e', 'E']).next().unwrap_or_default();
     !digits.contains(|c| matches!(c, '1'..='9'))
 }
 
-/// The fields of an object as they are written, also those that are written twice.
+/// The fields of an object as written, including those that occur twice.
 fn entries(text: &str) -> Result<Vec<(String, &RawValue)>, Error> {
     struct Entries;
     impl<'de> Visitor<'de> for Entries {

@@ -1,4 +1,4 @@
-//! How the track is modelled: one variant a family of the literature.
+//! How the track is modelled: one variant for each family of the literature.
 
 use serde::Serialize;
 
@@ -7,9 +7,9 @@ use super::drivetrain::TorqueSharing;
 use super::fields::{Fields, Range, one_of};
 use super::wheel::{MAX_GROUSERS, Wheel};
 
-/// Most wheels of one side.
+/// Largest number of wheels per side.
 pub(crate) const MAX_WHEELS: u32 = 200;
-/// Most shoes of a chain.
+/// Largest number of shoes of a chain.
 pub(crate) const MAX_SHOES: u32 = 400;
 const PLATE: Range = Range::between(1e-4, 1.0, "m");
 const PRE_TENSION: Range = Range::between(1e-3, 1e6, "N");
@@ -18,7 +18,7 @@ const DAMPING: Range = Range::between(0.0, 1e9, "N s/m");
 const RADIUS: Range = Range::between(1e-3, 100.0, "m");
 const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
-/// A model of the same built track.
+/// A track model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Track {
@@ -26,7 +26,7 @@ pub enum Track {
     Line(LineOfWheels),
     /// Small wheels all round the outline.
     Circumferential(CircumferentialWheels),
-    /// Wheels of varying sizes, placed by hand.
+    /// Wheels of various sizes, placed by hand.
     Hybrid(HybridWheels),
     /// A smooth closed belt whose surface moves along the outline.
     Belt(BeltTrack),
@@ -41,31 +41,31 @@ pub enum Track {
 /// Wheels on one straight line, overlapping, touching or spaced.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LineOfWheels {
-    /// Number of wheels a side, the end axles included.
+    /// Number of wheels per side, including those at the end axles.
     pub count: u32,
-    /// [m] Radius of every wheel; none takes the outline's, linear between unequal ends.
+    /// [m] Radius of every wheel; `None` takes the outline's, linear between unequal ends.
     pub wheel_radius: Option<f64>,
-    /// The wheel itself.
+    /// The shape of each wheel.
     pub wheel: Wheel,
 }
 
-/// Equal wheels inside the outline, each touching it, at equal distances all the way round.
+/// Equal wheels inside the outline, each touching it, evenly spaced all the way round.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CircumferentialWheels {
-    /// Number of wheels a side.
+    /// Number of wheels per side.
     pub count: u32,
-    /// [m] Radius of every wheel; none packs them tightly, so that neighbours touch.
+    /// [m] Radius of every wheel; `None` packs them tightly, so that neighbours touch.
     pub wheel_radius: Option<f64>,
-    /// The wheel itself.
+    /// The shape of each wheel.
     pub wheel: Wheel,
 }
 
-/// Wheels of varying sizes at places of their own.
+/// Wheels of various sizes at given places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HybridWheels {
     /// [m] Centre (x, y) in the chassis frame and radius of each wheel, in the order of eq. (1).
     pub placements: Vec<[f64; 3]>,
-    /// The wheel itself.
+    /// The shape of each wheel.
     pub wheel: Wheel,
 }
 
@@ -76,31 +76,30 @@ pub struct BeltTrack {}
 /// A belt whose grousers travel with it (Okada et al. 2020).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GrouserBeltTrack {
-    /// Grousers of a belt; none takes the whole number that comes nearest to the outline's pitch.
+    /// Grousers per belt; `None` takes the whole number that comes closest to the outline's pitch.
     pub grouser_count: Option<u32>,
 }
 
 /// Rigid shoes linked by pins into a closed chain (section 2.3 of the paper).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SegmentalTrack {
-    /// Shoes of a chain; none takes the whole number that comes nearest to the outline's pitch.
+    /// Shoes per chain; `None` takes the whole number that comes closest to the outline's pitch.
     pub shoe_count: Option<u32>,
     /// What they run on, and what drives them.
     pub mechanism: ChainMechanism,
-    /// Form of the shoes.
+    /// Shape of the shoes.
     pub shoe_shape: ShoeShape,
-    /// [m] Thickness of the plates; none takes a sixteenth of the pitch.
+    /// [m] Thickness of the plates; `None` takes 1/16 of the pitch.
     pub plate_thickness: Option<f64>,
-    /// [N] Force of the tensioner of one track; none takes a fortieth of the weight.
+    /// [N] Force of the tensioner of one track; `None` takes 1/40 of the weight.
     pub pre_tension: Option<f64>,
-    /// [N/m] Its stiffness; none lets a tenth of the pitch take all its force.
+    /// [N/m] Its stiffness; `None`: a tenth of the pitch takes up its whole force.
     pub tensioner_stiffness: Option<f64>,
-    /// [N s/m] Its damping; none is critical for the mass of one track.
+    /// [N s/m] Its damping; `None`: critical for the mass of one track.
     pub tensioner_damping: Option<f64>,
-    /// Wheels between sprocket and idler on the lower run; none takes as many as leave a pitch at most between
-    /// them.
+    /// Wheels between sprocket and idler on the lower run; `None` takes enough to leave gaps of at most one pitch.
     pub road_wheel_count: Option<u32>,
-    /// Rollers under the upper run; none takes as many as leave two pitches at most.
+    /// Rollers under the upper run; `None` takes enough to leave gaps of at most two pitches.
     pub return_roller_count: Option<u32>,
 }
 
@@ -114,24 +113,24 @@ pub enum ChainMechanism {
     Sprocket,
 }
 
-/// Form of a shoe in side view.
+/// Shape of a shoe in side view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShoeShape {
-    /// A flat plate with a grouser that stands on its middle.
+    /// A flat plate with a grouser in the middle.
     Rectangle,
     /// One body that tapers from the plate to the tip of the grouser.
     Trapezoid,
 }
 
-/// The drive acts on the chassis as a force along it at axle height, in the air too.
+/// The drive acts on the chassis as a force along its axis at axle height, in the air, too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceTrack {
     /// What the robot slides or rolls on.
     pub support: ForceSupport,
-    /// Friction of the skids; the terrain's own friction caps it.
+    /// Friction of the skids; the smaller of this and the terrain's friction applies.
     pub skid_friction: f64,
-    /// Number of passive wheels a side.
+    /// Number of free wheels per side.
     pub wheel_count: u32,
 }
 
@@ -139,9 +138,9 @@ pub struct ForceTrack {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceSupport {
-    /// Skid runners of the outline's shape.
+    /// Skids in the shape of the outline.
     Skids,
-    /// Round wheels on a line that turn freely, each for itself.
+    /// Round wheels on a line that turn freely and independently.
     Wheels,
 }
 
@@ -203,7 +202,7 @@ impl Track {
         }
     }
 
-    /// Whether the motors can share their torque so.
+    /// Checks that the motors can share their torque like this.
     pub(super) fn check(&self, sharing: TorqueSharing) -> Result<(), ScenarioError> {
         if sharing == TorqueSharing::Wheel && self.wheel().is_none() {
             let rule = "must be \"track\" for a model without driven wheels";
@@ -243,7 +242,8 @@ fn read_segmental(f: &mut Fields) -> Result<SegmentalTrack, ScenarioError> {
     ];
     for (name, count) in wheels {
         if let Some(count) = count.filter(|_| track.mechanism == ChainMechanism::Guide) {
-            let rule = "must not be given: a guide has no wheels (mechanism \"sprocket\" has)";
+            let rule =
+                "must not be given for a guide, which has no wheels (mechanism \"sprocket\" has)";
             return Err(f.error(name, count, rule));
         }
     }

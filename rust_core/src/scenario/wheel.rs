@@ -1,11 +1,11 @@
-//! The shape of a wheel that stands for a piece of track.
+//! The shape of a wheel that represents a piece of track.
 
 use serde::Serialize;
 
 use super::ScenarioError;
 use super::fields::{Fields, Range, one_of};
 
-/// Most grousers of one wheel.
+/// Largest number of grousers of one wheel.
 pub(crate) const MAX_GROUSERS: u32 = 200;
 
 /// The shape of a wheel.
@@ -18,18 +18,18 @@ pub enum Wheel {
     Gear(GearWheel),
 }
 
-/// A wheel with grousers; what is not given follows from the robot's outline.
+/// A wheel with grousers; fields that are `None` follow from the robot's outline.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GearWheel {
-    /// Grousers round the wheel.
+    /// Grousers on the wheel.
     pub grouser_count: Option<u32>,
     /// [m] Radial height: the wheel's radius less that of its root circle.
     pub grouser_height: Option<f64>,
     /// [m] Thickness of a grouser at its tip.
     pub tip_thickness: Option<f64>,
-    /// [m] Thickness of a grouser at the root circle; none is that of the tip, with parallel flanks.
+    /// [m] Thickness of a grouser at the root circle; `None` takes that at the tip: parallel flanks.
     pub base_thickness: Option<f64>,
-    /// Share of the angle between two grousers by which each wheel starts ahead of the one before it.
+    /// Share of the angle between two grousers by which each wheel starts ahead of the previous one.
     pub phase_fraction: f64,
 }
 

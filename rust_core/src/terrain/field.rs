@@ -1,18 +1,18 @@
-//! Ground that both tracks meet differently: step fields, and barriers that lie askew.
+//! Ground that differs between the tracks: step fields and oblique barriers.
 
 use super::skyline::Skyline;
 use crate::scenario::{FieldPattern, Stepfield};
 
-/// [m] Level ground under the left track, the right one, and the belly between them.
+/// [m] Blocks under the left track, the right track and the belly.
 pub(super) type Lanes = [Skyline; 3];
 
-/// A barrier of some height and thickness [m], its front face turned by `yaw` [rad] about the vertical,
-/// the nearest of it at `start` [m]; `gauge` [m] lies between the tracks. The belly is taken to be as wide.
+/// A barrier of some height and thickness [m], its front face turned by `yaw` [rad] about the vertical, its nearest
+/// point at `start` [m]; the tracks are `gauge` [m] apart, and the belly is assumed to be as wide.
 pub(super) fn barrier((height, thickness): (f64, f64), yaw: f64, start: f64, gauge: f64) -> Lanes {
     let along = thickness / libm::cos(yaw);
     let apart = gauge * libm::tan(yaw);
     let at = |x: f64, length: f64| Skyline::of_blocks(start + x, length, &[height]);
-    // Turned counter-clockwise from above, its left end comes first.
+    // Turned counter-clockwise seen from above, its left end comes first.
     [
         at((-apart).max(0.0), along),
         at(apart.max(0.0), along),
@@ -20,7 +20,7 @@ pub(super) fn barrier((height, thickness): (f64, f64), yaw: f64, start: f64, gau
     ]
 }
 
-/// A field of square posts, from x = 0, one row under each track; with a barrier across its middle.
+/// A field of square posts from x = 0, one row under each track, with a barrier across its middle.
 pub(super) fn stepfield(field: &Stepfield, gauge: f64) -> Lanes {
     let row = |lane| {
         let heights = (0..field.posts).map(|post| field.rise * f64::from(level(field, lane, post)));
@@ -41,8 +41,8 @@ pub(super) fn stepfield(field: &Stepfield, gauge: f64) -> Lanes {
     std::array::from_fn(|i| rows[i].higher(&barriers[i]))
 }
 
-/// Level of a post, 0 to `levels`: at random, or on a slope up to a ridge and down again, one level more or
-/// less at random. The ridge lies across the field, or askew.
+/// Level of a post, 0 to `levels`: random, or on a slope up to a ridge and down again, plus or minus one level at
+/// random. The ridge lies across the field, or askew.
 fn level(field: &Stepfield, lane: u32, post: u32) -> u32 {
     let draw = bits(field.seed, lane, post);
     let ridge = match field.pattern {
@@ -61,7 +61,7 @@ fn level(field: &Stepfield, lane: u32, post: u32) -> u32 {
     (mean + off).clamp(0, i64::from(field.levels)) as u32
 }
 
-/// Random bits of one post: splitmix64 of its place and the seed.
+/// Random bits for one post: splitmix64 of its place and the seed.
 fn bits(seed: u32, lane: u32, post: u32) -> u64 {
     let place = (u64::from(seed) << 32) | (u64::from(lane) << 16) | u64::from(post);
     let mut z = place

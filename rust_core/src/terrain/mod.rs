@@ -1,4 +1,4 @@
-//! From the described terrain to the profiles that contacts are computed on.
+//! Builds the profiles on which contacts are computed from the described terrain.
 
 mod field;
 mod obstacle;
@@ -16,18 +16,17 @@ pub use profile::{Edge, Profile, Side};
 /// The ground of a scenario.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// Profiles under the tracks, from the left, or one under both; then that of the belly, if it has one
-    /// of its own.
+    /// Profiles under the tracks, the left first, or one under both; then that of the belly, if it has its own.
     pub lanes: Vec<Profile>,
     /// Number of profiles under tracks: 1 if both meet the same, else 2.
     pub tracks: usize,
-    /// [m] The x that must be left behind.
+    /// [m] The x that the whole robot must pass.
     pub goal: f64,
     /// [m] Where the obstacle begins: the first edge at or beyond x = 0, else the first of all, else 0.
     pub first_edge: f64,
 }
 
-/// What is described of one lane.
+/// The description of one lane.
 struct Described {
     profile: Profile,
     goal: f64,
@@ -37,8 +36,8 @@ impl Ground {
     /// Builds the ground of a terrain for a robot whose tracks are `gauge` [m] apart.
     ///
     /// # Errors
-    /// A profile that cannot be: overhang, too few points, an edge radius that does not fit; lanes that
-    /// have no x in common.
+    /// An impossible profile: overhang, too few points, an edge radius that does not fit; lanes without a common
+    /// stretch of x.
     pub fn new(terrain: &Terrain, gauge: f64) -> Result<Self, ScenarioError> {
         match terrain {
             Terrain::Lanes {
@@ -67,7 +66,7 @@ impl Ground {
         }
     }
 
-    /// The described ground of each track, and of the belly if it has its own.
+    /// The description of each track's ground, and of the belly's if it has its own.
     fn lanes(
         left: &Terrain,
         right: &Terrain,
@@ -81,7 +80,7 @@ impl Ground {
             .map(|lane| lane.profile);
         let goal = first.goal.max(second.goal);
         let ground = if left == right {
-            // What both tracks share is simulated as one.
+            // If both tracks meet the same profile, they are simulated as one.
             let own = third.filter(|_| middle != Some(left));
             let own = own.map(|profile| profile.under(Side::Middle));
             let lanes = std::iter::once(first.profile).chain(own).collect();
@@ -91,7 +90,7 @@ impl Ground {
         };
         let (low, high) = ground.extent();
         if !(low..=high).contains(&goal) {
-            let rule = format!("must have all lanes reach under its goal at {goal} m");
+            let rule = format!("must have lanes that all reach its goal at {goal} m");
             let value = format!("x from {low} to {high} m");
             return Err(ScenarioError::new("terrain", value, rule));
         }
@@ -113,10 +112,10 @@ impl Ground {
         Self::apart(tracks, Some(profile(middle)?), end)
     }
 
-    /// A profile under each track; without one of its own the belly meets the higher of the two.
+    /// A profile under each track; without a profile of its own, the belly meets the higher of the two.
     ///
     /// # Errors
-    /// No x that both have.
+    /// They have no common stretch of x.
     pub fn apart(
         [left, right]: [Profile; 2],
         middle: Option<Profile>,
@@ -155,17 +154,17 @@ impl Ground {
         edges.copied().collect()
     }
 
-    /// Whether the lanes of another lie under the same of a robot's parts.
+    /// Whether another ground has its lanes under the same parts of a robot.
     pub(crate) fn has_lanes_of(&self, other: &Self) -> bool {
         (self.tracks, self.lanes.len()) == (other.tracks, other.lanes.len())
     }
 
-    /// Lane under the belly.
+    /// Index of the lane under the belly.
     pub fn middle(&self) -> usize {
         self.lanes.len() - 1
     }
 
-    /// [m] Smallest and largest x that all lanes have.
+    /// [m] Smallest and largest x common to all lanes.
     pub fn extent(&self) -> (f64, f64) {
         let extents = self.lanes.iter().map(Profile::extent);
         extents.fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), (a, b)| {
@@ -173,7 +172,7 @@ impl Ground {
         })
     }
 
-    /// [rad] Angle of the ground at x, the mean under both tracks.
+    /// [rad] Angle of the ground at x, mean of both tracks.
     pub(crate) fn angle_at(&self, x: f64) -> f64 {
         let angles = self.lanes[..self.tracks]
             .iter()
@@ -181,19 +180,19 @@ impl Ground {
         angles.sum::<f64>() / self.tracks as f64
     }
 
-    /// [m] Height of the lowest point of all.
+    /// [m] Height of the lowest point of all lanes.
     pub(crate) fn lowest(&self) -> f64 {
         let heights = self.lanes.iter().map(Profile::lowest);
         heights.fold(f64::INFINITY, f64::min)
     }
 
-    /// [m] Height of the highest point of all.
+    /// [m] Height of the highest point of all lanes.
     pub(crate) fn highest(&self) -> f64 {
         let points = self.lanes.iter().flat_map(|lane| &lane.points);
         points.fold(f64::NEG_INFINITY, |high, point| high.max(point.y))
     }
 
-    /// [m] The x that the rear axle must leave behind, unless the scenario has its own.
+    /// [m] The scenario's goal, or else the terrain's.
     pub fn goal_of(&self, scenario: &Scenario) -> f64 {
         scenario.goal.unwrap_or(self.goal)
     }

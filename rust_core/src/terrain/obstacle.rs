@@ -2,14 +2,14 @@
 
 use crate::scenario::Terrain;
 
-/// [m] Level ground before and behind a parametric obstacle.
+/// [m] Length of level ground before and behind a parametric obstacle.
 pub(super) const RUN_OUT: f64 = 100.0;
 
-/// What a terrain describes, as corners.
+/// A described terrain, as corners.
 pub(super) struct Obstacle {
     /// [m] Corners from left to right.
     pub points: Vec<[f64; 2]>,
-    /// [m] The x that must be left behind: the last edge.
+    /// [m] The x that the whole robot must pass: the last edge.
     pub goal: f64,
     /// [m] Radius of the convex edges.
     pub edge_radius: f64,
@@ -17,7 +17,7 @@ pub(super) struct Obstacle {
     pub friction: f64,
 }
 
-/// The corners of one lane; different lanes are terrains of their own.
+/// The corners of a terrain with one profile.
 pub(super) fn of(terrain: &Terrain) -> Obstacle {
     match terrain {
         Terrain::Flat { length, friction } => level(*length, *friction),
@@ -103,7 +103,7 @@ fn block(height: f64, length: f64, edge_radius: f64, friction: f64) -> Obstacle 
     between_levels(&corners, edge_radius, friction)
 }
 
-/// Corners with level ground before the first and behind the last.
+/// The corners, with level ground before the first and behind the last.
 fn between_levels(corners: &[[f64; 2]], edge_radius: f64, friction: f64) -> Obstacle {
     let ([x0, y0], [x1, y1]) = (corners[0], corners[corners.len() - 1]);
     let mut points = vec![[x0 - RUN_OUT, y0]];

@@ -5,20 +5,20 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::{Vector, left_of};
 use crate::scenario::ScenarioError;
 
-/// [rad] Turn of one facet of a rounded edge: a 20 mm edge is cut 0.8 um short of its true arc.
+/// [rad] Turn of one facet of a rounded edge; at a radius of 20 mm, it is 0.8 um below its true arc.
 const FACET_TURN: f64 = 0.0175;
-/// Facets of all rounded edges of a lane at most: these build in well under a second.
+/// Largest number of facets of a lane, which are built in well under a second.
 const MAX_FACETS: f64 = 1e6;
-/// [m] Points closer than this to the line of their neighbours do not make an edge.
+/// [m] Points closer than this to the line through their neighbours do not make an edge.
 pub(super) const COLLINEAR: f64 = 1e-9;
 
 /// [m] A contact this close to a vertex touches the edge, not the face beside it.
 const AT_VERTEX: f64 = 1e-7;
 
-/// Which part of the robot a profile lies under; the code is the `lane` of the tables.
+/// The part of the robot that a profile is under; the code is the `lane` of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
-    /// Under both tracks, and the belly unless that has its own.
+    /// Under both tracks, and the belly unless it has its own.
     Both = 0,
     /// Under the left track.
     Left = 1,
@@ -46,7 +46,7 @@ impl Side {
 /// One lane: a polyline from left to right with the rounded edges cut into facets.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// What it lies under.
+    /// The part of the robot that it is under.
     pub side: Side,
     /// [m] Points from left to right; x never decreases.
     pub points: Vec<Vector>,
@@ -56,7 +56,7 @@ pub struct Profile {
     pub edges: Vec<Edge>,
     /// Coulomb friction with the robot.
     pub friction: f64,
-    /// Given points that were left out because they repeat or continue their neighbours.
+    /// Number of points left out because they repeat or continue their neighbours.
     pub merged: usize,
 }
 
@@ -65,22 +65,22 @@ pub struct Profile {
 pub struct Edge {
     /// Lane that it is on.
     pub side: Side,
-    /// Number on its lane, from the left.
+    /// Number on its lane, counted from the left.
     pub id: i32,
-    /// [m] Position of the corner (of its sharp form, if rounded).
+    /// [m] Position of the corner (of the sharp corner, if rounded).
     pub x: f64,
-    /// [m] Position of the corner.
+    /// [m] Position of the corner, likewise.
     pub y: f64,
     /// [rad] Turn of the ground there, clockwise positive: convex edges > 0, inner corners < 0.
     pub angle: f64,
     /// [m] Radius, 0 is sharp.
     pub radius: f64,
-    /// [m] Centre of the arc; of a sharp edge the corner itself.
+    /// [m] Centre of the arc, or the corner itself if sharp.
     pub center: Vector,
 }
 
 impl Profile {
-    /// Orders, merges, checks and rounds a list of points; `merge` off keeps collinear points.
+    /// Orders, merges, checks and rounds a list of points; without `merge`, collinear points stay.
     ///
     /// # Errors
     /// Fewer than two distinct points, an overhang, a spike, an edge radius that does not fit.
@@ -130,12 +130,12 @@ impl Profile {
         Ok(profile)
     }
 
-    /// Walks the corners and replaces each convex one by an arc of the radius.
+    /// Walks along the corners and replaces each convex one by an arc of this radius.
     fn round(&mut self, path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
         if radius > 0.0 {
             check_facets(path, corners, radius)?;
         }
-        let mut spare = 0.0; // [m] what the previous arc took of the segment behind it
+        let mut spare = 0.0; // [m] length that the previous arc takes of the segment behind it
         self.push(corners[0], -1);
         for i in 1..corners.len() - 1 {
             let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
@@ -156,7 +156,7 @@ impl Profile {
             let room = ((corner - before).length() - spare).min((behind - corner).length());
             if tangent > room * (1.0 + 1e-12) {
                 let rule = format!(
-                    "must fit the edge at ({}, {}): its arc needs {tangent} m of {room} m",
+                    "must fit the edge at ({}, {}), whose arc needs {tangent} m of {room} m",
                     corner.x, corner.y
                 );
                 return Err(ScenarioError::new(
@@ -196,7 +196,7 @@ impl Profile {
     }
 
     fn push(&mut self, point: Vector, edge: i32) {
-        // An arc may begin where the last one ended.
+        // An arc may begin where the previous one ended.
         if self
             .points
             .last()
@@ -208,7 +208,7 @@ impl Profile {
         self.edge_of_point.push(edge);
     }
 
-    /// The same under another part of the robot.
+    /// The same profile under another part of the robot.
     pub(super) fn under(mut self, side: Side) -> Self {
         self.side = side;
         for edge in &mut self.edges {
@@ -240,8 +240,8 @@ impl Profile {
         first..last
     }
 
-    /// Where along the profile a point on a facet lies, as the facet's index plus a share of it, and
-    /// the facet's length [m].
+    /// Position along the profile of a point on a facet, as the index of the facet plus a share of it, and the
+    /// length [m] of the facet.
     pub(crate) fn place_on(&self, facet: usize, point: Vector) -> (f64, f64) {
         let (a, b) = (self.points[facet], self.points[facet + 1]);
         let (way, length) = (b - a, (b - a).length());
@@ -279,7 +279,7 @@ impl Profile {
             .all(|p| p.y < below)
     }
 
-    /// [m] Lowest height of the centre of a disc above `x` at which it only touches the ground.
+    /// [m] Height of the centre of a disc above `x` at which it just touches the ground.
     pub fn height_under_disc(&self, x: f64, radius: f64) -> f64 {
         let mut height = f64::NEG_INFINITY;
         for i in self.facets(x - radius, x + radius) {
@@ -320,12 +320,12 @@ fn turn(before: Vector, corner: Vector, behind: Vector) -> (Vector, f64) {
     (d1, libm::atan2(d1.y * d2.x - d1.x * d2.y, d1.dot(d2)))
 }
 
-/// Facets of an arc that turns by an angle [rad].
+/// Number of facets of an arc that turns by an angle [rad].
 fn facets(angle: f64) -> f64 {
     (angle / FACET_TURN).ceil().max(1.0)
 }
 
-/// Refuses arcs of more facets in all than a ground may have, before there are any.
+/// Checks that the arcs do not need more facets in all than a ground may have.
 fn check_facets(path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
     let turns = corners.windows(3).map(|c| turn(c[0], c[1], c[2]).1);
     let all: f64 = turns.filter(|turn| *turn > 0.0).map(facets).sum();
@@ -333,7 +333,7 @@ fn check_facets(path: &str, corners: &[Vector], radius: f64) -> Result<(), Scena
         return Ok(());
     }
     let rule = format!(
-        "must be 0 on a ground with so many edges: rounded they take {all} facets, and {MAX_FACETS} are the most"
+        "must be 0 on a ground with so many edges, which would take {all} facets if rounded; the maximum is {MAX_FACETS}"
     );
     let path = format!("{path}.edge_radius");
     Err(ScenarioError::new(path, radius, rule))
@@ -345,7 +345,7 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
         let ((_, a), (row, b)) = (pair[0], pair[1]);
         if b.x < a.x {
             let rule = format!(
-                "must not lie behind its neighbour at x = {}: overhangs are refused",
+                "must not lie behind its neighbour at x = {}: overhangs are not allowed",
                 a.x
             );
             return Err(ScenarioError::new(
@@ -360,7 +360,7 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
             && (b.y - a.y) * (c.y - b.y) < 0.0
         {
             let rule = format!(
-                "must not be a spike: segments {i} and {} lie on each other",
+                "must not be a spike, where segments {i} and {} coincide",
                 i + 1
             );
             return Err(ScenarioError::new(
@@ -371,7 +371,7 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
         }
     }
     if points[0].1.x == points[points.len() - 1].1.x {
-        let rule = "must extend along x: a wall alone is no ground";
+        let rule = "must extend along x, not be only a vertical wall";
         return Err(ScenarioError::new(
             format!("{path}.points"),
             format!("x = {} only", points[0].1.x),
@@ -381,7 +381,7 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
     Ok(())
 }
 
-/// Leaves out every point that lies on the line through the last kept one and the next.
+/// Leaves out every point on the line through the last one kept and the next.
 fn without_collinear(points: &[Vector]) -> Vec<Vector> {
     let mut kept = vec![points[0]];
     for pair in points[1..].windows(2) {

@@ -1,13 +1,13 @@
 //! Ground of level tops and vertical faces.
 
-/// Heights over level ground at 0: each [x, height] holds from its x [m] on, the last is level again.
+/// Heights above level ground at 0: each [x, height] applies from its x [m] on; the last is level ground again.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Skyline {
     rises: Vec<[f64; 2]>,
 }
 
 impl Skyline {
-    /// Blocks side by side from `start` [m], each of a `width` [m].
+    /// Blocks side by side from `start` [m], each `width` [m] wide.
     pub(super) fn of_blocks(start: f64, width: f64, heights: &[f64]) -> Self {
         let mut rises: Vec<[f64; 2]> = heights
             .iter()
@@ -18,7 +18,7 @@ impl Skyline {
         Self { rises }
     }
 
-    /// The higher of two.
+    /// The higher of two skylines at every x.
     pub(super) fn higher(&self, other: &Self) -> Self {
         let mut places: Vec<f64> = self
             .rises
@@ -44,7 +44,7 @@ impl Skyline {
         }
     }
 
-    /// [m] Where it ends.
+    /// [m] The x at which it ends.
     pub(super) fn end(&self) -> f64 {
         self.rises[self.rises.len() - 1][0]
     }

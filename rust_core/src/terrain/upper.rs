@@ -4,11 +4,11 @@ use super::profile::Profile;
 use crate::geometry::Vector;
 use crate::scenario::ScenarioError;
 
-/// The upper envelope of two profiles where both are. Its arcs are polylines, as fine as theirs; friction is
-/// the larger of both.
+/// The upper envelope of two profiles over their common stretch of x. Arcs become polylines as fine as theirs;
+/// friction is the larger of the two.
 ///
 /// # Errors
-/// No x that both have.
+/// They have no common stretch of x.
 pub(super) fn envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, ScenarioError> {
     let ((a_low, a_high), (b_low, b_high)) = (a.extent(), b.extent());
     let (low, high) = (a_low.max(b_low), a_high.min(b_high));
@@ -47,7 +47,7 @@ pub(super) fn envelope(path: &str, a: &Profile, b: &Profile) -> Result<Profile, 
     Profile::new(path, &points, 0.0, a.friction.max(b.friction), true)
 }
 
-/// [m] Heights of a profile just before and just behind an x of it.
+/// [m] Heights of a profile just before and just behind an x.
 fn heights_at(profile: &Profile, x: f64) -> [f64; 2] {
     let points = &profile.points;
     let from = points.partition_point(|p| p.x < x);

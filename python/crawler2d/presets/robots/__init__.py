@@ -1,8 +1,8 @@
-"""Presets: robots of the literature, every figure with its source or marked as an estimate.
+"""Robots of the literature: every figure has its source or is marked as an estimate.
 
-Figures read from a file name file and line, as ``marv.sdf:521``; those that are sums name what was
-summed. The files, unchanged, are in ``tests/robots`` of the project, whose README says where each
-is from; the tests compare them with the presets.
+A figure read from a file has file and line as its source, such as ``marv.sdf:521``; for a sum, the
+source says what was summed. The unchanged files are in ``tests/robots`` of the project, whose
+README says where each is from. Tests compare them with the presets.
 """
 
 from crawler2d.presets.robots.absolem import absolem

@@ -23,11 +23,11 @@ def absolem(
     Parameters
     ----------
     flippers : Flippers, "built" or None
-        "built" takes its own, None leaves them and their mass off.
+        "built" takes the robot's own; None leaves them and their mass off.
     track : Track or "public", optional
-        The model of the track; None is `Robot`'s default, "public" that of the public simulation
-        model: eight wheels a track that overlap, five a flipper. Its makers tell of ground that
-        gets stuck between two of them and stops the robot where tracks would go on.
+        The model of the track; None takes `Robot`'s default. "public" has the wheels of the public
+        simulation model: eight overlapping wheels per track, five per flipper. Its makers report
+        that ground gets stuck between two of them and stops the robot where tracks would go on.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def absolem(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another word.
+        If `flippers` or `track` is another string.
 
     Notes
     -----
@@ -73,16 +73,16 @@ def absolem(
     osrf/subt, before its wheels were replaced by tracks (b626b6de^); absolem_specifications.md is
     specifications.md there.
 
-    Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track: the
-    side view is that of an even line. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922),
-    here on them. Each of the five links of a flipper has its centre of mass 80 mm beyond its wheel
+    Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track; in
+    side view the line is even. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922), here
+    on them. Each of the five links of a flipper has its centre of mass 80 mm beyond its wheel
     (absolem.sdf:990) and the moment of inertia of a whole flipper (absolem.sdf:996); here the mass
     is spread evenly from pivot to tip. The friction of its wheels is 0.5 (absolem.sdf:1018); here
-    friction is the terrain's.
+    friction belongs to the terrain.
 
     Examples
     --------
-    What its makers tell of, in the pockets of its front flippers, at the friction of its wheels:
+    The jam that its makers report, between wheels of the front flippers, at the wheels' friction:
 
     >>> import crawler2d as c2d
     >>> step = c2d.terrains.step(0.10, friction=0.5)
@@ -93,10 +93,10 @@ def absolem(
     >>> str(c2d.simulate(absolem(), step, drive=drive).outcome)
     'cleared'
 
-    So it goes on steps, knife edges of 10 mm and barriers of 100 mm, 70 to 130 mm high, in all of
-    210 runs, and with the belt all of 210 clear; at 140 mm the wheels do, too. A belt comes into no
-    such pose, and one that is put there does not get away (none of 21). Without flippers the wheels
-    seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
+    The wheels seize like this on steps, knife edges of 10 mm and barriers of 100 mm, all 70 to 130
+    mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the wheels clear, too.
+    The belt never gets into such a pose, and does not escape when placed in one (0 of 21). Without
+    flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
     """
     built = Flippers(
         length=0.33,

@@ -20,22 +20,22 @@ def engineer(
     flippers: Flippers | Literal["built"] | None = "built",
     track: Track | Literal["public"] | None = None,
 ) -> Robot:
-    """Make the Servosila Engineer, a 21 kg tracked robot with two flippers at its front.
+    """Make the Servosila Engineer, a 21 kg tracked robot with two flippers at the front.
 
     Parameters
     ----------
     center_of_mass : array_like, shape (2,)
-        [m] Without the flippers, in the chassis frame. Estimate; it moves the highest step that the
-        robot climbs most.
+        [m] Without the flippers, in the chassis frame. An estimate, and the one that the highest
+        step the robot can climb depends on most.
     belly_clearance : float
-        [m] From level ground to the belly. Estimate; it decides when the robot lies on an edge.
+        [m] From level ground to the belly. An estimate; it decides when the belly meets an edge.
     flippers : Flippers, "built" or None
-        "built" takes its own, None leaves them off: then the chassis has their mass, so that the
-        robot weighs the same. `Robot.without_flippers` takes their mass off, too.
+        "built" takes the robot's own. None leaves them off but gives their mass to the chassis, so
+        that the robot weighs the same; `Robot.without_flippers` removes the mass, too.
     track : Track or "public", optional
-        The model of the track; None is `Robot`'s default, "public" has the wheels of the public
-        simulation model, and nothing else of it: three a side, slots of 26 mm between them, and one
-        at the tip of each flipper.
+        The model of the track; None takes `Robot`'s default. "public" has the wheels of the public
+        simulation model, but nothing else of it: three per side with gaps of 26 mm between them,
+        and one at the tip of each flipper.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def engineer(
     Raises
     ------
     ScenarioError
-        If an argument is no number or no point, or `track` another word.
+        If an argument is not a number or a point, or `track` is another string.
 
     Notes
     -----
@@ -88,13 +88,12 @@ def engineer(
     ==================  ====================================  ====================================
 
     The paper is "Gear Wheels based Simulation of Crawlers for Mobile Robot Servosila Engineer".
-    eng.xacro and the CAD meshes are those of the package eng_description in GimpelZhang's
-    Robot_Engineer. The meshes are not among the files that the tests read; their figures were
-    measured on them.
+    eng.xacro and the CAD meshes are from the package eng_description in GimpelZhang's
+    Robot_Engineer. The tests do not read the meshes, on which their figures were measured.
 
-    What that model has besides its wheels is not taken over: motors of 100 N m a wheel
-    (eng.xacro:115), tracks 0.55 m apart (eng.xacro:144), no manipulator. Its flippers have no wheel
-    at the root; the one here lies within the robot's front wheel and touches nothing.
+    Nothing but the wheels is taken from that model: it has motors of 100 N m per wheel
+    (eng.xacro:115), tracks 0.55 m apart (eng.xacro:144) and no manipulator. Its flippers have no
+    wheel at the root; the one here lies within the robot's front wheel and touches nothing.
 
     Examples
     --------

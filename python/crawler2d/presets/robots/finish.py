@@ -1,4 +1,4 @@
-"""What the presets share: flippers and track models that a user chooses in place of the built."""
+"""Shared by the presets: replace flippers and track model as the user chooses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def finished(
     track: Track | str | None,
     public: tuple[Track | None, Track | None],
 ) -> Robot:
-    """Model the track of a robot without flippers, and mount those that were asked for.
+    """Set the track model of a robot without flippers, and mount the flippers asked for.
 
     Parameters
     ----------
@@ -33,8 +33,8 @@ def finished(
     track : Track, "public" or None
         What the user asked for.
     public : tuple of (Track or None, Track or None)
-        Models of the robot's and of the flippers' tracks in the public simulation model; None is
-        that of the preset.
+        Models of the robot's and of the flippers' tracks in the public simulation model; None takes
+        the preset's.
 
     Returns
     -------
@@ -44,7 +44,7 @@ def finished(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another word.
+        If `flippers` or `track` is another string.
     """
     of_robot, of_flippers = None, None
     if isinstance(track, str):

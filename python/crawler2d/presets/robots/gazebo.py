@@ -22,10 +22,10 @@ def gz_tracked_vehicle(
     Parameters
     ----------
     flippers : Flippers, "built" or None
-        "built" takes its own, None leaves them and their mass off.
+        "built" takes the robot's own; None leaves them and their mass off.
     track : Track or "public", optional
-        The model of the track; None and "public" are a smooth belt, as Gazebo's track controller
-        has it.
+        The model of the track; None and "public" take a smooth belt, which is what Gazebo's track
+        controller models.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def gz_tracked_vehicle(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another word.
+        If `flippers` or `track` is another string.
 
     Notes
     -----
@@ -64,19 +64,19 @@ def gz_tracked_vehicle(
     max. torque         200 N m                               estimate: the controller has no limit
     ==================  ====================================  ====================================
 
-    tracked_vehicle_simple.sdf is that of gazebosim/gz-sim, examples/worlds, 93bbf3ed.
+    tracked_vehicle_simple.sdf is from gazebosim/gz-sim, examples/worlds, 93bbf3ed.
 
     The centre of mass of its flippers lies 80 mm from the pivot (tracked_vehicle_simple.sdf:300);
     here their mass is spread evenly from pivot to tip. They pivot 0.95 mm above the axles, here on
-    them. The friction of its tracks is 0.7 along the way (tracked_vehicle_simple.sdf:121); here
-    friction is the terrain's.
+    them. The friction of its tracks is 0.7 along their length (tracked_vehicle_simple.sdf:121);
+    here friction belongs to the terrain.
 
     Examples
     --------
     >>> gz_tracked_vehicle().mass
     28.26
     """
-    # Of the body and of a track, in the file: mass, place from the axles' middle, lateral inertia.
+    # Body and one track, from the file: mass, place relative to the axles' middle, pitch inertia.
     body, track_link = (13.14, (-0.122, 0.09945), 0.302044), (6.06, (0.0, -0.00445), 0.032554)
     links = (body, track_link, track_link)
     mass = sum(link[0] for link in links)

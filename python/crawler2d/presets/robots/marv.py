@@ -24,12 +24,12 @@ def marv(
     Parameters
     ----------
     flippers : Flippers, "built" or None
-        "built" takes its own. None leaves them and their mass off: then the robot stands on their
-        roots.
+        "built" takes the robot's own. None leaves them and their mass off: the robot then stands on
+        their roots.
     track : Track or "public", optional
-        What stands between the flippers' pivots. None are the roots of the flippers, two wheels,
-        under tracks of the kind of a belt with grousers round the arms; "public" has the wheels of
-        the public simulation model on them, eight a flipper.
+        What runs between the flippers' pivots. None takes two wheels, the roots of the flippers,
+        and belts with grousers round the arms. "public" has the wheels of the public simulation
+        model, eight per flipper.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def marv(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another word.
+        If `flippers` or `track` is another string.
 
     Notes
     -----
@@ -72,12 +72,12 @@ def marv(
 
     marv.sdf is model.sdf of submitted_models/ctu_cras_norlab_marv_sensor_config_1 in osrf/subt,
     before its wheels were replaced by tracks (b626b6de^); the tests do not read common.yaml, where
-    the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm are here four chords, at
+    the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm become four chords here, at
     most 1 mm inside.
 
-    The line between the roots is no track: ground that reaches above it is called inside the track
-    although nothing runs there. What the package says the robot weighs, 61 kg, is 60.36 kg in the
-    sum over all links.
+    There is no track on the line between the roots: ground above that line is reported as inside
+    the track although nothing runs there. The package gives the robot's mass as 61 kg; the sum over
+    all links is 60.36 kg.
 
     Examples
     --------
@@ -114,6 +114,6 @@ def marv(
 
 
 def _bow(angle: float) -> tuple[float, float]:
-    """Go round the lower edge of the bow, from below its axle (0) to the level of it (pi / 2)."""
+    """Return a point of the lower bow, from below its axle (0) to its level (pi / 2)."""
     radius = 0.044
     return 0.256 + radius * math.sin(angle), 0.0001 - radius * math.cos(angle)

@@ -1,8 +1,8 @@
 use super::*;
 use crate::geometry::{Vector, right_of};
 
-/// A support of a block whose normal passes through the centre of mass `arm` behind it, or does
-/// not: `lever` is that of the normal.
+/// A support of a block whose normal force has the arm `lever` about the centre of mass, and its friction
+/// `of_tangent`.
 fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Support {
     let direction = |unit, lever| Direction {
         unit,
@@ -44,7 +44,7 @@ fn notch(slope: f64, friction: f64) -> Statics {
     block(vec![wall(1.0), wall(-1.0)])
 }
 
-/// A block on a support on either side, the right one on an arm of no weight, half a metre from its pivot.
+/// A block on a support on either side, the right one on a weightless arm, half a metre from its pivot.
 fn on_an_arm(torque: f64) -> Statics {
     let on = |lever: f64| support(Vector::Y, [lever, 0.0], 0.0);
     let mut arm = on(1.0);
@@ -62,10 +62,10 @@ fn on_an_arm(torque: f64) -> Statics {
 
 #[test]
 fn an_arm_bears_no_more_than_its_motor_holds() {
-    // Half of the weight takes a quarter of a metre.
+    // Half of the weight at half a metre needs a torque of a quarter of a metre times the weight.
     assert!(on_an_arm(0.26).imbalance().unwrap() < 1e-8);
     for torque in [0.0, 0.1, 0.2] {
-        // With f on the arm: 0.5 f misses the torque by s, 2 f + s the weight by s.
+        // With f on the arm and the residual s: the torque is 0.5 f - s, and 2 f + s is the weight minus s.
         let expected = (0.25 - torque) / 1.5;
         let imbalance = on_an_arm(torque).imbalance().unwrap();
         assert!((imbalance - expected).abs() < 1e-8, "{torque}: {imbalance}");
@@ -74,7 +74,7 @@ fn an_arm_bears_no_more_than_its_motor_holds() {
 
 #[test]
 fn a_stalled_motor_holds_from_the_share_of_its_limit_that_the_criteria_say() {
-    // On a slope that takes 0.9 of what the motor can do, on supports before and behind the centre of mass.
+    // On a slope that needs 0.9 of the motor's force, on supports before and behind the centre of mass.
     let (sine, cosine) = libm::sincos(0.5_f64);
     let on_slope = |lever: f64| {
         let mut on = support(Vector::new(-sine, cosine), [lever, 0.0], 1.0);
@@ -121,7 +121,7 @@ fn a_block_is_wedged_where_slope_and_friction_angle_make_a_right_angle() {
 
 #[test]
 fn walls_that_slide_hold_with_their_friction_at_its_limit() {
-    // The block is on its way up the front wall, whose friction points down it.
+    // The block is moving up the front wall, so friction points down the wall.
     let (slope, friction) = (0.5, 0.3_f64);
     let mut block = notch(slope, friction);
     for support in &mut block.supports {
@@ -129,7 +129,7 @@ fn walls_that_slide_hold_with_their_friction_at_its_limit() {
     }
     let push = block.escape(1.0, 1e-3).unwrap().force;
     assert!((push / libm::tan(slope + friction.atan()) - 1.0).abs() < 1e-5);
-    // Sliding down it, friction helps the push.
+    // When it slides down, friction helps against the push.
     for support in &mut block.supports {
         support.slides = -1.0;
     }
@@ -164,7 +164,7 @@ fn a_block_that_nothing_given_would_free_has_no_cause() {
 
 #[test]
 fn a_pocket_is_the_cause_if_what_would_bear_in_its_place_cannot_hold() {
-    // In a pocket between two walls; closed, its ground would bear from below and slide.
+    // In a pocket between two walls; if it were closed, its ground would bear from below and slide.
     let mut held = notch(0.7, 0.2);
     held.supports.iter_mut().for_each(|s| s.role = Role::Pocket);
     let mut below = support(Vector::new(0.0, 1.0), [0.0, 0.0], 0.2);
@@ -174,7 +174,7 @@ fn a_pocket_is_the_cause_if_what_would_bear_in_its_place_cannot_hold() {
         held.cause(1e-3, &[Condition::Pocket]),
         [[Condition::Pocket]]
     );
-    // A wall before the robot would hold it all the same.
+    // A wall in front of the robot would still hold it.
     held.supports
         .push(support(Vector::new(-1.0, 0.0), [0.0, 0.0], 0.2));
     assert!(held.cause(1e-3, &[Condition::Pocket]).is_empty());

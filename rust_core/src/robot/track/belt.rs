@@ -1,11 +1,11 @@
-//! A smooth closed belt: contact surface motion on the outline (Pecka et al., IROS 2017).
+//! A smooth closed belt: surface motion prescribed along the outline (Pecka et al., IROS 2017).
 
 use super::TrackModel;
 use crate::geometry::end_discs;
 use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::Robot;
 
-/// One hull round the end discs, its whole surface at one speed.
+/// One hull round the end discs, with one speed all over its surface.
 pub(super) fn build(robot: &Robot) -> TrackModel {
     let part = hull(robot, BodyKind::Belt, Some(0), f64::INFINITY);
     TrackModel {

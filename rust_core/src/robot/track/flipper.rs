@@ -1,4 +1,4 @@
-//! Tracks of the flippers: any model that suits a tapering outline, on an arm that pivots.
+//! Tracks of the flippers: any model that suits a tapering outline, on a pivoting arm.
 
 use super::{TrackModel, build};
 use crate::robot::{Mount, Part};
@@ -18,8 +18,8 @@ pub(super) fn add(
             ..error
         })?;
         let with_own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-        // One motor a track drives its flippers, too; wheels that turn freely do so each by itself. Shoes
-        // cannot share a motor with a belt: theirs has no spin to turn one with.
+        // One motor per track drives its flippers, too; free wheels turn independently. A chain cannot share a motor
+        // with a belt, because its motor has no spin to turn one with.
         let with_own_motors = with_own_motors || !track.chains.is_empty();
         let shared = if with_own_motors { 0 } else { own.motors };
         let first = track.drives;
@@ -41,8 +41,8 @@ pub(super) fn add(
     Ok(())
 }
 
-/// The track of the arms at an end. Where small wheels all round are the robot's and not given for the arms,
-/// there are as many as these need, at least: they are smaller at a tip.
+/// The track of the arms at an end. If the robot has small wheels all round and the arms have no model of their
+/// own, their number is raised as needed, because the wheels are smaller at a tip.
 fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, ScenarioError> {
     let mut arm = arm_as_robot(robot, flippers, end);
     loop {
@@ -58,7 +58,7 @@ fn of_arm(robot: &Robot, flippers: &Flippers, end: End) -> Result<TrackModel, Sc
     }
 }
 
-/// An arm as if it were a robot, to build its track.
+/// An arm treated as a robot, to build its track.
 fn arm_as_robot(robot: &Robot, flippers: &Flippers, end: End) -> Robot {
     Robot {
         outline: flippers.outline(end, &robot.outline),

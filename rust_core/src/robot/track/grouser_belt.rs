@@ -1,7 +1,7 @@
 //! A closed belt with grousers that travel along it (Okada et al. 2020).
 //!
-//! The belt needs no bodies: its surface and its grousers are where the drive has run to. On the straight
-//! runs a grouser moves with the belt, round the ends it turns with it.
+//! The belt needs no bodies: the positions of its surface and grousers follow from how far the drive has run. A
+//! grouser moves with the belt on the straight runs, and turns with it round the ends.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::geometry::{Disc, Envelope, Grouser, end_discs};
 use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{GrouserBeltTrack, Robot, ScenarioError};
 
-/// The belt, one hull round the end discs to the roots, and its grousers.
+/// The belt, which is one hull round the end discs at the roots, and its grousers.
 pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel, ScenarioError> {
     let error = |field: &str, value: f64, rule: String| {
         Err(ScenarioError::new(format!("robot.{field}"), value, rule))
@@ -35,7 +35,9 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
         Grouser::along(&line, belt.grouser_count, height, outline)?.collect();
     let length = line.length();
     if length <= thickness * grousers.len() as f64 {
-        let rule = format!("must leave room: the belt is {length} m long, a grouser {thickness} m");
+        let rule = format!(
+            "must be few enough to fit: the belt is {length} m long, a grouser {thickness} m thick"
+        );
         return error("track.grouser_count", grousers.len() as f64, rule);
     }
     let part = |kind, shape| Part {

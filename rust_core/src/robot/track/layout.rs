@@ -1,4 +1,4 @@
-//! Where the wheels of a model sit on the robot.
+//! Where the wheels of a model are on the robot.
 
 use crate::geometry::search::zero;
 use crate::geometry::{Disc, Envelope, Vector, end_discs};
@@ -7,7 +7,7 @@ use crate::scenario::{
     TrackOutline,
 };
 
-/// The wheels of one side, in the order of eq. (1); none for a model without wheels.
+/// The wheels of one side, in the order of eq. (1); empty for a model without wheels.
 ///
 /// # Errors
 /// Wheels that do not fit the outline.
@@ -36,7 +36,7 @@ pub(crate) fn wheels(robot: &Robot) -> Result<Vec<Disc>, ScenarioError> {
     }
 }
 
-/// Rear first, evenly spaced between the end axles; radii linear between unequal ends.
+/// Wheels from the rear, evenly spaced between the end axles; radii linear between unequal ends.
 fn line(outline: &TrackOutline, count: u32, wheel_radius: Option<f64>) -> Vec<Disc> {
     let [rear, front] = end_discs(outline);
     let last = f64::from(count - 1);
@@ -52,8 +52,8 @@ fn line(outline: &TrackOutline, count: u32, wheel_radius: Option<f64>) -> Vec<Di
         .collect()
 }
 
-/// From the rear end of the lower run along belt travel: up round the rear, forwards on top, down
-/// round the front, back along the ground.
+/// Wheels from the rear end of the lower run along belt travel: up round the rear, forward on top, down round the
+/// front, back along the ground.
 fn circumferential(
     outline: &TrackOutline,
     wheels: &CircumferentialWheels,
@@ -67,7 +67,7 @@ fn circumferential(
             (radius, (0..wheels.count).map(center).collect())
         }
         Some(radius) => {
-            let rule = format!("must be below the smaller radius of the outline, {smallest} m");
+            let rule = format!("must be less than the smaller radius of the outline, {smallest} m");
             return Err(ScenarioError::new("robot.track.wheel_radius", radius, rule));
         }
         None => tight(outline, wheels.count)?,
@@ -78,9 +78,9 @@ fn circumferential(
 
 /// Radius and centres of wheels that touch their neighbours all the way round.
 fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), ScenarioError> {
-    // Larger wheels would meet those on the other side of the track before their neighbours.
+    // Larger wheels would touch those on the other run before their neighbours.
     let largest = 0.5 * outline.front_radius.min(outline.rear_radius);
-    // Larger wheels leave a shorter way for their centres and need more of it.
+    // Larger wheels leave a shorter path for their centres, and need more of it.
     let overlap = |radius: f64| {
         let path = path_of_centers(outline, radius);
         let next = |at, _| path.way_to_distance(at, 2.0 * radius);
@@ -88,7 +88,7 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
     };
     if overlap(largest) < 0.0 {
         let rule = format!(
-            "must be larger: so few wheels would have to exceed {largest} m, half the outline's radius, to touch; give wheel_radius for spaced ones"
+            "must be larger: to touch each other, so few wheels would need a radius above {largest} m, half the outline's (give wheel_radius to space them instead)"
         );
         return Err(ScenarioError::new("robot.track.count", count, rule));
     }
@@ -103,7 +103,7 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
     Ok((radius, centers.collect()))
 }
 
-/// The way of the centres of wheels that touch the outline from inside.
+/// The path of the centres of wheels that touch the outline from inside.
 fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
     Envelope::new(&end_discs(outline).map(|end| Disc {
         radius: end.radius - radius,

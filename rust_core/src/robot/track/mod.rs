@@ -1,4 +1,4 @@
-//! Track models: which shapes meet the ground, and which drive turns each of them.
+//! Track models: the shapes that meet the ground, and the drive that moves each of them.
 
 mod belt;
 mod flipper;
@@ -18,17 +18,17 @@ use crate::scenario::{
 pub(crate) struct TrackModel {
     /// Shapes that meet the ground.
     pub parts: Vec<Part>,
-    /// Number of independent drives, the driven ones first; they share the mass evenly, but for chains.
+    /// Number of independent drives, those with a motor first; except for chains, they share the mass evenly.
     pub drives: usize,
-    /// Number of drives with a motor; these share the force evenly, but for chains.
+    /// Number of drives with a motor; except for chains, they share the force evenly.
     pub motors: usize,
     /// The drive pushes the chassis itself instead of the ground under the parts.
     pub pushes_chassis: bool,
-    /// Chains of shoes, which are the track's mass.
+    /// Chains of shoes, which have all of the track's mass.
     pub chains: Vec<ChainOfShoes>,
 }
 
-/// Builds the model of a robot's track, those of its flippers included.
+/// Builds the track model of a robot, including those of its flippers.
 ///
 /// # Errors
 /// Wheels that do not fit the robot.

@@ -1,15 +1,15 @@
-//! What a chain of shoes runs on where there is no guide: sprocket, idler, road wheels, return rollers.
+//! What a chain of shoes runs on without a guide: sprocket, idler, road wheels and return rollers.
 
 use crate::geometry::{Disc, ShoeLoop, Vector, left_of, lower_tangent};
 use crate::robot::{BodyKind, Mount, Part, Shape, Sprocket};
 use crate::scenario::SegmentalTrack;
 
-/// Share of the distance between wheels that they fill, ...
+/// Largest diameter of road wheels and return rollers, as a share of their spacing, ...
 const FILLED: f64 = 0.96;
-/// ... and of the smaller end that road wheels and return rollers have at most.
+/// ... and their largest radii, as shares of that of the smaller end.
 const ROAD_WHEEL: f64 = 0.9;
 const ROLLER: f64 = 0.25;
-/// Pitches between two wheels at most that carry the lower and the upper run.
+/// Largest gaps between wheels under the lower and the upper run, in pitches.
 const LOWER_SPAN: f64 = 1.0;
 const UPPER_SPAN: f64 = 2.0;
 
@@ -21,7 +21,7 @@ pub(super) struct RunningGear {
 }
 
 impl RunningGear {
-    /// Round the ends of a chain's path; road wheels are where the lower run of the `built` ends is.
+    /// For the ends of a chain's path; road wheels follow the lower run of the `built` ends.
     pub(super) fn new(
         path: &ShoeLoop,
         built: [Disc; 2],
@@ -36,7 +36,7 @@ impl RunningGear {
         let smaller = rear.radius.min(front.radius);
         let distance = (front.center - rear.center).length();
         let enough = |span: f64| (distance / (span * path.pitch)).ceil().max(1.0) as u32 - 1;
-        // The upper tangent is the lower one of the ends upside down.
+        // The upper tangent is the lower tangent of the mirrored ends.
         let upwards = |disc: Disc| Disc {
             center: Vector::new(disc.center.x, -disc.center.y),
             ..disc
@@ -64,8 +64,8 @@ impl RunningGear {
         }
     }
 
-    /// The wheel that drives it: as heavy as the shoes on it, our assumption. Its teeth reach no farther out
-    /// than `most` [m], where the tips of the grousers are.
+    /// The sprocket: as heavy as the shoes on it, our assumption. Its teeth reach no farther out than `most` [m], where
+    /// the tips of the grousers are.
     pub(super) fn sprocket(path: &ShoeLoop, shoe_mass: f64, most: f64) -> Option<Sprocket> {
         let teeth = path.teeth(most)?;
         let mass = shoe_mass * teeth.count as f64;
@@ -76,8 +76,8 @@ impl RunningGear {
         })
     }
 
-    /// What of it could meet the ground between the shoes, whose tips reach `beyond` [m] its surface: wheels
-    /// that turn with what they touch.
+    /// The wheels that could meet the ground between the shoes, whose tips reach `beyond` [m] their surface; they turn
+    /// with what they touch.
     pub(super) fn parts(&self, beyond: f64) -> impl Iterator<Item = Part> {
         let of = |kind, discs: Vec<Disc>| {
             discs.into_iter().map(move |disc| Part {

@@ -1,7 +1,7 @@
 //! A chain of rigid shoes linked by pins (section 2.3 of the paper), on a guide of the chassis or on wheels.
 //!
-//! The outer faces of the plates run along the roots of the outline, the pins in the middle of the plates,
-//! and guide or wheels under their inner faces, so that the robot stands as high as the built one.
+//! The outer faces of the plates run along the roots of the outline, the pins along the middle of the plates, and
+//! guide or wheels are under their inner faces, so that the robot stands as high as the real one.
 
 use super::TrackModel;
 use super::running_gear::RunningGear;
@@ -9,15 +9,15 @@ use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, end_discs};
 use crate::robot::{BodyKind, ChainOfShoes, Mount, Part, Shape, Tensioner};
 use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
 
-/// [m/s^2] By which the default pre-tension is a share of the weight; that of the scenario may be none.
+/// [m/s^2] For the default pre-tension, a share of the weight; the scenario's gravity may be 0.
 const GRAVITY: f64 = 9.81;
-/// Shoes that the rest of the robot weighs at most: docs/decisions/0008 has the gaps of pins beyond.
+/// Largest mass of the rest of the robot, in shoes; docs/decisions/0008 has the gaps of pins beyond that.
 const HEAVIEST: f64 = 3000.0;
-/// Pitches by which the tensioner moves from its pre-tension to none.
+/// Travel of the tensioner from its pre-tension to no force, in pitches.
 const SOFTNESS: f64 = 0.1;
-/// Pitches by which an idler can be pressed in.
+/// Travel by which an idler can be pressed in, in pitches.
 const STOP: f64 = 0.06;
-/// The same with what its stop gives way by.
+/// The same, including how far its stop gives way.
 const PRESSED_IN: f64 = 0.07;
 
 /// Shoes on a guide or on wheels.
@@ -43,7 +43,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     let guide = ends(outline.grouser_height + plate_thickness);
     if let Some(end) = guide.iter().find(|end| end.radius <= 0.0) {
         let rule = format!(
-            "must leave a guide: its smaller end would have a radius of {} m",
+            "must leave room for a guide, whose smaller end would have a radius of {} m",
             end.radius
         );
         let value = plate_thickness;
@@ -81,8 +81,8 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     let beyond = plate_thickness + outline.grouser_height;
     let (ends, wheels) = match track.mechanism {
         ChainMechanism::Guide => {
-            // The ground meets it where it is built, and its front end may be pressed in: it must not be met
-            // under plates that lie where they should.
+            // The guide meets the ground where it is built, and its front end may be pressed in: it must not touch
+            // ground under plates that are in place.
             let inside = PRESSED_IN * path.pitch;
             parts.push(Part {
                 kind: BodyKind::Guide,
@@ -125,7 +125,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     })
 }
 
-/// [kg] Mass of a shoe of so many.
+/// [kg] Mass of a shoe in a chain of `count`.
 fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
     let (given, shoes) = (robot.track_mass, count as f64);
     if (robot.mass - given) * shoes <= HEAVIEST * given {
@@ -133,16 +133,16 @@ fn shoe_mass(robot: &Robot, count: usize) -> Result<f64, ScenarioError> {
     }
     let least = robot.mass * shoes / (HEAVIEST + shoes);
     let rule = format!(
-        "must be at least {least:.4} kg for {count} shoes: pins of shoes that weigh less than 1/{HEAVIEST} of the rest of the robot open"
+        "must be at least {least:.4} kg for {count} shoes: if a shoe weighs less than 1/{HEAVIEST} of the rest of the robot, its pins open"
     );
     Err(ScenarioError::new("robot.track_mass", given, rule))
 }
 
-/// Shoes of a chain of `count` are too long: which counts are not.
+/// The error for a chain of `count` shoes that are too long; it says which counts are possible.
 fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
     let most = MAX_SHOES as usize;
     let allowed = if goes_round(most) {
-        // The shorter they are the better they fit, and to try one count takes some milliseconds.
+        // Shorter shoes fit better, and trying one count takes some milliseconds.
         let (mut too_few, mut least) = (count, most);
         while least - too_few > 1 {
             let between = too_few.midpoint(least);
@@ -154,15 +154,15 @@ fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
         }
         format!("must be from {least} to {most} here")
     } else {
-        format!("must be beyond {most} here, the most there can be")
+        format!("must be more than {most} here, but that is the maximum")
     };
     let rule = format!(
-        "{allowed}: a shoe must be no longer than the smaller end is thick, than half the distance of the axles, nor than a straight run"
+        "{allowed}: a shoe must not be longer than the diameter of the smaller end, half the axle distance or a straight run"
     );
     ScenarioError::new("robot.track.shoe_count", count, rule)
 }
 
-/// A disc that lies so far [m] inside another, if there is room for it.
+/// A disc `inside` [m] smaller than another, if there is room for it.
 fn shrunk(disc: Disc, inside: f64) -> Disc {
     Disc {
         radius: (disc.radius - inside).max(0.5 * disc.radius),
@@ -170,7 +170,7 @@ fn shrunk(disc: Disc, inside: f64) -> Disc {
     }
 }
 
-/// The tensioners of both tracks together.
+/// The tensioners of both tracks, lumped together.
 fn tensioner(robot: &Robot, track: &SegmentalTrack, pitch: f64) -> Tensioner {
     let pre_tension = track.pre_tension.unwrap_or(robot.mass * GRAVITY / 40.0);
     let stiffness = track

@@ -1,7 +1,7 @@
 //! Wheels in place of a track.
 //!
-//! A wheel on a fixed axle needs no body of its own: its mass rides with the chassis, and its spin is
-//! a degree of freedom of the drive.
+//! A wheel on a fixed axle needs no body of its own: its mass belongs to the chassis, and its spin is a degree of
+//! freedom of the drive.
 
 use super::TrackModel;
 use super::layout;
@@ -9,7 +9,7 @@ use crate::geometry::Gear;
 use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{Robot, ScenarioError, TorqueSharing, Wheel};
 
-/// Wheels that the motors turn, together or each by itself.
+/// Wheels driven by motors, together or each by itself.
 pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, ScenarioError> {
     let own_motors = robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
     let parts = layout::wheels(robot)?
@@ -39,7 +39,7 @@ pub(super) fn driven(robot: &Robot, wheel: &Wheel) -> Result<TrackModel, Scenari
     })
 }
 
-/// Round wheels that turn freely, each by itself, on drives from number `first`.
+/// Round wheels that turn freely and independently, with drives numbered from `first`.
 pub(super) fn passive(robot: &Robot, first: usize) -> Result<Vec<Part>, ScenarioError> {
     let discs = layout::wheels(robot)?;
     let parts = discs.iter().enumerate().map(|(i, disc)| {

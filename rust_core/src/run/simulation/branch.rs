@@ -1,4 +1,4 @@
-//! The same instant with something changed: another track, friction, command, or a closed belt.
+//! Branches: the same instant with another track, friction or command, or with a closed belt.
 
 use std::sync::Arc;
 
@@ -17,9 +17,8 @@ use crate::terrain::Ground;
 impl Simulation {
     /// The robot of `variant` in this pose, with these speeds.
     ///
-    /// What has not changed goes on as it was, with the same bits. Another robot or track takes the
-    /// pose and the speeds over; ground that is inside it is let out without a push. Outcome,
-    /// stops and progress are counted from here.
+    /// What is unchanged continues bit by bit. Another robot or track takes over the pose and the speeds; ground
+    /// inside it is let out without a push. Outcome, stops and progress count from here.
     #[must_use]
     pub fn branch(&self, variant: &Checked) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
@@ -34,7 +33,7 @@ impl Simulation {
         branch
     }
 
-    /// What a closed belt of the same envelope, force and friction does in this pose.
+    /// Tries a closed belt with the same envelope, force and friction in this pose.
     ///
     /// # Errors
     /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
@@ -42,7 +41,7 @@ impl Simulation {
         self.try_belt(self.with_closed_belt()?, cancel)
     }
 
-    /// The same of a belt with grousers as high as those of the track.
+    /// The same for a belt with grousers as high as those of the track.
     ///
     /// # Errors
     /// As [`Self::counterfactual`], and [`Error::Scenario`] if the track has none.
@@ -50,14 +49,14 @@ impl Simulation {
         self.try_belt(self.with_closed_belt_with_grousers()?, cancel)
     }
 
-    /// The same instant with such a belt.
+    /// The same instant, with such a belt.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the track has no grousers, or the pitch leaves more than a belt may have.
+    /// [`Error::Scenario`] if the track has no grousers, or the pitch makes more than a belt may have.
     pub fn with_closed_belt_with_grousers(&self) -> Result<Self, Error> {
         let (model, outline) = (self.dynamics.model(), &self.scenario.robot.outline);
         if !model.has_grousers(outline) || outline.grouser_thickness <= 0.0 {
-            let rule = "must have grousers to be compared with a belt that has some";
+            let rule = "must have grousers to be compared with a belt with grousers";
             let error = ScenarioError::new("robot.track", "this model", rule);
             return Err(error.into());
         }
@@ -95,7 +94,7 @@ impl Simulation {
         Ok(self.with(&self.scenario, Arc::clone(&self.ground), model))
     }
 
-    /// Another model in this pose, its drives at the mean speed of these.
+    /// Another model in this pose, with its drives at the mean speed of the present ones.
     fn with(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
         let now = self.reading();
         let center =

@@ -47,7 +47,7 @@ impl Simulation {
     /// Gives the drivetrain a new speed [m/s]; it follows within its limits.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the speed is beyond the drivetrain's.
+    /// [`Error::Scenario`] if the speed exceeds the drivetrain's.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
         let drive = Drive {
             speed,
@@ -59,11 +59,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on; they
-    /// follow within their limits, whatever the gait.
+    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on, overriding the
+    /// gait; they follow within their limits.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if there are none there, or the angle is not finite or beyond a full turn.
+    /// [`Error::Scenario`] if that end has none, or the angle is not finite or exceeds a full turn.
     pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
         let path = match end {
             End::Front => "flipper_angle",
@@ -71,7 +71,7 @@ impl Simulation {
         };
         let mut ends = self.scenario.robot.flippers.iter().flat_map(Flippers::ends);
         if !ends.any(|has| has == end) {
-            let rule = "must not be given: the robot has no flippers there";
+            let rule = "must not be given, because the robot has no flippers there";
             return Err(ScenarioError::new(path, angle, rule).into());
         }
         if !(-6.3..=6.3).contains(&angle) {
@@ -82,7 +82,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Gives commands of all kinds at once: all or, if one is refused, none.
+    /// Gives commands of all kinds at once; if one is invalid, none takes effect.
     ///
     /// # Errors
     /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
@@ -115,7 +115,7 @@ impl Simulation {
     /// Pushes at the centre of mass with a force [N] along x, from now on.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the force is not finite or beyond 1e6 N.
+    /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N.
     pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
         if !(-1e6..=1e6).contains(&force) {
             let rule = "must be >= -1e6 N and <= 1e6 N";

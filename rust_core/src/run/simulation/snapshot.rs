@@ -1,4 +1,4 @@
-//! A simulation as bytes, and back: built anew from its scenario, then given its state.
+//! Snapshots: a simulation as bytes and back; it is rebuilt from its scenario, then given its state.
 
 #[cfg(test)]
 mod tests;
@@ -21,10 +21,10 @@ const MAGIC: &[u8] = b"crawler2d snapshot 1\n";
 /// Bytes of the digest at the end.
 const DIGEST: usize = 32;
 
-/// What a snapshot holds.
+/// The contents of a snapshot.
 #[derive(Serialize, Deserialize)]
 struct Image {
-    /// The layout of the rest is that of this build.
+    /// Build that wrote it; the layout of the rest depends on the build.
     build: String,
     rest: Vec<u8>,
 }
@@ -45,7 +45,7 @@ struct Moment {
 }
 
 impl Simulation {
-    /// Everything that the future depends on, as bytes.
+    /// The complete state, as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
         let moment = Moment {
             scenario: self.scenario.to_json(),
@@ -70,10 +70,10 @@ impl Simulation {
         snapshot
     }
 
-    /// The simulation of a snapshot; it goes on with the same bits.
+    /// Restores the simulation of a snapshot; it continues bit by bit the same.
     ///
     /// # Errors
-    /// [`Error::Scenario`] at `snapshot` if the bytes are no snapshot, damaged, or another build's.
+    /// [`Error::Scenario`] at `snapshot` if the bytes are not a snapshot, damaged, or from another build.
     pub fn from_snapshot(snapshot: &[u8]) -> Result<Self, Error> {
         let Some(body) = snapshot.strip_prefix(MAGIC) else {
             return Err(refused(
@@ -89,13 +89,15 @@ impl Simulation {
         }
         let image: Image = postcard::from_bytes(body).map_err(|_| damaged())?;
         if image.build != BUILD_ID {
-            let rule = format!("must be of this build, {BUILD_ID}: its layout is another");
+            let rule = format!(
+                "must be from this build, {BUILD_ID}, because the layout differs between builds"
+            );
             return Err(refused(&format!("one of build {}", image.build), &rule));
         }
         let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
         let mut simulation = Self::new(&Checked::from_json(&moment.scenario)?);
         if !simulation.fits(&moment) {
-            let rule = "must hold what its own robot and ground can have come to";
+            let rule = "must hold a state that its own robot and ground can reach";
             return Err(refused("contents of another", rule));
         }
         simulation.step = moment.step;
@@ -112,11 +114,11 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Whether it can have come to a moment: a snapshot may be a stranger's.
+    /// Whether the simulation can have reached a moment, because a snapshot may come from a stranger.
     fn fits(&self, moment: &Moment) -> bool {
         /// Steps of more than a day.
         const MOST_STEPS: u64 = 1 << 40;
-        /// [m] Beyond the ground, and above it; what falls may be anywhere below.
+        /// [m] Largest distance beyond the ground and above it; a falling robot may be anywhere below.
         const FAR: f64 = 1e6;
 
         let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);

@@ -1,4 +1,4 @@
-//! The robot as a whole: where its mass is, and the energy that its bodies have.
+//! The robot as a whole: centre of mass, moment of inertia and energy.
 
 use super::Simulation;
 use crate::geometry::{Vector, left_of};
@@ -35,8 +35,8 @@ impl Simulation {
         self.bodies().into_iter().map(of_body).sum()
     }
 
-    /// [J] Kinetic energy, that of the weight over y = 0, and that of the tensioners of chains. What contacts
-    /// and stops hold while they give way is not counted.
+    /// [J] Kinetic energy, potential energy relative to y = 0, and energy of the tensioners of chains. Energy stored
+    /// in contacts and stops while they give way is not counted.
     pub fn energy(&self) -> f64 {
         let gravity = self.scenario.gravity;
         let of_body = |body: Body| {
@@ -63,7 +63,7 @@ impl Simulation {
             velocity: state.velocity,
             turn: state.angular_velocity,
         };
-        // A drive is inertia alone: where it sits, its mass is that of the chassis.
+        // A drive has only inertia: its mass is part of the chassis.
         let turning = |inertia: f64, turn: f64| Body {
             mass: 0.0,
             inertia,

@@ -1,4 +1,4 @@
-//! A snapshot forgets nothing, and each thing that it holds decides what comes next.
+//! A snapshot loses nothing, and every part of it affects what comes next.
 
 mod fits;
 
@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use crate::scenario::Scenario;
 use crate::scenario::{BeltTrack, End, Ends, Flippers, LineOfWheels, Terrain, Track, Wheel};
 
-/// The Engineer with arms at its front on three wheels before a post, and an instant later.
+/// The Engineer with front arms, on three wheels in front of a post, after a while.
 fn on_wheels() -> Simulation {
     let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
@@ -41,13 +41,13 @@ fn on_wheels() -> Simulation {
     simulation
 }
 
-/// Everything that a snapshot holds is other than at the beginning of its scenario.
+/// A simulation in which every part of the state differs from that at the start.
 fn busy() -> Simulation {
     let wheels = on_wheels();
     let mut variant = wheels.scenario().clone();
     variant.robot.track = Track::Belt(BeltTrack {});
     let mut belt = wheels.branch(&Checked::new(&variant).expect("the variant is valid"));
-    // Backwards, so that at once it makes a difference.
+    // Backwards, so that it makes a difference at once.
     belt.set_speed(-0.3).expect("within the drivetrain's");
     belt.set_push(20.0).expect("within the limits");
     let arms = belt.set_flipper_angle(End::Front, 0.2);

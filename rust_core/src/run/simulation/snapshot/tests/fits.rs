@@ -1,4 +1,4 @@
-//! A snapshot whose head and digest are right may still hold what no simulation came to.
+//! A snapshot with correct head and digest may still hold a state that no simulation can reach.
 
 use super::*;
 use crate::contact::Contact;
@@ -91,7 +91,7 @@ fn a_snapshot_of_a_moment_that_does_not_fit_is_refused() {
             build: BUILD_ID.to_owned(),
             rest: bytes(&moment),
         }));
-        assert!(refusal.contains("must hold what its own"), "{what}");
+        assert!(refusal.contains("must hold a state that its own"), "{what}");
     }
 }
 
