@@ -1,6 +1,6 @@
 //! Position of the robot at time 0.
 
-use super::{Model, Shape};
+use super::{Model, Part, Shape};
 use crate::geometry::{Disc, Pose, Vector, end_discs, lower_tangent};
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::{Ground, Profile};
@@ -20,47 +20,10 @@ pub(crate) fn start_position(
     let running = model.running_at_start(scenario.start.track_phase);
     // The shapes above each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
-    for part in &model.parts {
-        let Touching { discs, segments } = &mut touching[part.lane];
-        if part.kind.is_in_chain() {
-            continue;
-        }
-        let (mount, run) = (
-            running.mounted(part.mount, Pose::IDENTITY),
-            part.run(&running),
-        );
+    for part in model.parts.iter().filter(|part| !part.kind.is_in_chain()) {
+        let mount = running.mounted(part.mount, Pose::IDENTITY);
         let placed = |p: Vector| turned(mount.transform_point(p));
-        discs.extend(part.discs().map(|(_, root)| Disc {
-            center: placed(root.center),
-            ..root
-        }));
-        match &part.shape {
-            Shape::Disc { .. } => {}
-            Shape::Hull { discs: round, .. } => {
-                let placed = &discs[discs.len() - round.len()..];
-                segments.extend(
-                    placed
-                        .windows(2)
-                        .map(|pair| lower_tangent(pair[0], pair[1])),
-                );
-            }
-            Shape::Gear { center, gear } => {
-                let start = -run / gear.radius;
-                for direction in gear.directions() {
-                    let corners = gear.corners(direction + start);
-                    segments.extend(closed(&corners.map(|c| placed(*center + c))));
-                }
-            }
-            Shape::Grouser(grouser) => {
-                let place = grouser.place(run);
-                let corners = grouser.corners().map(|c| placed(place.transform_point(c)));
-                segments.extend(closed(&corners));
-            }
-            Shape::Polygon { corners } => {
-                let corners: Vec<Vector> = corners.iter().map(|c| placed(*c)).collect();
-                segments.extend(closed(&corners));
-            }
-        }
+        touching[part.lane].add(part, part.run(&running), placed);
     }
     // The outline counts for where the robot begins, even if the model does not touch there.
     let outline = end_discs(&scenario.robot.outline).into_iter();
@@ -113,6 +76,42 @@ struct Touching {
 }
 
 impl Touching {
+    /// Adds a part whose surface has run by `run` [m]; `placed` takes points of its mount's frame to this one.
+    fn add(&mut self, part: &Part, run: f64, placed: impl Fn(Vector) -> Vector) {
+        let Self { discs, segments } = self;
+        discs.extend(part.discs().map(|(_, root)| Disc {
+            center: placed(root.center),
+            ..root
+        }));
+        match &part.shape {
+            Shape::Disc { .. } => {}
+            Shape::Hull { discs: round, .. } => {
+                let placed = &discs[discs.len() - round.len()..];
+                segments.extend(
+                    placed
+                        .windows(2)
+                        .map(|pair| lower_tangent(pair[0], pair[1])),
+                );
+            }
+            Shape::Gear { center, gear } => {
+                let start = -run / gear.radius;
+                for direction in gear.directions() {
+                    let corners = gear.corners(direction + start);
+                    segments.extend(closed(&corners.map(|c| placed(*center + c))));
+                }
+            }
+            Shape::Grouser(grouser) => {
+                let place = grouser.place(run);
+                let corners = grouser.corners().map(|c| placed(place.transform_point(c)));
+                segments.extend(closed(&corners));
+            }
+            Shape::Polygon { corners } => {
+                let corners: Vec<Vector> = corners.iter().map(|c| placed(*c)).collect();
+                segments.extend(closed(&corners));
+            }
+        }
+    }
+
     /// [m] Height of the chassis frame, placed at `x`, at which the robot just touches the ground.
     fn lowest_height(&self, profile: &Profile, x: f64) -> f64 {
         let shift = Vector::new(x, 0.0);

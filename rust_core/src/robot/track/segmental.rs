@@ -66,35 +66,12 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     };
     let tensioner = tensioner(robot, track, path.pitch);
     let shoe_mass = shoe_mass(robot, count)?;
-    let mut parts = Vec::new();
-    for shoe in 0..count {
-        let shapes = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
-        parts.extend(shapes.into_iter().map(|(kind, corners)| Part {
-            kind,
-            shape: Shape::Polygon { corners },
-            drive: Some(0),
-            friction_limit: f64::INFINITY,
-            lane: 0,
-            mount: Mount::Shoe(shoe),
-        }));
-    }
+    let pieces = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
+    let mut parts: Vec<Part> = (0..count).flat_map(|shoe| of_shoe(shoe, &pieces)).collect();
     let beyond = plate_thickness + outline.grouser_height;
     let (ends, wheels) = match track.mechanism {
         ChainMechanism::Guide => {
-            // The guide meets the ground where it is built, and its front end may be pressed in: it must not touch
-            // ground under plates that are in place.
-            let inside = PRESSED_IN * path.pitch;
-            parts.push(Part {
-                kind: BodyKind::Guide,
-                shape: Shape::Hull {
-                    discs: guide.map(|end| shrunk(end, inside)).to_vec(),
-                    grouser_height: beyond + inside,
-                },
-                drive: None,
-                friction_limit: f64::INFINITY,
-                lane: 0,
-                mount: Mount::Chassis,
-            });
+            parts.push(guide_of(guide, PRESSED_IN * path.pitch, beyond));
             (guide, Vec::new())
         }
         ChainMechanism::Sprocket => {
@@ -123,6 +100,34 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             path,
         }],
     })
+}
+
+/// The parts of one shoe.
+fn of_shoe(shoe: usize, pieces: &[(BodyKind, Vec<Vector>)]) -> impl Iterator<Item = Part> {
+    pieces.iter().cloned().map(move |(kind, corners)| Part {
+        kind,
+        shape: Shape::Polygon { corners },
+        drive: Some(0),
+        friction_limit: f64::INFINITY,
+        lane: 0,
+        mount: Mount::Shoe(shoe),
+    })
+}
+
+/// The guide as the ground meets it: where it is built. Its front end may be pressed in, and it must not touch
+/// ground under plates that are in place, so it lies so far [m] `inside`.
+fn guide_of(ends: [Disc; 2], inside: f64, beyond: f64) -> Part {
+    Part {
+        kind: BodyKind::Guide,
+        shape: Shape::Hull {
+            discs: ends.map(|end| shrunk(end, inside)).to_vec(),
+            grouser_height: beyond + inside,
+        },
+        drive: None,
+        friction_limit: f64::INFINITY,
+        lane: 0,
+        mount: Mount::Chassis,
+    }
 }
 
 /// [kg] Mass of a shoe in a chain of `count`.
