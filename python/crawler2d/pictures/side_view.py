@@ -184,7 +184,7 @@ def _draw_arrows(
 def _draw_envelopes(scene: Scene, sample: int, ax: Axes, *, depth: float) -> None:
     """Draw the envelopes of the wheels, and fill the ground inside them."""
     patches = extra("matplotlib.patches", "plot")
-    label: str | None = "envelope of the wheels"
+    label: str | None = "envelope (taut belt round the wheels)"
     for carrier in scene.carriers:
         if carrier.closed:
             continue
