@@ -1,4 +1,4 @@
-//! The core at work beside the interpreter, which answers Ctrl-C meanwhile.
+//! Runs the core in a thread of its own while the interpreter watches for Ctrl-C.
 
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
@@ -9,21 +9,21 @@ use pyo3::pybacked::PyBackedStr;
 
 use crate::errors;
 
-/// Runs the core in a thread of its own and looks for Ctrl-C until it has ended.
+/// Runs the core in a thread of its own, and checks for Ctrl-C until it has ended.
 ///
-/// Ctrl-C is answered at once: the thread is asked to end, and does so when it next looks. What it works on
-/// must be its own, or locked.
+/// Ctrl-C returns at once: the thread is asked to end, and does so at its next check. The data that it works
+/// on must be its own, or locked.
 pub(crate) fn beside<T: Send + 'static>(
     py: Python<'_>,
     cancel: &Cancel,
     call: impl Send + 'static + FnOnce() -> Result<T, Error>,
 ) -> PyResult<T> {
-    /// Between two looks.
+    /// Time between two checks.
     const PAUSE: Duration = Duration::from_millis(10);
 
     let (sender, receiver) = sync_channel(1);
     let work = move || {
-        // Nobody listens after Ctrl-C.
+        // After Ctrl-C nobody receives the result.
         let _ = sender.send(errors::caught(call));
     };
     let thread = std::thread::Builder::new().spawn(work);
@@ -38,7 +38,7 @@ pub(crate) fn beside<T: Send + 'static>(
                 Ok(result) => break Ok(result),
                 Err(RecvTimeoutError::Timeout) => {
                     #[allow(clippy::redundant_closure_for_method_calls)]
-                    // its lifetime is not general
+                    // the method path is not general over its lifetime
                     Python::attach(|py| py.check_signals()).inspect_err(|_| cancel.ask())?;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
@@ -50,13 +50,13 @@ pub(crate) fn beside<T: Send + 'static>(
     result.map_err(errors::to_python)
 }
 
-/// Builds what a text describes: beside the interpreter if that may take long.
+/// Builds what a text describes, in a thread of its own if that may take long.
 pub(crate) fn built<T: Send + 'static>(
     py: Python<'_>,
     text: PyBackedStr,
     call: impl Send + 'static + FnOnce(&str) -> Result<T, Error>,
 ) -> PyResult<T> {
-    /// Bytes of a text that is built within some milliseconds.
+    /// [bytes] Up to this length a text is built within a few milliseconds.
     const SHORT: usize = 50_000;
 
     if text.len() <= SHORT {

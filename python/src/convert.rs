@@ -1,4 +1,4 @@
-//! From the core's plain data to dictionaries of `NumPy` arrays.
+//! Converts plain data of the core to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
     BodyKind, Condition, ContactTable, Edge, Event, Intrusion, Mechanism, Model, Outcome, Record,
@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::{diagnosis, errors};
 
-/// What to keep of a run, from its arguments.
+/// What to record of a run, from the arguments.
 pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -> PyResult<Record> {
     if !(sample_interval > 0.0 && sample_interval <= 1e5) {
         let rule = "must be > 0 s and <= 100000 s";
@@ -98,7 +98,7 @@ fn events<'py>(py: Python<'py>, events: &[Event]) -> PyResult<Bound<'py, PyDict>
     Ok(columns)
 }
 
-/// What of the ground is inside the track.
+/// The intrusions of the ground into the track.
 pub(crate) fn intrusions<'py>(
     py: Python<'py>,
     found: &[Intrusion],
@@ -128,7 +128,7 @@ pub(crate) fn intrusions<'py>(
     Ok(columns)
 }
 
-/// A run of a batch that gave no result, with its exception.
+/// A run of a batch that failed, with its exception.
 pub(crate) fn failure(py: Python<'_>, error: PyErr) -> PyResult<Bound<'_, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("error", error.into_value(py))?;
@@ -185,7 +185,7 @@ fn trace(
     Ok(columns)
 }
 
-/// What of a trace says where everything was.
+/// The columns of a trace from which poses follow.
 pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     let column = |name: &str| -> PyResult<Vec<f64>> {
         let column = columns.as_any().get_item(name)?;
@@ -206,7 +206,7 @@ pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     })
 }
 
-/// Names of what tables hold, those with codes in the order of these.
+/// Names used in tables; the position of a name is its code.
 pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let names = PyDict::new(py);
     names.set_item("body_kind", BodyKind::ALL.map(BodyKind::name))?;
@@ -252,7 +252,7 @@ pub(crate) fn edges<'py>(py: Python<'py>, edges: &[Edge]) -> PyResult<Bound<'py,
     Ok(columns)
 }
 
-/// The wheels of both sides, those of the left one first.
+/// The wheels of both sides, the left one first.
 pub(crate) fn wheels<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
     let of_side = || model.wheels().into_iter().map(WheelBody::of_one_side);
     let sides = ["left", "right"];
@@ -297,7 +297,7 @@ pub(crate) fn pair(py: Python<'_>, x: f64, y: f64) -> Bound<'_, PyArray1<f64>> {
     vec![x, y].into_pyarray(py)
 }
 
-/// Version and build of the compiled core.
+/// Version and build data of the compiled core.
 pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);
     info.set_item("version", env!("CARGO_PKG_VERSION"))?;

@@ -1,4 +1,4 @@
-//! Scenarios that have passed the door, on their way to a batch.
+//! Scenarios that have been checked, for use in a batch.
 
 use crawler2d_core::Checked;
 use pyo3::prelude::*;
@@ -6,7 +6,7 @@ use pyo3::pybacked::PyBackedStr;
 
 use crate::beside::built;
 
-/// A scenario that keeps every rule, with the robot and the ground that were built to check that.
+/// A valid scenario, with the robot and the ground that were built to check it.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Passed {
     pub checked: Checked,
@@ -14,7 +14,7 @@ pub(crate) struct Passed {
 
 #[pymethods]
 impl Passed {
-    /// Checks a scenario; what is equal in `like` is not built again.
+    /// Checks a scenario; whatever equals that of `like` is not built again.
     #[new]
     #[pyo3(signature = (text, like = None))]
     fn new(py: Python<'_>, text: PyBackedStr, like: Option<PyRef<'_, Self>>) -> PyResult<Self> {

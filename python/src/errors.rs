@@ -1,4 +1,4 @@
-//! Errors and doubts of the core as the Python exceptions of `crawler2d.errors`; no panic leaves this file.
+//! Errors and doubts of the core as the exceptions and warnings of `crawler2d.errors`; panics stop here.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ pub(crate) fn guarded<T>(call: impl FnOnce() -> Result<T, Error>) -> PyResult<T>
     caught(call).map_err(to_python)
 }
 
-/// The same with an error of the core, which needs no interpreter.
+/// The same, but keeps the error of the core, which needs no interpreter.
 pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
     check_rounding()?;
     crawler2d_core::caught(call)
@@ -48,22 +48,22 @@ pub(crate) fn to_python(error: Error) -> PyErr {
     })
 }
 
-/// A fault of the program itself.
+/// An internal error of the program.
 pub(crate) fn internal(message: &str) -> PyErr {
     Python::attach(|py| raise(py, "InternalError", (message,), None))
 }
 
-/// A request beyond what the machine can hold.
+/// A request that exceeds what the machine can hold.
 pub(crate) fn limit(message: &str) -> PyErr {
     Python::attach(|py| raise(py, "LimitError", (message,), None))
 }
 
-/// A wrong argument that is no field of the scenario.
+/// A wrong argument that is not a field of the scenario.
 pub(crate) fn argument(path: &str, value: &str, rule: &str) -> PyErr {
     Python::attach(|py| raise(py, "ScenarioError", (path, value, rule), None))
 }
 
-/// Warns of doubts at the line of the caller's own code; of each field once, whatever a batch has there.
+/// Warns of doubts at the line of the caller's own code, once per field, however often a batch has it.
 pub(crate) fn warn<'a>(
     py: Python<'_>,
     doubts: impl IntoIterator<Item = &'a Doubt>,
@@ -78,7 +78,7 @@ pub(crate) fn warn<'a>(
     Ok(())
 }
 
-/// The exceptions are defined in Python so that they pickle.
+/// The exceptions are defined in Python so that they can be pickled.
 fn raise<'py>(
     py: Python<'py>,
     class: &str,

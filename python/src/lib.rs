@@ -10,7 +10,7 @@ mod stepwise;
 
 use pyo3::prelude::*;
 
-/// Makes what the core promises hold at the boundary; see `python/crawler2d/_core.pyi`.
+/// The compiled module, which keeps the core's promises at the boundary; see `python/crawler2d/_core.pyi`.
 #[pymodule]
 mod _core {
     use std::sync::Mutex;
@@ -39,7 +39,7 @@ mod _core {
         Ok(checked.scenario().to_json())
     }
 
-    /// Checks a scenario, and warns of what is unlikely to be meant.
+    /// Checks a scenario, and warns of values that are probably not intended.
     #[pyfunction]
     fn validate(py: Python<'_>, text: PyBackedStr) -> PyResult<()> {
         let checked = built(py, text, Checked::from_json)?;
@@ -60,7 +60,7 @@ mod _core {
         pictures::of(py, &checked)
     }
 
-    /// Where the bodies of a robot were at every sample of a run, from columns of its trace.
+    /// Poses of a robot's bodies at every sample of a run, from columns of its trace.
     #[pyfunction]
     fn poses<'py>(
         py: Python<'py>,
@@ -77,7 +77,7 @@ mod _core {
         pictures::poses(py, found)
     }
 
-    /// Names of what tables hold as codes or as text, by code.
+    /// Names that tables use, as text or as codes.
     #[pyfunction]
     fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         convert::kinds(py)
@@ -112,7 +112,7 @@ mod _core {
         }
     }
 
-    /// Many runs on several threads, results in order; whatever one comes to, the others are there.
+    /// Many runs on several threads, with results in order; one that fails does not affect the others.
     #[pyfunction]
     fn simulate_many<'py>(
         py: Python<'py>,
@@ -142,7 +142,7 @@ mod _core {
             list.append(converted.or_else(|error| convert::failure(py, error))?)?;
         }
         match interrupted {
-            // Ctrl-C keeps what is finished; anything else a callback raised goes on unchanged.
+            // Ctrl-C keeps the finished runs; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
                 Err(signal)
             }
@@ -150,7 +150,7 @@ mod _core {
         }
     }
 
-    /// A run up to a time, and on from there as another scenario.
+    /// A run up to a time, continued from there with another scenario.
     #[pyfunction]
     fn branch<'py>(
         py: Python<'py>,
@@ -171,7 +171,7 @@ mod _core {
         convert::run(py, run)
     }
 
-    /// A run up to a time, and a closed belt from there.
+    /// A run up to a time, continued from there with a closed belt.
     #[pyfunction]
     fn counterfactual(
         py: Python<'_>,
@@ -195,7 +195,7 @@ mod _core {
 
     type Results = Vec<Option<Result<Run, Error>>>;
 
-    /// Warns of what is doubtful, then runs all detached from the interpreter.
+    /// Issues all warnings, then runs everything detached from the interpreter.
     ///
     /// The second item is what interrupted the batch: a signal, or an exception of the callback.
     fn run_all(

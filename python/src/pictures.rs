@@ -1,4 +1,4 @@
-//! What pictures need of ground and robot, as arrays.
+//! Ground and robot as arrays for pictures.
 
 use crawler2d_core::{Body, Checked, Ground, Model, Mount, Part, Poses, Shape, Vector};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::convert::{edges, rows};
 
-/// Ground, bodies of the robot, and what carries the track that is in front in a side view: of two the right one.
+/// Ground, bodies of the robot, and the carriers of the near track in a side view, which is the right one of two.
 pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
     let (model, ground) = (checked.model(), checked.ground());
     let lanes = PyList::empty(py);
@@ -28,7 +28,7 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py,
     Ok(result)
 }
 
-/// The bodies as columns; what is no part has the number -1.
+/// The bodies as columns; a body that is not a part has the number -1.
 fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Bound<'py, PyDict>> {
     let found = model.outlines();
     let codes = |code: &dyn Fn(&Body) -> i64| found.iter().map(code).collect::<Vec<i64>>();
@@ -59,13 +59,13 @@ fn bodies<'py>(py: Python<'py>, model: &Model, ground: &Ground) -> PyResult<Boun
     Ok(columns)
 }
 
-/// What carries a track of a lane: the taut belts round its bodies, and what a belt of its own carries along.
+/// A carrier of a track on a lane: the envelopes of its bodies, and the path of its belt if it has one.
 fn carrier<'py>(
     py: Python<'py>,
     model: &Model,
     (mount, lane): (Mount, usize),
 ) -> PyResult<Bound<'py, PyDict>> {
-    /// [rad] Turn between two points of a belt.
+    /// [rad] Angle between two points on the arc of a belt.
     const BELT_TURN: f64 = 0.05;
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
@@ -109,7 +109,7 @@ fn carrier<'py>(
     Ok(drawn)
 }
 
-/// Where everything was, samples first.
+/// The poses as arrays; the first axis is that of the samples.
 pub(crate) fn poses(py: Python<'_>, found: Poses) -> PyResult<Bound<'_, PyDict>> {
     let (n, bodies, arms) = (found.samples, found.count, found.flippers);
     let columns = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! A simulation that Python advances and commands by itself.
+//! A simulation that is advanced and commanded from Python.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -13,20 +13,20 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::beside::{beside, built};
 use crate::{convert, diagnosis, errors};
 
-/// One simulation under way; a lock lets any thread use it, one at a time.
+/// A simulation; a lock lets any thread use it, one at a time.
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
     inner: Arc<Inner>,
-    /// Its steps take so long that Ctrl-C must not wait for one.
+    /// Whether its steps take so long that Ctrl-C must not wait for one.
     is_slow: AtomicBool,
 }
 
-/// Between two looks for Ctrl-C.
+/// Time between two checks for Ctrl-C.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
-/// A step that takes longer is one that Ctrl-C must not wait for.
+/// A step longer than this is too long to wait for after Ctrl-C.
 const SLOW: Duration = Duration::from_millis(20);
 
-/// None once a step failed: its state is not to be trusted.
+/// None after a step has failed, since its state cannot be trusted.
 type Inner = Mutex<Option<crawler2d_core::Simulation>>;
 
 #[pymethods]
@@ -42,7 +42,7 @@ impl Simulation {
         Ok(Self::of(simulation))
     }
 
-    /// The simulation of a snapshot.
+    /// The simulation stored in a snapshot.
     #[staticmethod]
     fn from_snapshot(py: Python<'_>, snapshot: PyBackedBytes) -> PyResult<Self> {
         let simulation = beside(py, &Cancel::default(), move || {
@@ -51,7 +51,7 @@ impl Simulation {
         Ok(Self::of(simulation))
     }
 
-    /// Everything that the future depends on.
+    /// Everything on which the future depends.
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let snapshot = self.with(py, |simulation| Ok(simulation.snapshot()))?;
         Ok(PyBytes::new(py, &snapshot))
@@ -62,7 +62,7 @@ impl Simulation {
         self.with(py, |simulation| Ok(simulation.scenario().to_json()))
     }
 
-    /// Why the robot has stopped, if it has.
+    /// The diagnosis, if the robot is stopped.
     fn diagnosis<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let why = self.with(py, |simulation| Ok(simulation.diagnosis()))?;
         why.map(|d| diagnosis::of(py, &d)).transpose()
@@ -103,12 +103,12 @@ impl Simulation {
                 Ok(slowest)
             })
         })?;
-        // Other work on the machine may have made it look slow.
+        // Other load on the machine may have made it look slow.
         self.is_slow.store(slowest > SLOW, Ordering::Relaxed);
         Ok(())
     }
 
-    /// Gives the drivetrain a new command, turns the flippers, or pushes the robot.
+    /// Commands a speed, turns the flippers, or pushes the robot.
     #[pyo3(signature = (speed = None, flipper_angle = None, rear_flipper_angle = None, push = None))]
     fn command(
         &self,
@@ -124,7 +124,7 @@ impl Simulation {
         })
     }
 
-    /// The state of this instant.
+    /// The current state.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (reading, contacts, outcome, flippers) = self.with(py, |simulation| {
             Ok((
@@ -155,7 +155,7 @@ impl Simulation {
         Ok(state)
     }
 
-    /// What of the ground is inside the envelope of the track now.
+    /// The current intrusions of the ground into the envelope of the track.
     fn intrusions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = self.with(py, |simulation| Ok(simulation.intrusions()))?;
         convert::intrusions(py, &found)
@@ -170,7 +170,7 @@ impl Simulation {
 
 impl Simulation {
     fn of(simulation: crawler2d_core::Simulation) -> Self {
-        /// Points of a ground, and parts of a robot, from which a step may take long.
+        /// Number of points of a ground, and of parts of a robot, from which a step may take long.
         const MANY: (usize, usize) = (10_000, 200);
 
         let (points, parts) = simulation.size();
@@ -180,7 +180,7 @@ impl Simulation {
         }
     }
 
-    /// Takes at most so many steps, and no more than fit between two looks for Ctrl-C; how many it took.
+    /// Takes at most this number of steps, and no more than fit between two checks for Ctrl-C; returns how many.
     fn steps_between_looks(
         &self,
         simulation: &mut crawler2d_core::Simulation,
@@ -207,7 +207,7 @@ impl Simulation {
     }
 }
 
-/// Calls the core for a simulation, one thread at a time; after a failure it is closed.
+/// Calls the core with the simulation, one thread at a time; after a failure the simulation is closed.
 fn call<T>(
     inner: &Inner,
     change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,

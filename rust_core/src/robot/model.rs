@@ -1,4 +1,4 @@
-//! The robot as it is simulated: one body, the parts that meet the ground, the drives.
+//! The robot as it is simulated: one body, the parts that meet the ground, and the drives.
 
 use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
@@ -11,35 +11,35 @@ pub struct Model {
     pub mass: f64,
     /// [m] Centre of mass in the chassis frame.
     pub center_of_mass: Vector,
-    /// [kg m^2] Moment of inertia without the part that turns with the drives.
+    /// [kg m^2] Moment of inertia without the parts that turn with the drives.
     pub moment_of_inertia: f64,
-    /// What meets the ground; the belly, if any, is the last.
+    /// Parts that can meet the ground; the belly, if there is one, is the last.
     pub parts: Vec<Part>,
-    /// Number of drives, the driven ones first.
+    /// Number of drives; those with a motor come first.
     pub drives: usize,
     /// Number of drives with a motor; the others turn freely.
     pub motors: usize,
-    /// [kg] Mass that moves at the surface speed of each drive.
+    /// [kg] Mass that moves at the surface speed, for each drive.
     pub drive_masses: Vec<f64>,
-    /// [m] Radius that joins surface speed and spin of a drive.
+    /// [m] Ratio of surface speed to spin of a drive.
     pub drive_radius: f64,
     /// [N] Largest traction of each motor.
     pub drive_force: f64,
-    /// The drive pushes the chassis along its axis, whatever touches the ground.
+    /// Whether the drive pushes the chassis along its axis, whatever touches the ground.
     pub pushes_chassis: bool,
-    /// Chains of shoes, each with the drive of its number; then `mass`, `center_of_mass` and
-    /// `moment_of_inertia` are those of the chassis without them.
+    /// Chains of shoes, each with the drive of the same index; `mass`, `center_of_mass` and
+    /// `moment_of_inertia` are then those of the chassis alone.
     pub chains: Vec<ChainOfShoes>,
-    /// Arms that pivot on it; these, too, are then not in the figures of the chassis.
+    /// Arms that pivot on the chassis; these, too, are not included in the values of the chassis.
     pub flippers: Vec<Flipper>,
 }
 
 impl Model {
-    /// The model of a robot, both tracks lumped: mass, centre of mass and moments of inertia are the
-    /// built robot's, whatever the track model.
+    /// The model of a robot, both tracks combined: mass, centre of mass and moment of inertia are those of the
+    /// built robot, whatever the track model.
     ///
     /// # Errors
-    /// Wheels that do not fit the robot; shoes and arms that leave no chassis.
+    /// Wheels that do not fit the robot; shoes and arms that leave nothing for the chassis.
     pub fn new(robot: &Robot) -> Result<Self, ScenarioError> {
         let track = track::build(robot)?;
         let mut parts = track.parts;
@@ -57,7 +57,7 @@ impl Model {
         }
         let radius = robot.outline.rear_radius;
         let flippers = Flipper::of(robot);
-        // A chain is all of the track's mass and has all of its force; beside it, only flippers have drives.
+        // A chain has all of the track's mass and force; the only other drives are those of flippers.
         let has_chain = !track.chains.is_empty();
         let (sharers, of_track) = if has_chain {
             (1, 1)
@@ -95,7 +95,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Where what moves over the chassis is at time 0, when its tracks have run by `track_phase` [m].
+    /// Positions of the moving parts at time 0, when the tracks have run by `track_phase` [m].
     pub(crate) fn running_at_start(&self, track_phase: f64) -> Running {
         let mut running = Running::default();
         let drives = std::iter::repeat_n(track_phase, self.drives);
@@ -106,8 +106,8 @@ impl Model {
         running
     }
 
-    /// The same when its drives have run so far [m], its shoes have these frames in that of the chassis and its
-    /// flippers are turned so far over it [rad], counter-clockwise: the start, a step, a sample of a trace.
+    /// The same for drives at these positions [m], shoes with these frames in that of the chassis, and flippers
+    /// at these angles [rad] relative to it, counter-clockwise: at the start, in a step, at a sample of a trace.
     pub(crate) fn set_running(
         &self,
         running: &mut Running,
@@ -141,7 +141,7 @@ impl Model {
         self.chains.iter().map(|chain| chain.shoes.len()).sum()
     }
 
-    /// Number of lanes that tracks meet.
+    /// Number of lanes under tracks.
     pub(crate) fn tracks(&self) -> usize {
         let of_tracks = self
             .parts
@@ -150,13 +150,13 @@ impl Model {
         of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
     }
 
-    /// What carries a closed belt: the chassis and the flippers.
+    /// The carriers of a closed belt: the chassis and the flippers.
     pub fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + use<> {
         let flippers = (0..self.flippers.len()).map(Mount::Flipper);
         std::iter::once(Mount::Chassis).chain(flippers)
     }
 
-    /// Circumscribed and root circles of the bodies of the track on a lane that this carries.
+    /// Circumscribed and root circles of the bodies on a mount, for the track on a lane.
     pub(crate) fn discs_of_track(
         &self,
         lane: usize,
@@ -167,8 +167,8 @@ impl Model {
         of_track.flat_map(|part| part.discs().collect::<Vec<_>>())
     }
 
-    /// The taut belts round the circumscribed and the root circles of the bodies of a track, as points of
-    /// the frame of what carries it, counter-clockwise; an arc is cut every `turn` [rad].
+    /// The taut belts round the circumscribed and the root circles of a track's bodies, as points in the frame
+    /// of their mount, counter-clockwise; arcs have a point every `turn` [rad].
     pub fn envelopes(&self, on: Mount, turn: f64) -> [Vec<Vector>; 2] {
         let (tips, roots): (Vec<Disc>, Vec<Disc>) = self.discs_of_track(0, on).unzip();
         [tips, roots].map(|discs| {
@@ -178,14 +178,14 @@ impl Model {
         })
     }
 
-    /// [m] Farthest point of any part from the centre of mass.
+    /// [m] Distance of the farthest point of any part from the centre of mass.
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();
         let of_part = |part: &Part| match &part.shape {
-            // Never beyond the tips of the hull that it travels round but by a corner.
+            // Shoes stay within the track's hull apart from a corner; flippers are added below.
             _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
-            // Never beyond the tips of the belt's hull.
+            // Never beyond the circles of the belt's hull.
             Shape::Grouser(_) => 0.0,
             _ => part
                 .discs()

@@ -1,18 +1,18 @@
-//! What carries a part.
+//! The carriers of parts.
 
 /// A body of the robot that carries parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
     /// The chassis.
     Chassis,
-    /// The shoe of that number.
+    /// The shoe with this index.
     Shoe(usize),
-    /// The arms at one end, of that number.
+    /// The arms at one end, by index.
     Flipper(usize),
 }
 
 impl Mount {
-    /// The number of its shoe.
+    /// The index of its shoe, if it is one.
     pub fn shoe(self) -> Option<usize> {
         match self {
             Self::Shoe(shoe) => Some(shoe),

@@ -1,4 +1,4 @@
-//! The same instant with something changed: another track, friction, command, or a closed belt.
+//! Branches: the same instant with something changed, such as track, friction or command, or a closed belt.
 
 use std::sync::Arc;
 
@@ -17,9 +17,9 @@ use crate::terrain::Ground;
 impl Simulation {
     /// The robot of `variant` in this pose, with these speeds.
     ///
-    /// What has not changed goes on as it was, with the same bits. Another robot or track takes the
-    /// pose and the speeds over; ground that is inside it is let out without a push. Outcome,
-    /// stops and progress are counted from here.
+    /// Whatever has not changed continues bit for bit. A changed robot or track takes over pose and speeds;
+    /// ground that is then inside it is let out without a push. Outcome, stops and progress are counted
+    /// from here.
     #[must_use]
     pub fn branch(&self, variant: &Checked) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
@@ -34,15 +34,15 @@ impl Simulation {
         branch
     }
 
-    /// What a closed belt of the same envelope, force and friction does in this pose.
+    /// What a closed belt with the same envelope, force and friction does from this pose.
     ///
     /// # Errors
-    /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
+    /// [`Error::Simulation`] if the state has become non-finite, [`Error::Interrupted`] once `cancel` is requested.
     pub fn counterfactual(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
         self.try_belt(self.with_closed_belt()?, cancel)
     }
 
-    /// The same of a belt with grousers as high as those of the track.
+    /// The same for a belt with grousers as high as those of the track.
     ///
     /// # Errors
     /// As [`Self::counterfactual`], and [`Error::Scenario`] if the track has none.
@@ -53,7 +53,7 @@ impl Simulation {
     /// The same instant with such a belt.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the track has no grousers, or the pitch leaves more than a belt may have.
+    /// [`Error::Scenario`] if the track has no grousers, or the pitch gives more than a belt may have.
     pub fn with_closed_belt_with_grousers(&self) -> Result<Self, Error> {
         let (model, outline) = (self.dynamics.model(), &self.scenario.robot.outline);
         if !model.has_grousers(outline) || outline.grouser_thickness <= 0.0 {
@@ -95,7 +95,7 @@ impl Simulation {
         Ok(self.with(&self.scenario, Arc::clone(&self.ground), model))
     }
 
-    /// Another model in this pose, its drives at the mean speed of these.
+    /// Another model in this pose, its drives at the mean speed of the current ones.
     fn with(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
         let now = self.reading();
         let center =

@@ -1,4 +1,4 @@
-//! What is commanded: by the schedule, by a gait, or by hand.
+//! Commands: from the schedule, from a gait, or by hand.
 
 use super::Simulation;
 use super::drive;
@@ -59,11 +59,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Turns the flippers at the front or at the rear to an angle [rad], upwards > 0, from now on; they
-    /// follow within their limits, whatever the gait.
+    /// Turns the flippers at the front or the rear to an angle [rad], upwards > 0; from now on they follow it
+    /// within their limits, whatever the gait.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if there are none there, or the angle is not finite or beyond a full turn.
+    /// [`Error::Scenario`] if that end has no flippers, or the angle is not finite or beyond a full turn.
     pub fn set_flipper_angle(&mut self, end: End, angle: f64) -> Result<(), Error> {
         let path = match end {
             End::Front => "flipper_angle",
@@ -82,7 +82,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Gives commands of all kinds at once: all or, if one is refused, none.
+    /// Gives several commands at once: either all take effect or, if one is rejected, none.
     ///
     /// # Errors
     /// Those of [`Self::set_speed`], [`Self::set_flipper_angle`] and [`Self::set_push`].
@@ -112,7 +112,7 @@ impl Simulation {
         self.dynamics.outer_force.x
     }
 
-    /// Pushes at the centre of mass with a force [N] along x, from now on.
+    /// Sets the push at the centre of mass to a force [N] along x, from now on.
     ///
     /// # Errors
     /// [`Error::Scenario`] if the force is not finite or beyond 1e6 N.

@@ -1,8 +1,8 @@
-//! From the commanded speed to the set-point that the drivetrain can follow.
+//! The drivetrain's set-point, which follows the commanded speed within its limits.
 
 use crate::scenario::Drivetrain;
 
-/// [m/s] The next set-point: it grows and falls in magnitude at the drivetrain's rates.
+/// [m/s] The next set-point: its magnitude changes at the drivetrain's rates of acceleration and braking.
 pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
     let slowing = now * command < 0.0 || command.abs() < now.abs();
     let target = if now * command < 0.0 { 0.0 } else { command };

@@ -1,4 +1,4 @@
-//! How a driver moves the flippers: by the clock, or by what it sees of its own robot.
+//! How a driver moves the flippers: by time, or by what the robot senses.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,23 +7,23 @@ use crate::scenario::{Climb, Drive, Gait, Hold};
 /// What a driver knows of its robot: pose and touch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
-    /// [s]
+    /// [s] Time.
     pub time: f64,
-    /// [rad] Nose up > 0.
+    /// [rad] Chassis angle, nose up > 0.
     pub chassis_angle: f64,
-    /// [rad] The same at the end of the step that is commanded, if it goes on turning as it does.
+    /// [rad] The same at the end of the step, if it keeps turning at the current rate.
     pub angle_ahead: f64,
-    /// The flippers at the front and at the rear bear on something beyond their roots.
+    /// Whether the front and the rear flippers bear on something beyond their roots.
     pub touches: [bool; 2],
 }
 
 /// What a driver remembers.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Driver {
-    /// Entries of the schedule of speeds that are past.
+    /// Number of entries of the speed schedule that are past.
     entries: usize,
     phase: Phase,
-    /// [rad] Angles given by hand in place of the gait's, front and rear.
+    /// [rad] Front and rear angles commanded by hand, in place of those of the gait.
     by_hand: [Option<f64>; 2],
 }
 
@@ -33,9 +33,9 @@ enum Phase {
     /// The front flippers reach up and forwards.
     #[default]
     Reach,
-    /// They have met something and sweep down on it.
+    /// They have touched something and sweep down on it.
     Sweep,
-    /// The chassis has risen: those at the rear lift it from behind.
+    /// The chassis has risen, and the rear flippers lift it from behind.
     Lift,
 }
 
@@ -49,20 +49,19 @@ impl Driver {
         speed
     }
 
-    /// Whether commands can have brought it there.
+    /// Whether commands can have brought the driver into this state.
     pub(crate) fn fits(&self, drive: &Drive) -> bool {
         let entries = drive.schedule.as_ref().map_or(0, Vec::len);
         let known = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
         self.entries <= entries && self.by_hand.iter().all(known)
     }
 
-    /// Takes the flippers out of the gait's hands.
+    /// Takes the flippers at an end away from the gait.
     pub(crate) fn hold(&mut self, end: usize, angle: f64) {
         self.by_hand[end] = Some(angle);
     }
 
-    /// [rad] Where the flippers at the front and at the rear are to be, upwards > 0; `start` is where they
-    /// were at time 0.
+    /// [rad] Target angles of the front and rear flippers, upwards > 0; `start` is their angle at time 0.
     pub(crate) fn angles(&mut self, drive: &Drive, start: f64, sight: Sight) -> [f64; 2] {
         let of_gait = match &drive.gait {
             None => [start; 2],
@@ -72,7 +71,7 @@ impl Driver {
         std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
     }
 
-    /// [rad] Where a climb has the flippers.
+    /// [rad] Target angles in a climb.
     fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [f64; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
@@ -80,11 +79,11 @@ impl Driver {
             Phase::Reach | Phase::Sweep if raised => Phase::Lift,
             Phase::Reach if front => Phase::Sweep,
             Phase::Sweep if !front => Phase::Reach,
-            // What they stand on would drop the robot.
+            // Moving flippers that the robot stands on would drop it.
             Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
-        // Aimed at where the chassis was, arms would lag behind by what it turns in a step.
+        // With the current chassis angle, arms would lag by what the chassis turns in a step.
         let swept = climb.sweep_angle - sight.angle_ahead;
         let pushed = climb.push_angle + sight.angle_ahead;
         match self.phase {

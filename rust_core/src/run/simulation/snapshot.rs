@@ -1,4 +1,4 @@
-//! A simulation as bytes, and back: built anew from its scenario, then given its state.
+//! Snapshots: a simulation as bytes, and back, by building its scenario and setting its state.
 
 #[cfg(test)]
 mod tests;
@@ -21,15 +21,15 @@ const MAGIC: &[u8] = b"crawler2d snapshot 1\n";
 /// Bytes of the digest at the end.
 const DIGEST: usize = 32;
 
-/// What a snapshot holds.
+/// The contents of a snapshot.
 #[derive(Serialize, Deserialize)]
 struct Image {
-    /// The layout of the rest is that of this build.
+    /// Build of the core, which determines the layout of the rest.
     build: String,
     rest: Vec<u8>,
 }
 
-/// All that changes from step to step.
+/// Everything that changes from step to step.
 #[derive(Serialize, Deserialize)]
 struct Moment {
     scenario: String,
@@ -45,7 +45,7 @@ struct Moment {
 }
 
 impl Simulation {
-    /// Everything that the future depends on, as bytes.
+    /// Everything on which the future depends, as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
         let moment = Moment {
             scenario: self.scenario.to_json(),
@@ -70,10 +70,10 @@ impl Simulation {
         snapshot
     }
 
-    /// The simulation of a snapshot; it goes on with the same bits.
+    /// The simulation of a snapshot; it continues bit for bit.
     ///
     /// # Errors
-    /// [`Error::Scenario`] at `snapshot` if the bytes are no snapshot, damaged, or another build's.
+    /// [`Error::Scenario`] at `snapshot` if the bytes are not a snapshot, are damaged, or come from another build.
     pub fn from_snapshot(snapshot: &[u8]) -> Result<Self, Error> {
         let Some(body) = snapshot.strip_prefix(MAGIC) else {
             return Err(refused(
@@ -112,11 +112,11 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Whether it can have come to a moment: a snapshot may be a stranger's.
+    /// Whether the simulation can have reached a moment; a snapshot may come from anywhere.
     fn fits(&self, moment: &Moment) -> bool {
-        /// Steps of more than a day.
+        /// Number of steps in more than a day.
         const MOST_STEPS: u64 = 1 << 40;
-        /// [m] Beyond the ground, and above it; what falls may be anywhere below.
+        /// [m] Limit beyond the ground and above it; something falling may be anywhere below.
         const FAR: f64 = 1e6;
 
         let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);

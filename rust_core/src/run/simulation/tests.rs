@@ -1,4 +1,4 @@
-//! Which outcome counts where several apply.
+//! Which outcome counts if several apply.
 
 use super::*;
 use crate::scenario::{
@@ -17,7 +17,7 @@ fn run_until(simulation: &mut Simulation, time: f64) {
     }
 }
 
-/// A second after it has stopped.
+/// A simulation one second after the robot has stopped.
 fn stopped(scenario: &Scenario) -> Simulation {
     let mut simulation = Simulation::new(&Checked::new(scenario).expect("the scenario is valid"));
     while simulation.monitor.stop_since().is_none() {
@@ -29,7 +29,7 @@ fn stopped(scenario: &Scenario) -> Simulation {
     simulation
 }
 
-/// So many gear wheels against a step [m], with the centre of mass at x [m].
+/// The Engineer with this number of gear wheels at a step [m], with its centre of mass at x [m].
 fn gears(count: u32, height: f64, center: f64) -> Scenario {
     let mut scenario = engineer();
     scenario.robot.track = Track::Line(LineOfWheels {
@@ -54,7 +54,7 @@ fn gears(count: u32, height: f64, center: f64) -> Scenario {
     scenario
 }
 
-/// Skids that no motor pushes, far before a step.
+/// Skids without a motor, far in front of a step.
 fn skids() -> Scenario {
     let mut scenario = engineer();
     scenario.robot.track = Track::Force(ForceTrack {
@@ -66,7 +66,7 @@ fn skids() -> Scenario {
     scenario
 }
 
-/// What lets an outcome apply no more.
+/// A change after which an outcome no longer applies.
 type NoMore = fn(&mut SeizureCriteria);
 
 #[test]
@@ -74,7 +74,7 @@ fn of_the_outcomes_that_apply_to_a_stop_the_first_counts() {
     // An edge in a pocket has brought the motors to their limit: seized and stalled.
     let mut stop = stopped(&gears(4, 0.09, -0.05));
     let criteria = &mut stop.scenario.criteria;
-    // With these it moves to and fro, and no load on the belly is little enough, too.
+    // With these it also cycles, and even no load on the belly counts as hung up.
     (criteria.cycling_distance, criteria.belly_load) = (-1.0, 0.0);
     let in_turn: [(Outcome, NoMore); 4] = [
         (Outcome::Cycling, |c| c.cycling_distance = 0.02),

@@ -1,4 +1,4 @@
-//! The robot as a whole: where its mass is, and the energy that its bodies have.
+//! Totals of the robot: centre of mass, moment of inertia and energy of all bodies.
 
 use super::Simulation;
 use crate::geometry::{Vector, left_of};
@@ -6,15 +6,15 @@ use crate::robot::ChainOfShoes;
 
 /// A body of the robot at an instant.
 struct Body {
-    /// [kg]
+    /// [kg] Mass.
     mass: f64,
-    /// [kg m^2] About its centre of mass.
+    /// [kg m^2] Moment of inertia about its centre of mass.
     inertia: f64,
-    /// [m]
+    /// [m] Centre of mass.
     center: Vector,
-    /// [m/s]
+    /// [m/s] Velocity of the centre of mass.
     velocity: Vector,
-    /// [rad/s]
+    /// [rad/s] Angular velocity.
     turn: f64,
 }
 
@@ -27,7 +27,7 @@ impl Simulation {
         moment / mass
     }
 
-    /// [kg m^2] Moment of inertia about it, drives included.
+    /// [kg m^2] Moment of inertia about the centre of mass, drives included.
     pub fn moment_of_inertia(&self) -> f64 {
         let center = self.center_of_mass();
         let about = |body: &Body| (body.center - center).length_squared();
@@ -35,8 +35,8 @@ impl Simulation {
         self.bodies().into_iter().map(of_body).sum()
     }
 
-    /// [J] Kinetic energy, that of the weight over y = 0, and that of the tensioners of chains. What contacts
-    /// and stops hold while they give way is not counted.
+    /// [J] Kinetic energy, potential energy of the weight above y = 0, and energy of the chains' tensioners.
+    /// Energy stored in the softness of contacts and stops is not counted.
     pub fn energy(&self) -> f64 {
         let gravity = self.scenario.gravity;
         let of_body = |body: Body| {
@@ -63,7 +63,7 @@ impl Simulation {
             velocity: state.velocity,
             turn: state.angular_velocity,
         };
-        // A drive is inertia alone: where it sits, its mass is that of the chassis.
+        // A drive adds inertia only; its mass is part of the chassis.
         let turning = |inertia: f64, turn: f64| Body {
             mass: 0.0,
             inertia,

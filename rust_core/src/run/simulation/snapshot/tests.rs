@@ -1,4 +1,4 @@
-//! A snapshot forgets nothing, and each thing that it holds decides what comes next.
+//! A snapshot is complete, and everything in it has an effect.
 
 mod fits;
 
@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use crate::scenario::Scenario;
 use crate::scenario::{BeltTrack, End, Ends, Flippers, LineOfWheels, Terrain, Track, Wheel};
 
-/// The Engineer with arms at its front on three wheels before a post, and an instant later.
+/// The Engineer on three wheels, with front arms, in front of a post, and an instant later.
 fn on_wheels() -> Simulation {
     let text = include_str!("../../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
@@ -34,20 +34,20 @@ fn on_wheels() -> Simulation {
         friction: 0.9,
     };
     let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
-    // The post is now in the gap between the middle wheel and the front one.
+    // The post is now in the gap between the middle and the front wheel.
     let x = simulation.reading().position.x;
     simulation.state.center.x -= x + 0.085;
     advance(&mut simulation);
     simulation
 }
 
-/// Everything that a snapshot holds is other than at the beginning of its scenario.
+/// A simulation in which everything that a snapshot holds differs from the start of its scenario.
 fn busy() -> Simulation {
     let wheels = on_wheels();
     let mut variant = wheels.scenario().clone();
     variant.robot.track = Track::Belt(BeltTrack {});
     let mut belt = wheels.branch(&Checked::new(&variant).expect("the variant is valid"));
-    // Backwards, so that at once it makes a difference.
+    // Backwards, so that it makes a difference at once.
     belt.set_speed(-0.3).expect("within the drivetrain's");
     belt.set_push(20.0).expect("within the limits");
     let arms = belt.set_flipper_angle(End::Front, 0.2);
@@ -62,7 +62,7 @@ fn advance(simulation: &mut Simulation) {
     }
 }
 
-/// The bits of what a user sees of the next steps.
+/// The bits of the next steps, as users see them.
 fn future(mut simulation: Simulation) -> Vec<[u64; 7]> {
     let mut look = || {
         simulation.step().expect("the state stays finite");
@@ -104,7 +104,7 @@ fn the_number_is_the_same_after_a_snapshot() {
         };
         (0..300).map(|_| look()).collect::<Vec<_>>()
     };
-    // Its wheels come down on the post and off it, as one and as the next.
+    // Its wheels come down on the post and off it; each contact has its own number.
     let mut whole = on_wheels();
     for _ in 0..300 {
         whole.step().expect("the state stays finite");
@@ -148,7 +148,7 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     }
 }
 
-/// Why bytes are refused.
+/// The message with which bytes are rejected.
 fn refusal(bytes: &[u8]) -> String {
     match Simulation::from_snapshot(bytes) {
         Err(Error::Scenario(e)) => {
@@ -160,7 +160,7 @@ fn refusal(bytes: &[u8]) -> String {
     }
 }
 
-/// A snapshot whose head and digest are right.
+/// A snapshot with correct head and digest.
 fn sealed(image: &Image) -> Vec<u8> {
     let mut snapshot = MAGIC.to_vec();
     snapshot.extend(bytes(image));
