@@ -29,7 +29,7 @@ pub(crate) fn beside<T: Send + 'static>(
     let thread = std::thread::Builder::new().spawn(work);
     if let Err(error) = thread {
         return Err(errors::limit(&format!(
-            "no thread could be started: {error}"
+            "a thread could not be started: {error}"
         )));
     }
     let result = py.detach(move || {
@@ -56,7 +56,7 @@ pub(crate) fn built<T: Send + 'static>(
     text: PyBackedStr,
     call: impl Send + 'static + FnOnce(&str) -> Result<T, Error>,
 ) -> PyResult<T> {
-    /// [bytes] Up to this length a text is built within a few milliseconds.
+    /// Length in bytes up to which a text is built within a few milliseconds.
     const SHORT: usize = 50_000;
 
     if text.len() <= SHORT {

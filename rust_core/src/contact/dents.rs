@@ -25,7 +25,7 @@ pub(crate) struct Dents {
 struct Dent {
     /// Number of the contact at the dent.
     contact: u64,
-    /// [m]
+    /// [m] Depth of the dent.
     depth: f64,
 }
 

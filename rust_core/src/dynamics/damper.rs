@@ -10,7 +10,7 @@ pub(super) const DAMPING: f64 = 1e-6;
 pub(super) struct Damper {
     /// [N s] Impulse at zero speed.
     impulse: f64,
-    /// [kg]
+    /// [kg] Impulse per speed.
     pub stiffness: f64,
 }
 

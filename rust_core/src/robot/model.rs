@@ -87,7 +87,7 @@ impl Model {
         let left = model.moment_of_inertia;
         if left <= 0.0 {
             let rule = format!(
-                "must exceed that of all that moves over the chassis, which is left {left} kg m^2"
+                "must exceed that of shoes and flippers, which leave {left} kg m^2 to the chassis"
             );
             let path = "robot.moment_of_inertia";
             return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));

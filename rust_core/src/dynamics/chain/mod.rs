@@ -58,7 +58,7 @@ pub(super) struct Chain {
 /// Initial guess for the next solve of a rest.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct RestMemory {
-    /// [N]
+    /// [N] Normal force.
     pub force: f64,
     pub grip: Grip,
 }

@@ -21,7 +21,7 @@ pub(super) struct Pin {
     pub gap: Vector,
     /// [m/s] Velocity at which the gap is to close.
     bias: Vector,
-    /// [kg]
+    /// [kg] Impulse per speed.
     pub stiffness: f64,
     /// [N s] Impulse on the next shoe in this piece.
     pub impulse: Vector,

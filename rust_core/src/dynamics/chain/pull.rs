@@ -29,7 +29,7 @@ pub(super) struct Pull {
     /// [m] The radius at which a sprocket pulls, if there is one.
     pub lever: Option<f64>,
     pub impulses: PullImpulses,
-    /// [kg]
+    /// [kg] Impulse per speed.
     stiffness: f64,
 }
 

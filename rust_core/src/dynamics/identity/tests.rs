@@ -6,7 +6,7 @@ use crate::dynamics::tests::{engineer, setup};
 use crate::geometry::{Vector, direction};
 use crate::terrain::Ground;
 
-/// [s]
+/// [s] Length of a step.
 const STEP: f64 = 0.001;
 
 /// A contact of a part with level ground at x [m].

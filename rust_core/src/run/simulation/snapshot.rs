@@ -77,7 +77,7 @@ impl Simulation {
     pub fn from_snapshot(snapshot: &[u8]) -> Result<Self, Error> {
         let Some(body) = snapshot.strip_prefix(MAGIC) else {
             return Err(refused(
-                "bytes without its head",
+                "bytes without its header",
                 "must be a snapshot of crawler2d",
             ));
         };
@@ -89,14 +89,17 @@ impl Simulation {
         }
         let image: Image = postcard::from_bytes(body).map_err(|_| damaged())?;
         if image.build != BUILD_ID {
-            let rule = format!("must be of this build, {BUILD_ID}: its layout is another");
-            return Err(refused(&format!("one of build {}", image.build), &rule));
+            let rule = format!("must be from this build, {BUILD_ID}: the layout differs");
+            return Err(refused(
+                &format!("a snapshot of build {}", image.build),
+                &rule,
+            ));
         }
         let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
         let mut simulation = Self::new(&Checked::from_json(&moment.scenario)?);
         if !simulation.fits(&moment) {
-            let rule = "must hold what its own robot and ground can have come to";
-            return Err(refused("contents of another", rule));
+            let rule = "must hold a state that its robot and ground can reach";
+            return Err(refused("an impossible state", rule));
         }
         simulation.step = moment.step;
         simulation.command = moment.command;

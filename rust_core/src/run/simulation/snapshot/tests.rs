@@ -191,6 +191,6 @@ fn a_snapshot_of_another_build_is_refused() {
         rest: Vec::new(),
     };
     let refusal = refusal(&sealed(&image));
-    assert!(refusal.contains("one of build another"), "{refusal}");
+    assert!(refusal.contains("a snapshot of build another"), "{refusal}");
     assert!(refusal.contains(BUILD_ID), "{refusal}");
 }

@@ -91,7 +91,7 @@ fn a_snapshot_of_a_moment_that_does_not_fit_is_refused() {
             build: BUILD_ID.to_owned(),
             rest: bytes(&moment),
         }));
-        assert!(refusal.contains("must hold what its own"), "{what}");
+        assert!(refusal.contains("must hold a state that"), "{what}");
     }
 }
 
