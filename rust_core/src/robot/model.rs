@@ -87,7 +87,7 @@ impl Model {
         let left = model.moment_of_inertia;
         if left <= 0.0 {
             let rule = format!(
-                "must exceed that of shoes and flippers, which leave {left} kg m^2 to the chassis"
+                "must exceed that of all that moves on the chassis: {left} kg m^2 is left for it"
             );
             let path = "robot.moment_of_inertia";
             return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
