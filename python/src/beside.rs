@@ -29,7 +29,7 @@ pub(crate) fn beside<T: Send + 'static>(
     let thread = std::thread::Builder::new().spawn(work);
     if let Err(error) = thread {
         return Err(errors::limit(&format!(
-            "no thread could be started: {error}"
+            "a thread could not be started: {error}"
         )));
     }
     let result = py.detach(move || {

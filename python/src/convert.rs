@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::{diagnosis, errors};
 
-/// What to keep of a run, from its arguments.
+/// What to record of a run, from the arguments.
 pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -> PyResult<Record> {
     if !(sample_interval > 0.0 && sample_interval <= 1e5) {
         let rule = "must be > 0 s and <= 100000 s";
@@ -185,7 +185,7 @@ fn trace(
     Ok(columns)
 }
 
-/// What of a trace says where everything was.
+/// The columns of a trace from which poses follow.
 pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     let column = |name: &str| -> PyResult<Vec<f64>> {
         let column = columns.as_any().get_item(name)?;
@@ -206,7 +206,7 @@ pub(crate) fn moved(columns: &Bound<'_, PyDict>) -> PyResult<Trace> {
     })
 }
 
-/// Names of what tables hold, those with codes in the order of these.
+/// Names used in tables; the position of a name is its code.
 pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let names = PyDict::new(py);
     names.set_item("body_kind", BodyKind::ALL.map(BodyKind::name))?;
@@ -297,7 +297,7 @@ pub(crate) fn pair(py: Python<'_>, x: f64, y: f64) -> Bound<'_, PyArray1<f64>> {
     vec![x, y].into_pyarray(py)
 }
 
-/// Version and build of the compiled core.
+/// Version and build data of the compiled core.
 pub(crate) fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);
     info.set_item("version", env!("CARGO_PKG_VERSION"))?;

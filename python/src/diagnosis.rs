@@ -1,4 +1,4 @@
-//! Why a run stopped, as dictionaries and `NumPy` columns.
+//! The diagnosis of a stop as dictionaries and `NumPy` columns.
 
 use crawler2d_core::{
     Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
@@ -40,7 +40,7 @@ pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyD
     Ok(result)
 }
 
-/// How a closed belt fares from a stop.
+/// What a closed belt does from a stop.
 pub(crate) fn counterfactual<'py>(
     py: Python<'py>,
     c: &Counterfactual,

@@ -48,7 +48,7 @@ pub(crate) fn to_python(error: Error) -> PyErr {
     })
 }
 
-/// A fault of the program itself.
+/// An internal error of the program.
 pub(crate) fn internal(message: &str) -> PyErr {
     Python::attach(|py| raise(py, "InternalError", (message,), None))
 }
@@ -78,7 +78,7 @@ pub(crate) fn warn<'a>(
     Ok(())
 }
 
-/// The exceptions are defined in Python so that they pickle.
+/// The exceptions are defined in Python so that they can be pickled.
 fn raise<'py>(
     py: Python<'py>,
     class: &str,

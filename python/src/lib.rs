@@ -60,7 +60,7 @@ mod _core {
         pictures::of(py, &checked)
     }
 
-    /// Where the bodies of a robot were at every sample of a run, from columns of its trace.
+    /// Poses of a robot's bodies at every sample of a run, from columns of its trace.
     #[pyfunction]
     fn poses<'py>(
         py: Python<'py>,
@@ -77,7 +77,7 @@ mod _core {
         pictures::poses(py, found)
     }
 
-    /// Names of what tables hold as codes or as text, by code.
+    /// Names that tables use, as text or as codes.
     #[pyfunction]
     fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         convert::kinds(py)

@@ -109,7 +109,7 @@ fn carrier<'py>(
     Ok(drawn)
 }
 
-/// Where everything was, samples first.
+/// The poses as arrays; the first axis is that of the samples.
 pub(crate) fn poses(py: Python<'_>, found: Poses) -> PyResult<Bound<'_, PyDict>> {
     let (n, bodies, arms) = (found.samples, found.count, found.flippers);
     let columns = PyDict::new(py);

@@ -62,7 +62,7 @@ impl Simulation {
         self.with(py, |simulation| Ok(simulation.scenario().to_json()))
     }
 
-    /// Why the robot has stopped, if it has.
+    /// The diagnosis, if the robot is stopped.
     fn diagnosis<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let why = self.with(py, |simulation| Ok(simulation.diagnosis()))?;
         why.map(|d| diagnosis::of(py, &d)).transpose()
@@ -124,7 +124,7 @@ impl Simulation {
         })
     }
 
-    /// The state of this instant.
+    /// The current state.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (reading, contacts, outcome, flippers) = self.with(py, |simulation| {
             Ok((
@@ -207,7 +207,7 @@ impl Simulation {
     }
 }
 
-/// Calls the core for a simulation, one thread at a time; after a failure it is closed.
+/// Calls the core with the simulation, one thread at a time; after a failure the simulation is closed.
 fn call<T>(
     inner: &Inner,
     change: impl FnOnce(&mut crawler2d_core::Simulation) -> Result<T, Error>,

@@ -131,7 +131,9 @@ def test_an_edge_between_wheels_of_a_flipper_is_marked_and_named() -> None:
     assert set(run.bodies["carrier"][[7, 8]]) == {"front flipper"}
     belts = [line for line in ax.get_lines() if line.get_linestyle() == "--"]
     assert len(belts) == 3
-    assert [str(line.get_label()) for line in belts].count("taut belt round the wheels") == 1
+    assert [str(line.get_label()) for line in belts].count(
+        "envelope (taut belt round the wheels)"
+    ) == 1
 
 
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])

@@ -102,7 +102,7 @@ def test_an_edge_inside_the_track_is_marked_and_named() -> None:
     (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
     assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.1]]
     depth = 1e3 * run.metrics["intrusion_depth"]
-    assert mark.get_label() == f"edge inside the track: {depth:.1f} mm between wheels 1 and 2"
+    assert mark.get_label() == f"edge inside the envelope: {depth:.1f} mm, between wheels 1 and 2"
     shaded = [len(strip.patches) for strip in strips]
     assert shaded == [np.count_nonzero(run.events["kind"] == "stop")] * 3 == [1] * 3
 
@@ -119,10 +119,10 @@ def test_the_last_pose_has_its_contacts_with_a_stated_scale() -> None:
     speed = np.abs(run.contacts["surface_speed"][last]).max()
     forces, speeds = (
         next(c for c in side.collections if word in str(c.get_label()))
-        for word in ("contact forces", "surface over the ground")
+        for word in ("contact force", "slip velocity")
     )
-    assert forces.get_label() == f"contact forces, longest {force:.0f} N"
-    assert speeds.get_label() == f"surface over the ground, longest {speed:.2f} m/s"
+    assert forces.get_label() == f"contact force, up to {force:.0f} N"
+    assert speeds.get_label() == f"slip velocity, up to {speed:.2f} m/s"
     assert len(np.asarray(forces.get_offsets())) == np.count_nonzero(last)
 
 
@@ -131,15 +131,15 @@ def test_contacts_are_those_of_the_last_pose_that_is_drawn() -> None:
     _, ax = plt.subplots()
     run.plot([0.0, 0.5], axes=ax)
     now = run.contacts["time"] == run.time[np.abs(run.time - 0.5).argmin()]
-    (forces,) = [c for c in ax.collections if "contact forces" in str(c.get_label())]
+    (forces,) = [c for c in ax.collections if "contact force" in str(c.get_label())]
     assert np.allclose(np.asarray(forces.get_offsets())[:, 0], run.contacts["x"][now])
     assert not [label for label in labels(ax) if "inside" in label]
 
 
 def test_the_belt_is_drawn_round_wheels_alone(run: c2d.Run) -> None:
     belt = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.5)
-    assert "taut belt round the wheels" in labels(run.plot()[0])
-    assert "taut belt round the wheels" not in labels(belt.plot()[0])
+    assert "envelope (taut belt round the wheels)" in labels(run.plot()[0])
+    assert "envelope (taut belt round the wheels)" not in labels(belt.plot()[0])
 
 
 def test_the_title_says_why_the_robot_stopped() -> None:

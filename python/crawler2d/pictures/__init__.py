@@ -1,1 +1,1 @@
-"""What came out of a run, to look at: figures and a page that replays it."""
+"""Pictures of a run: figures, and a page that replays it."""

@@ -1,4 +1,4 @@
-"""Pictures of a run: the side view, and strips over time."""
+"""Figures of a run: the side view, and plots over time."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_run", "time_strips"]
 
-# Okabe and Ito's palette: told apart by colour-blind readers.
+# The palette of Okabe and Ito, readable for the colour-blind.
 _BLACK, _ORANGE, _BLUE, _RED = "#222222", "#E69F00", "#0072B2", "#D55E00"
-# Characters of a line of the title.
+# Characters per line of the title.
 _TITLE_WIDTH = 80
-# Most drawings of the robot in one side view.
+# Most poses of the robot in one side view.
 _MOST_DRAWINGS = 7
 
 
@@ -44,7 +44,7 @@ def plot_run(
         axes = (axes,)
     if len(axes) not in (1, 4):
         raise ScenarioError("axes", f"{len(axes)} axes", "must be one Axes or four")
-    # The robot's name is no formula, whatever it holds.
+    # A robot's name may hold a $, which must not start a formula.
     axes[0].set_title(_title(run), loc="left", fontsize="medium", parse_math=False)
     side_view(run, times, axes[0])
     if len(axes) == 4:
@@ -90,7 +90,7 @@ def _title(run: Record) -> str:
 
 
 def _drawing_times(run: Record) -> NDArray[np.float64]:
-    """Choose instants that lie about one robot length of travel apart."""
+    """Choose instants about one robot length of travel apart."""
     travelled = np.hypot(*np.diff(run.position, axis=0, prepend=run.position[:1]).T).cumsum()
     outline = run.scenario.robot.outline
     length = outline.axle_distance + outline.front_radius + outline.rear_radius

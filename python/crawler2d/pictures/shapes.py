@@ -1,4 +1,4 @@
-"""A run as pictures see it: the ground, the bodies of the near track, and where they are."""
+"""The geometry that pictures draw: the ground, the bodies of the near track, and their poses."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
 __all__ = ["SLIVER", "Carrier", "Circuit", "Scene", "closed", "inset", "placed", "relative"]
 
 SLIVER = 2e-5
-"""[m] Lines that coincide enclose slivers of rounding; an intrusion is deeper."""
+"""[m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion."""
 
-_MARGIN = 0.05  # [m] of the extent
+_MARGIN = 0.05  # [m] round the extent
 
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """What a belt carries along.
+    """The path of a belt, and the grousers on it.
 
     Parameters
     ----------
     belt : int
-        Row of the belt.
+        Index of the belt's body.
     ways : ndarray, shape (k,)
-        [m] Along the belt, all the way round; between them poses may be interpolated.
+        [m] Distances along the belt, all the way round; poses between them may be interpolated.
     poses : ndarray, shape (k, 3)
-        [m, m, rad] There, in the frame of the carrier; the last is the first, a turn on.
+        [m, m, rad] Poses there, in the carrier's frame; the last is the first after a full turn.
     grousers : ndarray of int
-        Rows of its grousers, ...
+        Indices of its grousers' bodies.
     starts : ndarray
-        [m] ... and where along the belt these are when it has not run.
+        [m] Positions of the grousers along the belt before it has moved.
     """
 
     belt: int
@@ -55,19 +55,19 @@ class Carrier:
     Parameters
     ----------
     name : str
-        As in `Run.bodies`.
+        Its name in `Run.bodies`.
     circles : ndarray, shape (k, 3)
-        [m] Centres and radii of what a taut belt goes round, in its frame.
+        [m] Centres and radii of the circles that the envelope runs round, in its own frame.
     closed : bool
-        Nothing gets inside: it carries a belt, skids or a chain.
+        Whether nothing gets inside: it carries a belt, skids or a chain.
     envelope, root_envelope : ndarray, shape (k, 2)
-        [m] Taut belts round the circumscribed and the root circles.
+        [m] Taut belts round the circumscribed circles and round the root circles.
     circuit : Circuit or None
-        Of a belt.
+        The path of its belt, if it has one.
     bodies : ndarray of int
-        Rows of the bodies of the near track, and of the belly.
+        Indices of the bodies of the near track, and of the belly.
     poses : ndarray, shape (n, 3)
-        [m, m, rad] Of its frame at each sample.
+        [m, m, rad] Poses of its frame at each sample.
     """
 
     name: str
@@ -81,26 +81,26 @@ class Carrier:
 
 
 class Scene:
-    """All that pictures draw of a run, as the core has it.
+    """Everything that pictures draw of a run, as the core provides it.
 
     Attributes
     ----------
     lanes : list of tuple of int and ndarray
-        Lanes under tracks with their profiles [m], from the farthest from the viewer: the left.
+        Lanes under the tracks with their profiles [m], the farthest from the viewer (left) first.
     edges : dict of str to ndarray
         Corners of the ground.
     goal : float
-        [m] What the rear end has to reach.
+        [m] Position that the rear end has to reach.
     bodies : dict of str to ndarray
         Columns of `Run.bodies`.
     poses : ndarray, shape (n, k, 3)
-        [m, m, rad] Of the bodies.
+        [m, m, rad] Poses of the bodies.
     travels : ndarray, shape (n, k)
-        [m] How far the surface of each has run over what carries it.
+        [m] Distance that the surface of each body has moved relative to its carrier.
     center_of_mass : ndarray, shape (n, 2)
-        [m] Of all that moves.
+        [m] Centre of mass of the whole robot.
     carriers : list of Carrier
-        The chassis, then the flippers, the front first.
+        The chassis, then the front flippers, then the rear ones.
     """
 
     def __init__(self, run: Record) -> None:
@@ -142,11 +142,11 @@ class Scene:
         )
 
     def outline(self, body: int, sample: int) -> NDArray[np.float64]:
-        """[m] A body as a closed line where it is at a sample."""
+        """[m] The closed outline of a body at a sample."""
         return placed(closed(self.bodies["outline"][body]), self.poses[sample, body])
 
     def carrier_of(self, body: int) -> int:
-        """Find which of the carriers bears a body of either track."""
+        """Find the index of the carrier of a body, of either track."""
         names = [carrier.name for carrier in self.carriers]
         return names.index(self.bodies["carrier"][body])
 
@@ -155,7 +155,7 @@ class Scene:
         return bool(self.bodies["shoe"][body] >= 0)
 
     def extent(self) -> tuple[float, float, float, float]:
-        """[m] Left, right, bottom and top of what the run visits, with the obstacle's beginning."""
+        """[m] Left, right, bottom and top of the stretch that the run visits."""
         chassis, *arms = self.carriers
         centers, radii = chassis.circles[:, :2], chassis.circles[:, 2]
         reach = float((np.hypot(*centers.T) + radii).max()) + _MARGIN
@@ -179,14 +179,14 @@ class Scene:
 
 
 def placed(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] Points of a frame, shape (..., 2), where they are if that has poses, shape (..., 3)."""
+    """[m] Points of a frame, shape (..., 2), moved by the poses of that frame, shape (..., 3)."""
     (x, y), (left, up, angle) = np.moveaxis(points, -1, 0), np.moveaxis(poses, -1, 0)
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.stack([left + cosine * x - sine * y, up + sine * x + cosine * y], axis=-1)
 
 
 def relative(poses: NDArray[np.float64], frames: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m, m, rad] Poses at n samples, shape (n, 3), as seen from frames of such poses."""
+    """[m, m, rad] Poses at n samples, shape (n, 3), relative to frames with these poses."""
     (x, y), angle = (poses - frames).T[:2], frames[:, 2]
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, poses[:, 2] - angle])
@@ -198,9 +198,9 @@ def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
-    """[m] A closed convex line, counter-clockwise, moved inwards by a depth."""
+    """[m] A closed convex line, counter-clockwise, offset inwards by a depth."""
     way = np.roll(belt, -1, axis=0) - belt
-    belt = belt[np.hypot(*way.T) > 1e-9]  # without corners that coincide
+    belt = belt[np.hypot(*way.T) > 1e-9]  # drops coincident corners
     way = np.roll(belt, -1, axis=0) - belt
     inwards = np.column_stack([-way[:, 1], way[:, 0]])
     inwards /= np.hypot(*way.T)[:, None]

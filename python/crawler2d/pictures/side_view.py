@@ -1,4 +1,4 @@
-"""The side view of a run: ground, robot, what bears and what is inside the track."""
+"""The side view of a run: ground, robot, contacts, and the ground inside the track."""
 
 from __future__ import annotations
 
@@ -18,34 +18,33 @@ if TYPE_CHECKING:
 
 __all__ = ["side_view"]
 
-# Okabe and Ito's palette: told apart by colour-blind readers.
+# The palette of Okabe and Ito, readable for the colour-blind.
 _BLACK, _BLUE, _RED, _GREEN = "#222222", "#0072B2", "#D55E00", "#009E73"
 _GROUND, _PURPLE, _GUIDE = "#D9D2C5", "#A3327B", "#AAAAAA"
 
-# A contact force as large as the weight is drawn as long as this share of the axle distance, and a
-# larger one of a robot that wedges itself in no longer.
+# Arrow length of a contact force equal to the weight, as a share of the axle distance; larger
+# forces, as of a wedged robot, shrink the scale so that the largest gets this length.
 _FORCE_LENGTH = 0.6
-# The same of a surface that passes the ground at the commanded speed, or of the fastest beyond it.
+# The same for slip velocities, with the commanded speed in place of the weight.
 _SPEED_LENGTH = 0.22
-# They lie so far inside the ground, as a share of the axle distance, where they hide nothing.
+# These start this far below the surface, as a share of the axle distance, where they hide nothing.
 _BELOW = 0.03
-# Shorter arrows, as a share of the longest one there can be, would be mere dots.
+# Arrows below this share of the longest would be mere dots, and are left out.
 _SHORTEST = 0.02
 
 
 def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
-    """Draw ground, robot at some instants, path of the chassis origin, and what holds the robot.
+    """Draw the ground, the robot at some instants, the path of the chassis origin, and contacts.
 
-    At the last of the instants the contacts are drawn, with their forces on the robot and the
-    speeds of its surface over the ground, the taut belts round its wheels, and the ground and the
-    edges inside those belts.
+    At the last of the instants it also draws the contact forces on the robot, the slip velocities,
+    the envelopes of its wheels, and the ground and edges inside these.
 
     Parameters
     ----------
     run : Run
         A run with history.
     times : ndarray, shape (k,)
-        [s] When to draw the robot; the nearest samples are taken.
+        [s] When to draw the robot; the nearest samples are used.
     ax : Axes
         Where to draw.
     """
@@ -70,9 +69,9 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
     _draw_envelopes(scene, shown, ax, depth=depth)
     _draw_intrusions(run, scene, shown, ax)
     if left < scene.goal < right:
-        ax.axvline(scene.goal, color=_GREEN, linestyle=":", label="goal for the rear end")
+        ax.axvline(scene.goal, color=_GREEN, linestyle=":", label="goal (rear end)")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    # A raised flipper may be behind the rear end, in the corner that is else free.
+    # A raised rear flipper may be in the corner that is otherwise free.
     corner: Literal["best", "upper left"] = "best" if len(scene.carriers) > 1 else "upper left"
     ax.legend(loc=corner, fontsize="small", framealpha=0.9)
 
@@ -95,10 +94,10 @@ def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax
 
 
 def _draw_robot(scene: Scene, sample: int, ax: Axes, *, alpha: float) -> None:
-    """Draw the bodies of each carrier, shoes last; those that meet nothing are left out."""
+    """Draw the bodies of each carrier, shoes last; bodies that never touch ground are left out."""
     shoes = []
     bodies = np.concatenate([carrier.bodies for carrier in scene.carriers])
-    # The wheels lie before the belly.
+    # The belly is drawn last, over the wheels.
     for body in sorted(bodies, key=lambda body: scene.kinds[body] != BodyKind.BELLY):
         line, kind = scene.outline(body, sample), scene.kinds[body]
         if scene.is_shoe(body):
@@ -107,12 +106,12 @@ def _draw_robot(scene: Scene, sample: int, ax: Axes, *, alpha: float) -> None:
             ax.fill(*line.T, color=_GREEN, alpha=0.25 * alpha, linewidth=0.0, zorder=2)
             ax.plot(*line.T, color=_GREEN, alpha=alpha, linewidth=1.0, zorder=2)
         elif scene.bodies["body"][body] >= 0:
-            # What shoes run on is no more than a hint behind them, but for the sprocket.
+            # What shoes run on is drawn faintly behind them, except for the sprocket.
             is_hint = kind.is_in_chain and kind != BodyKind.SPROCKET
             color = _GUIDE if is_hint else _BLACK
             ax.plot(*line.T, color=color, alpha=alpha, linewidth=1.0, zorder=2)
     if shoes:
-        # A chain has hundreds of pieces in all poses, and one artist a pose is fast.
+        # A chain has hundreds of pieces in all poses; one artist per pose is fast.
         collections = extra("matplotlib.collections", "plot")
         ax.add_collection(
             collections.PolyCollection(
@@ -128,7 +127,7 @@ def _draw_robot(scene: Scene, sample: int, ax: Axes, *, alpha: float) -> None:
 
 
 def _draw_contacts(run: Record, sample: int, ax: Axes) -> None:
-    """Arrows of the forces on the robot and of the speeds of its surface, at one sample."""
+    """Draw arrows of the contact forces on the robot and of the slip velocities, at one sample."""
     contacts = run.contacts
     now = contacts["time"] == run.time[sample]
     if not now.any():
@@ -140,13 +139,13 @@ def _draw_contacts(run: Record, sample: int, ax: Axes) -> None:
     speed = contacts["surface_speed"][now, None] * tangent
     below = places - _BELOW * robot.outline.axle_distance * normal
     usual, length = abs(run.scenario.drive.speed), _SPEED_LENGTH * robot.outline.axle_distance
-    label = "surface over the ground, longest {:.2f} m/s"
+    label = "slip velocity, up to {:.2f} m/s"
     _draw_arrows(ax, below, speed, (usual, length), color=_BLUE, label=label)
     force = contacts["normal_force"][now, None] * normal
     force = force + contacts["friction_force"][now, None] * tangent
     usual = robot.mass * run.scenario.gravity
     length = _FORCE_LENGTH * robot.outline.axle_distance
-    label = "contact forces, longest {:.0f} N"
+    label = "contact force, up to {:.0f} N"
     _draw_arrows(ax, places, force, (usual, length), color=_RED, label=label)
 
 
@@ -159,9 +158,9 @@ def _draw_arrows(
     color: str,
     label: str,
 ) -> None:
-    """Arrows with their tails at some places.
+    """Draw arrows with their tails at the places.
 
-    The scale is a usual size and the length [m] that it is drawn at, or the largest if beyond it.
+    `scale` is a typical size and its length [m] in the plot; the largest takes its place if larger.
     """
     usual, length = scale
     sizes = np.hypot(*vectors.T)
@@ -183,9 +182,9 @@ def _draw_arrows(
 
 
 def _draw_envelopes(scene: Scene, sample: int, ax: Axes, *, depth: float) -> None:
-    """Draw the taut belts round the wheels, and fill what of the ground is inside them."""
+    """Draw the envelopes of the wheels, and fill the ground inside them."""
     patches = extra("matplotlib.patches", "plot")
-    label: str | None = "taut belt round the wheels"
+    label: str | None = "envelope (taut belt round the wheels)"
     for carrier in scene.carriers:
         if carrier.closed:
             continue
@@ -208,7 +207,7 @@ def _draw_envelopes(scene: Scene, sample: int, ax: Axes, *, depth: float) -> Non
 
 
 def _draw_intrusions(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
-    """Mark the edges that are inside the track at one sample."""
+    """Mark the edges inside the track at one sample."""
     events, time = run.events, run.time[sample]
     inside = events["kind"] == "intrusion"
     inside &= (events["start"] <= time) & (time <= events["end"])
@@ -222,10 +221,10 @@ def _draw_intrusions(run: Record, scene: Scene, sample: int, ax: Axes) -> None:
     ]
     most_loaded = rows[events["force"][rows].argmax()]
     depth, (one, other) = events["depth"][most_loaded], sorted(events["bodies"][most_loaded])
-    label = f"edge inside the track: {1e3 * depth:.1f} mm"
-    # Of those in a chain it is between two shoes.
+    label = f"edge inside the envelope: {1e3 * depth:.1f} mm"
+    # In a chain the edge is between two shoes, not between wheels.
     if one != other and not scene.kinds[one].is_in_chain:
-        label += f" between wheels {one} and {other}"
+        label += f", between wheels {one} and {other}"
     ax.plot(
         run.edges["x"][edges],
         run.edges["y"][edges],

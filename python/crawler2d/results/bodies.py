@@ -1,4 +1,4 @@
-"""The bodies of a robot: what they are called, how they look and where they are."""
+"""The bodies of a robot: what they are, how they look and where they are."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["BodyKind", "Lane", "bodies_of", "moved"]
 
 
 class BodyKind(IntEnum):
-    """What a body stands for: `kind` of `Run.bodies`, `body_kind` of the contacts.
+    """What a body represents: `kind` of `Run.bodies`, `body_kind` of the contacts.
 
     Examples
     --------
@@ -35,9 +35,9 @@ class BodyKind(IntEnum):
     SKID = 2
     BELLY = 3
     GROUSER = 4
-    """Of a belt or of a shoe."""
+    """On a belt or on a shoe."""
     SHOE = 5
-    """Its plate, or all of a tapering one."""
+    """The plate of a shoe, or all of a tapering shoe."""
     GUIDE = 6
     """What a chain of shoes slides on."""
     SPROCKET = 7
@@ -53,7 +53,7 @@ class BodyKind(IntEnum):
 
 
 class Lane(IntEnum):
-    """What a stretch of ground lies under: `lane` of all tables."""
+    """Which part of the robot a stretch of ground is under: `lane` of all tables."""
 
     BOTH = 0
     """Under both tracks."""
@@ -73,13 +73,13 @@ def bodies_of(scenario: Scenario) -> Table:
 
 
 def moved(scenario: Scenario, trace: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
-    """Find where everything was at the n samples of a run of a scenario.
+    """Compute the poses of all bodies at the n samples of a run.
 
     Returns
     -------
     dict
         `bodies`: [m, m, rad] of each of k bodies, shape (n, k, 3); `arms`: the same of the flippers
-        at each end, midway between their axles; `travels`: [m] how far the surface of each body has
-        run over what carries it, shape (n, k); `center_of_mass`: [m] of all that moves, (n, 2).
+        at each end, midway between their axles; `travels`: [m] distance that the surface of each
+        body has moved relative to its carrier, shape (n, k); `center_of_mass`: [m], shape (n, 2).
     """
     return _core.poses(scenario.to_json(), dict(trace))

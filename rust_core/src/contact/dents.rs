@@ -1,7 +1,7 @@
-//! Ground that was inside a part when a track took another's place, let out without a push.
+//! Dents: ground that was inside a part when one track replaced another is let out without a push.
 //!
-//! The part is dented there: the overlap that it begins with is no penetration. It may not grow, and
-//! heals as the robot's own motion lets the ground out, so it never gives the robot any energy.
+//! The part counts as dented there: the initial overlap is not a penetration. A dent cannot grow, and it
+//! heals as the robot's own motion lets the ground out, so it never adds energy.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -12,10 +12,10 @@ use serde::{Deserialize, Serialize};
 use super::Contact;
 use crate::geometry::plausible;
 
-/// [m] Ground that comes to bear so close to a dent was in it.
+/// [m] Ground that comes to bear this close to a dent was inside it.
 const BESIDE: f64 = 0.01;
 
-/// The dents that are left.
+/// The dents that remain.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Dents {
     dents: Vec<Dent>,
@@ -23,14 +23,14 @@ pub(crate) struct Dents {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Dent {
-    /// Number of the contact that it is at.
+    /// Number of the contact at the dent.
     contact: u64,
-    /// [m]
+    /// [m] Depth of the dent.
     depth: f64,
 }
 
 impl Dents {
-    /// Dents as deep as these contacts overlap.
+    /// Dents as deep as the overlap of these contacts.
     pub(crate) fn of(contacts: &[Contact]) -> Self {
         let overlapping = contacts.iter().filter(|c| c.distance < 0.0);
         let dents = overlapping.map(|c| Dent {
@@ -42,16 +42,16 @@ impl Dents {
         }
     }
 
-    /// Whether the contacts of a last step can have left them.
+    /// Whether a step that ended with these contacts can have left the dents.
     pub(crate) fn fits<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> bool {
         let numbers: HashSet<u64> = contacts.map(|c| c.number).collect();
         let fits = |d: &Dent| plausible(&[d.depth]) && numbers.contains(&d.contact);
         self.dents.iter().all(fits)
     }
 
-    /// Measures gaps from the bottom of the dents; `last` are the contacts of the last step.
+    /// Measures gaps from the bottom of the dents; `last` holds the contacts of the last step.
     ///
-    /// Where the ground in a dent comes to bear on another face of the part, too, that is dented as deep.
+    /// If ground in a dent also comes to bear on another face of the part, that face is dented as deep.
     pub(crate) fn forgive<'a>(
         &mut self,
         contacts: &mut [Contact],
@@ -77,7 +77,7 @@ impl Dents {
         }
     }
 
-    /// Lets the dents heal by what the robot has truly moved: these are the contacts after a step.
+    /// Lets the dents heal by the actual motion of the robot; the contacts are those after a step.
     pub(crate) fn heal<'a>(&mut self, contacts: impl Iterator<Item = &'a Contact>) {
         if self.dents.is_empty() {
             return;
@@ -99,7 +99,7 @@ impl Dents {
         at.map(|dent| dent.depth)
     }
 
-    /// [m] Depth of the nearest dent of the same part beside a contact, if there is one.
+    /// [m] Depth of the dent nearest to a contact on the same part, if there is one.
     fn depth_beside<'a>(
         &self,
         contact: &Contact,
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// The gap that is left of a contact, which the last step had.
+    /// The gap left at a contact that the last step already had.
     fn gap(dents: &mut Dents, x: f64, distance: f64) -> f64 {
         let last = contact(1, x, distance);
         let mut contacts = [last];
@@ -142,7 +142,7 @@ mod tests {
         contacts[0].distance
     }
 
-    /// A step that ends with that distance.
+    /// A step that ends at this distance.
     fn step(dents: &mut Dents, x: f64, distance: f64) {
         let contact = contact(1, x, gap(dents, x, distance));
         dents.heal([contact].iter());
@@ -184,7 +184,7 @@ mod tests {
             let mut contacts = [last[0], closed];
             dents.forgive(&mut contacts, &last.iter());
             dents.heal(contacts.iter());
-            // From then on its dent is as deep as the ground was in it. In micrometres:
+            // From then on its dent is as deep as the ground was inside it. In micrometres:
             let mut deeper = [contact(2, x, -0.05)];
             dents.forgive(&mut deeper, &contacts.iter());
             [contacts[1].distance, deeper[0].distance].map(|gap| (gap * 1e6).round())

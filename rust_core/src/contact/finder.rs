@@ -1,4 +1,4 @@
-//! Who finds the contacts.
+//! The choice between the methods that find contacts.
 //!
 //! The equations: docs/physics.md, "Contacts".
 

@@ -1,8 +1,8 @@
-//! Contacts of a gear wheel with a lane: exact, and only of the grousers that are near the ground.
+//! Contacts of a gear wheel with a lane: exact, and only for grousers near the ground.
 //!
-//! The root circle bears between grousers, the corners of the tips bear on faces and corners of the
-//! ground, flanks and tips on its corners. Where a corner of the tip and one of the ground have run
-//! into each other, the way out is the shortest of those that both allow.
+//! The root circle bears between grousers, tip corners bear on faces and corners of the ground, and
+//! flanks and tips bear on corners of the ground. Where a tip corner and a ground corner overlap, the
+//! shortest way out that both allow is the contact.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -11,7 +11,7 @@ use super::lane::{Lane, On, Touch};
 use super::overlap::{self, Tip};
 use crate::geometry::{Gear, Pose, Rotation, Vector, direction, right_of};
 
-/// [m] Ground does not sink into a flank by more than this.
+/// [m] Ground sinks into a flank by no more than this.
 const SUNK: f64 = 1e-3;
 
 /// A gear wheel of a robot.
@@ -20,30 +20,30 @@ pub(super) struct GearContact {
     /// [m] Axle in the chassis frame.
     center: Vector,
     gear: Gear,
-    /// Unit vectors to the middles of the grousers at the start.
+    /// Unit vectors towards the middles of the grousers, at zero travel.
     directions: Vec<Vector>,
-    /// The one that points along +x, about the centre.
+    /// The grouser that points along +x, about the centre of the wheel.
     grouser: Grouser,
-    /// [rad] Half the angle that a grouser takes on the root circle.
+    /// [rad] Half the angle that a grouser covers on the root circle.
     half_base: f64,
 }
 
-/// A grouser somewhere.
+/// A grouser in some pose.
 struct Grouser {
-    /// [m] Counter-clockwise from its base.
+    /// [m] Counter-clockwise, starting at its base.
     corners: [Vector; 4],
-    /// Outward normals of its flank, tip and flank.
+    /// Outward normals of one flank, the tip and the other flank.
     normals: [Vector; 3],
 }
 
 impl Grouser {
-    /// Whether a point is in it.
+    /// Whether a point lies in the grouser.
     fn holds(&self, point: Vector) -> bool {
         let mut sides = self.corners.iter().zip(&self.normals);
         sides.all(|(corner, normal)| (point - *corner).dot(*normal) <= 0.0)
     }
 
-    /// Whether a corner of the ground that is inside a flank, 0 or 2, is less deep in the other one.
+    /// Whether a corner of the ground inside flank 0 or 2 lies less deep in the opposite flank.
     fn is_left_opposite(&self, lane: &Lane, flank: usize, touch: &Touch) -> bool {
         let opposite = 2 - flank;
         let normal = self.normals[opposite];
@@ -52,7 +52,7 @@ impl Grouser {
         opposite != flank && gap > touch.distance && is_met()
     }
 
-    /// A corner of its tip, 1 or 2.
+    /// Corner 1 or 2, which belong to the tip.
     fn tip(&self, k: usize) -> Tip {
         Tip {
             place: self.corners[k],
@@ -64,7 +64,7 @@ impl Grouser {
 impl GearContact {
     pub(super) fn new(part: usize, center: Vector, gear: Gear) -> Self {
         let corners = gear.corners(0.0);
-        // A tip may be thinner than rounding errors; it looks outwards all the same.
+        // A tip may be thinner than rounding errors; its normal still points outwards.
         let way = |i: usize| (corners[i + 1] - corners[i]).try_normalize();
         let side = |i: usize| way(i).map_or(Vector::X, right_of);
         Self {
@@ -80,8 +80,8 @@ impl GearContact {
         }
     }
 
-    /// Adds every contact with a gap below `prediction`; the chassis is at `pose`, the surface of the
-    /// wheel has run by `drive` [m].
+    /// Adds every contact with a gap below `prediction`; the chassis is at `pose` and the surface of the
+    /// wheel has moved by `drive` [m].
     pub(super) fn find(
         &self,
         lane: &Lane,
@@ -99,7 +99,7 @@ impl GearContact {
         }
         let turned = pose.rotation * Rotation::new(-drive / self.gear.radius);
         if room <= self.gear.root_radius {
-            // A face that the centre has passed is the far side of something thin.
+            // If the centre is past a face, that face is the far side of something thin.
             let reach = (prediction, 0.0);
             lane.touches_of_disc(center, self.gear.root_radius, reach, |touch| {
                 if self.is_between_grousers(turned.inverse() * -touch.normal) {
@@ -112,7 +112,7 @@ impl GearContact {
         for along in &self.directions {
             let axis = turned * *along;
             let lower = |corner: Vector| corner.x * axis.y - corner.y * axis.x.abs();
-            // A grouser that points up is lowest at its base.
+            // The lowest point of a grouser that points up is at its base.
             if room + lower(tip).min(lower(base)) > 0.0 {
                 continue;
             }
@@ -127,7 +127,7 @@ impl GearContact {
         }
     }
 
-    /// Corners of a tip on the ground.
+    /// Adds the contacts of the tip corners on the ground.
     fn find_tips(
         &self,
         lane: &Lane,
@@ -138,7 +138,7 @@ impl GearContact {
         for tip in [grouser.tip(1), grouser.tip(2)] {
             let reach = (prediction, self.height());
             lane.touches_of_disc(tip.place, 0.0, reach, |touch| {
-                // Behind a face lies the ground, but beyond thin ground the open again.
+                // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
                     touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
                 if is_real && tip.faces(-touch.normal) && !overlap::tip_yields(lane, &tip, &touch) {
@@ -148,7 +148,7 @@ impl GearContact {
         }
     }
 
-    /// Corners of the ground on flanks and tip of a grouser.
+    /// Adds the contacts of corners of the ground on the flanks and the tip of a grouser.
     fn find_runs(
         &self,
         lane: &Lane,
@@ -157,7 +157,7 @@ impl GearContact {
         contacts: &mut Vec<Contact>,
     ) {
         let thickness = self.gear.base_thickness;
-        // Ground that is deeper inside has come in elsewhere.
+        // Ground deeper than this has come in through another side.
         for (i, depth) in [thickness, self.height(), thickness]
             .into_iter()
             .enumerate()
@@ -165,7 +165,7 @@ impl GearContact {
             let ends = (grouser.corners[i], grouser.corners[i + 1]);
             let outward = grouser.normals[i];
             lane.touches_of_run(ends, outward, (prediction, depth), |touch| {
-                // A flank has one end at the tip, and the tip has two.
+                // A flank has one end at the tip; the tip itself has two.
                 let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
                 let is_real = touch.distance >= 0.0
                     || (grouser.holds(touch.place) && !grouser.is_left_opposite(lane, i, &touch));
@@ -176,17 +176,17 @@ impl GearContact {
         }
     }
 
-    /// [m] Of a grouser.
+    /// [m] Height of a grouser.
     fn height(&self) -> f64 {
         self.gear.radius - self.gear.root_radius
     }
 
-    /// Whether a direction in the wheel's frame leads to the root circle.
+    /// Whether a direction in the wheel's frame meets the root circle between grousers.
     fn is_between_grousers(&self, outward: Vector) -> bool {
         let angle = libm::atan2(outward.y, outward.x) - self.gear.phase;
         let pitch = self.gear.angle();
         let off = (angle / pitch - (angle / pitch).round()) * pitch;
-        // What has sunk into a flank at its foot bears on the root circle, too.
+        // Ground sunk into the foot of a flank also bears on the root circle.
         off.abs() >= self.half_base - SUNK / self.gear.root_radius
     }
 }

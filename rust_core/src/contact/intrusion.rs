@@ -1,5 +1,4 @@
-//! What of the ground is inside the track: its connected pieces within the taut belt round the
-//! robot's own bodies.
+//! Intrusions: the connected pieces of the ground inside the taut belt round the robot's own bodies.
 //!
 //! The equations: docs/physics.md, "Shapes".
 
@@ -16,29 +15,29 @@ use crate::terrain::{Profile, Side};
 /// [m] A contact this close to a piece of the ground bears on it.
 const BEARS: f64 = 5e-4;
 
-/// [m] Of edges that lie so equally deep the left one counts, whatever rounding says.
+/// [m] Of edges that are equally deep within this, the leftmost counts, whatever the rounding.
 const SAME_DEPTH: f64 = 1e-6;
 
-/// The taut belts round a track's bodies, in the frame of what carries it.
+/// The taut belts round a track's bodies, in the frame of their carrier.
 #[derive(Clone, Debug)]
 pub(crate) struct TrackEnvelope {
-    /// Lane that the track meets.
+    /// The lane under the track.
     pub lane: usize,
-    /// The chassis or a flipper.
+    /// The carrier: the chassis or a flipper.
     pub mount: Mount,
     /// Circumscribed circles.
     discs: Vec<Disc>,
-    /// Part that each disc belongs to.
+    /// The part of each disc.
     parts: Vec<usize>,
-    /// Round the circumscribed circles.
+    /// The belt round the circumscribed circles.
     tips: Belt,
-    /// Round the root circles.
+    /// The belt round the root circles.
     roots: Belt,
-    /// [m] How far inside the bodies' circles the belts run.
+    /// [m] How far the belts are offset inwards from the circles.
     margin: f64,
 }
 
-/// A taut belt and the point farthest inside it.
+/// A taut belt and the point deepest inside it.
 #[derive(Clone, Debug)]
 struct Belt {
     hull: Envelope,
@@ -56,39 +55,39 @@ impl Belt {
 /// A connected piece of the ground inside the envelope of the track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intrusion {
-    /// Lane that it is a piece of.
+    /// The lane of the piece.
     pub side: Side,
     /// Index of that lane.
     pub(crate) lane: usize,
-    /// What carries the track.
+    /// The carrier of the track.
     pub(crate) mount: Mount,
     /// Edges inside the envelope, from the left.
     pub edges: Vec<i32>,
-    /// Of those that stand out, the one that reaches deepest, or -1.
+    /// The deepest convex edge, or -1.
     pub edge: i32,
-    /// Bodies on either side of the deepest point, first the one that the belt passes before it.
+    /// Bodies on either side of the deepest point, in the order in which the belt passes them.
     pub bodies: [usize; 2],
-    /// [m] Deepest reach below the belt round the circumscribed circles.
+    /// [m] Largest depth below the belt round the circumscribed circles.
     pub depth: f64,
-    /// [m] Deepest reach below the belt round the root circles, 0 if it does not get there.
+    /// [m] Largest depth below the belt round the root circles, 0 if the piece does not reach it.
     pub root_depth: f64,
-    /// [m] The deepest point.
+    /// [m] x of the deepest point.
     pub x: f64,
-    /// [m] The deepest point.
+    /// [m] y of the deepest point.
     pub y: f64,
     /// [m^2] Area of the piece.
     pub area: f64,
-    /// [m] Stretches of the envelope that bound it, as ways along it.
+    /// [m] Stretches of the envelope that bound it, as distances along the envelope.
     rim: Vec<(f64, f64)>,
-    /// Stretches of the profile that bound it, as facet plus share of the facet.
+    /// Stretches of the profile that bound it, as facet index plus fraction of the facet.
     stretches: Vec<(f64, f64)>,
 }
 
 impl TrackEnvelope {
-    /// The envelope of the parts that belong to the track on a lane that `mount` carries.
+    /// The envelope of the parts that `mount` carries on a lane.
     ///
-    /// Wheels sink into the ground by micrometres, and a belt that ran along their lowest points would
-    /// join all the ground under the robot to one piece: `margin` [m] keeps it inside of that.
+    /// Wheels sink into the ground by micrometres, and a belt along their lowest points would join all the
+    /// ground under the robot into one piece; `margin` [m] keeps the belt inside of that.
     pub(crate) fn new(parts: &[Part], (lane, mount): (usize, Mount), margin: f64) -> Self {
         let of_track: Vec<(usize, Disc, Disc)> = parts
             .iter()
@@ -113,7 +112,7 @@ impl TrackEnvelope {
         }
     }
 
-    /// Whether an edge that stands out is inside.
+    /// Whether a convex edge is inside.
     pub(crate) fn holds_edge(&self, profile: &Profile, pose: Pose) -> bool {
         let stands_out = |i: &usize| {
             let edge = profile.edge_of_point[*i];
@@ -147,7 +146,7 @@ impl TrackEnvelope {
             .collect()
     }
 
-    /// Points of the profile that bound every facet under the envelope.
+    /// Range of points of the profile that bound all facets under the envelope.
     fn points_under(&self, profile: &Profile, pose: Pose) -> std::ops::Range<usize> {
         let sides = |disc: &Disc| {
             let x = pose.transform_point(disc.center).x;
@@ -166,7 +165,7 @@ impl TrackEnvelope {
 
     /// Whether a point inside the envelope lies in a piece.
     fn holds(&self, profile: &Profile, pose: Pose, piece: &Piece, point: Vector) -> bool {
-        // Straight down from a point in the ground all is ground, so the rim there is the piece's.
+        // Straight down from a point in the ground everything is ground, so the rim below it bounds its piece.
         let down = pose.rotation.inverse() * -Vector::Y;
         let far = point + down * self.tips.hull.length();
         let (_, share) = self.tips.hull.clip(point, far).unwrap_or_default();
@@ -212,10 +211,10 @@ impl TrackEnvelope {
         }
     }
 
-    /// The outward normal, in the chassis frame, of a belt that would pass over an intrusion at a
-    /// point of it: that of the envelope where it is nearest on the side from which the ground came.
+    /// The outward normal, in the chassis frame, of a belt that would pass over a point of an intrusion: the
+    /// normal at the nearest point of that part of the envelope through which the ground came in.
     pub(crate) fn outward_at(&self, intrusion: &Intrusion, point: Vector) -> Vector {
-        /// Cuts of a stretch; between two of them the distance has one least value.
+        /// Cuts of a stretch; between two cuts the distance has a single minimum.
         const CUTS: usize = 64;
 
         let hull = &self.tips.hull;
@@ -230,7 +229,7 @@ impl TrackEnvelope {
         hull.outward_at(hull.point_at(nearest.unwrap_or_default()))
     }
 
-    /// The whole envelope inside the ground.
+    /// The intrusion of an envelope that lies entirely in the ground.
     fn buried(&self, side: Side, pose: Pose) -> Intrusion {
         let hull = &self.tips.hull;
         Intrusion {
@@ -239,7 +238,7 @@ impl TrackEnvelope {
         }
     }
 
-    /// What the deepest points below both belts say.
+    /// An intrusion with the data of its deepest points below both belts.
     fn at(&self, side: Side, pose: Pose, [deepest, below_roots]: [Vector; 2]) -> Intrusion {
         let hull = &self.tips.hull;
         let nearest = hull.nearest(deepest);
@@ -271,7 +270,7 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 }
 
 impl Intrusion {
-    /// Whether a contact of a robot of these parts lies on it.
+    /// Whether a contact lies on the intrusion, for a robot of these parts.
     pub(crate) fn bears(&self, lanes: &[Profile], parts: &[Part], contact: &Contact) -> bool {
         if parts[contact.part].lane != self.lane {
             return false;

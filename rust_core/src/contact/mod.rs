@@ -23,29 +23,29 @@ pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
 
-/// One place where a part is on the ground or about to be.
+/// A place where a part is on the ground or about to be.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Contact {
     /// Index of the part.
     pub part: usize,
     /// Facet of the profile, from the left.
     pub facet: usize,
-    /// Edge that is touched, or -1 on a face.
+    /// Id of the edge that is touched, or -1 on a face.
     pub edge: i32,
-    /// [m] Where, halfway between both surfaces.
+    /// [m] The point halfway between both surfaces.
     pub point: Vector,
     /// Unit normal from the ground to the robot.
     pub normal: Vector,
     /// [m] Gap; negative in penetration.
     pub distance: f64,
-    /// The same from step to step for as long as the contact lasts, and no other's; 0 as it is found.
+    /// Unique number that stays the same from step to step while the contact lasts; 0 when just found.
     pub number: u64,
-    /// [m] Where it closed.
+    /// [m] The point at which it closed.
     pub began: Vector,
 }
 
 impl Contact {
-    /// Whether a robot and its lanes have what it is between.
+    /// Whether a robot and its lanes have the part and the ground of this contact.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let lane = model.parts.get(self.part).and_then(|p| lanes.get(p.lane));
         lane.is_some_and(|lane| {
@@ -56,14 +56,14 @@ impl Contact {
     }
 }
 
-/// Leaves out contacts that add nothing: those that repeat another of the same part, and those that lie
-/// between two others of the same direction and no deeper than these: a rigid part comes down on its
-/// neighbours first.
+/// Removes redundant contacts: duplicates on the same part, and contacts that lie between two others with
+/// the same normal and are no deeper than these, since a rigid part comes down on its outer contacts
+/// first.
 pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
-    /// Normals closer than this are one direction; f64 keeps about 1e-16.
+    /// Normals closer than this count as equal; f64 resolves about 1e-16.
     const SAME_DIRECTION: f64 = 1e-12;
 
-    // A stable order: by part, then from the left, so that neighbours lie side by side.
+    // A stable order: by part, then from the left, so that neighbours are adjacent.
     contacts.sort_by(|a, b| a.part.cmp(&b.part).then(a.point.x.total_cmp(&b.point.x)));
     let same = |a: &Contact, b: &Contact| {
         a.part == b.part && 1.0 - a.normal.dot(b.normal) < SAME_DIRECTION
@@ -83,9 +83,9 @@ pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
     contacts.truncate(kept);
 }
 
-/// Whether the gap in the middle is no smaller than that of the chord of its neighbours.
+/// Whether the middle gap is at least that of the chord between its neighbours.
 fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
-    /// [m] Gaps closer than this to the chord lie on one face.
+    /// [m] A gap this close to the chord is on the same face.
     const SAME_FACE: f64 = 1e-9;
 
     let along = right_of(middle.normal);

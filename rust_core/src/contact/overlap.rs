@@ -1,28 +1,28 @@
-//! A corner of a part and a corner of the ground that have run into each other.
+//! Overlaps of a corner of a part with a corner of the ground.
 //!
-//! The overlap can be left along each of the four faces that meet there, as far as the other corner is
-//! what the face meets. The shortest of these ways is the contact; the others yield to it.
+//! There are up to four ways out of the overlap, one along the normal of each face that meets there, as far
+//! as that face can meet the other corner. The shortest way is the contact; the others yield to it.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use super::lane::{Corner, Lane, On, ROUNDING, Touch};
 use crate::geometry::{Vector, cross};
 
-/// Cosine of the angle up to which two normals of an overlap both count: faces that all but lie on each
-/// other bear at both ends of their overlap.
+/// Cosine of the angle within which two normals of an overlap both count: faces that are nearly parallel
+/// bear at both ends of their overlap.
 const ALIKE: f64 = 0.94;
 
 /// A sharp corner of a part.
 #[derive(Clone, Copy)]
 pub(super) struct Tip {
-    /// [m] Where it is.
+    /// [m] Its position.
     pub place: Vector,
     /// Outward normals of the runs before and behind it, counter-clockwise.
     pub normals: [Vector; 2],
 }
 
 impl Tip {
-    /// Whether the part has an outward normal in that direction there, but for rounding.
+    /// Whether a direction is an outward normal of the part at the tip, within rounding.
     pub(super) fn faces(&self, direction: Vector) -> bool {
         let [before, behind] = self.normals;
         cross(before, direction) >= -ROUNDING
@@ -31,7 +31,7 @@ impl Tip {
     }
 }
 
-/// Whether a tip that is inside a face of the ground leaves it another way.
+/// Whether a tip inside a face of the ground has a shorter way out than that face.
 pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
     outer_ends(lane, touch).any(|(corner, beside)| {
         let below = (corner.center - tip.place).dot(beside) + corner.radius;
@@ -43,15 +43,15 @@ pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
             let holds_corner = || tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
             (beyond < 0.0 && leaves()) || (shorter(touch, -*m, beyond, leaves) && holds_corner())
         };
-        // With a gap to a face, or a run, that could meet they have not met at all.
+        // If there is a gap to a face or run that could meet them, they have not met at all.
         (below < 0.0 && leaves_face())
             || shorter(touch, beside, below, leaves_face)
             || tip.normals.iter().any(leaves_run)
     })
 }
 
-/// The corners that stand out at both ends of a face that something is inside of, each with the normal
-/// of the face beside.
+/// The convex corners at both ends of a face that something is inside of, each with the normal of the
+/// adjacent face.
 fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Corner, Vector)> {
     let face = match touch.on {
         On::Face(face) if touch.distance < 0.0 => Some(face),
@@ -64,8 +64,8 @@ fn outer_ends<'a>(lane: &'a Lane, touch: &Touch) -> impl Iterator<Item = (&'a Co
         .map(|(corner, side)| (corner, corner.normals[side]))
 }
 
-/// Whether a corner of the ground that is inside a run of a part, which ends in `tip`, leaves it
-/// another way.
+/// Whether a corner of the ground inside a run of a part that ends in `tip` has a shorter way out than that
+/// run.
 pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch) -> bool {
     let On::Corner(i) = touch.on else {
         return false;
@@ -88,7 +88,7 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
             .any(|n| shorter(touch, *n, beyond(*n), || tip.faces(-*n)))
 }
 
-/// Whether a way of `depth` along `normal` is shorter than the one of `touch`, and open.
+/// Whether a way out of length `depth` along `normal` is shorter than that of `touch`, and open.
 fn shorter(touch: &Touch, normal: Vector, depth: f64, open: impl Fn() -> bool) -> bool {
     0.0 < depth && depth < -touch.distance && normal.dot(touch.normal) < ALIKE && open()
 }

@@ -1,6 +1,6 @@
-//! Our own contact: every part's outline against the faces and corners of the lane, exactly.
+//! The project's own contact method: the outline of every part against faces and corners of the lane, exactly.
 //!
-//! Contacts are of this very pose, nothing is kept, and no memory is taken but for the list of contacts.
+//! Contacts depend on the current pose only: nothing is kept, and only the list of contacts is allocated.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -15,14 +15,14 @@ use crate::geometry::{Grouser, Pose, Vector};
 use crate::robot::{Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
-/// Outlines of one robot and one ground.
+/// The outlines of one robot and the lanes of one ground.
 pub(crate) struct OwnContact {
     lanes: Vec<Lane>,
     /// Each with the index of its lane and its mount.
     outlines: Vec<(usize, Mount, Outline)>,
 }
 
-/// A part as it meets the ground.
+/// A part as contacts see it.
 enum Outline {
     Disc {
         part: usize,
@@ -36,14 +36,14 @@ enum Outline {
     Grouser {
         drive: usize,
         grouser: Grouser,
-        /// In its own frame.
+        /// The hull in its own frame.
         hull: HullContact,
     },
     Hull(HullContact),
 }
 
 impl OwnContact {
-    /// The outlines of a robot's parts and of the lanes that they meet.
+    /// Prepares the outlines of a robot's parts and the lanes under them.
     pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
         let outline = |i: usize, part: &Part| match (&part.shape, part.drive) {
             (Shape::Gear { center, gear }, Some(drive)) => Outline::Gear {
@@ -72,7 +72,7 @@ impl OwnContact {
         }
     }
 
-    /// Writes every contact with a gap below `prediction` into `contacts`.
+    /// Adds every contact with a gap below `prediction` to `contacts`.
     pub(crate) fn find(
         &self,
         pose: Pose,

@@ -1,7 +1,7 @@
-//! The reference contact: parry's own queries on one oriented polyline a lane, and our own of hulls.
+//! The reference contact method: parry's queries on one oriented polyline per lane, and our own for hulls.
 //!
-//! One-sided segments and exact vertex normals make flat ground flat however it is cut. Nothing is
-//! kept from step to step, so a contact is always of this pose.
+//! One-sided segments and exact vertex normals make flat ground flat however it is divided. Nothing is
+//! kept from step to step, so contacts depend on the current pose only.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -36,9 +36,9 @@ struct Ground {
 /// A part as convex pieces.
 struct Body {
     part: Part,
-    /// [m] A disc round it, in its own frame.
+    /// [m] A disc that contains it, in its own frame.
     bound: (Vector, f64),
-    /// Our own contact of what is neither a disc nor a gear.
+    /// Our own contact method, for what is neither a disc nor a gear.
     hull: Option<HullContact>,
     /// In its own frame.
     solids: Vec<SharedShape>,
@@ -46,7 +46,7 @@ struct Body {
 
 impl Ground {
     fn new(profile: &Profile) -> Self {
-        // Outside lies on the right of each segment, so the ground runs from +x to -x.
+        // Outside is on the right of each segment, so the ground runs from +x to -x.
         let vertices: Vec<Vector> = profile.points.iter().rev().copied().collect();
         Self {
             line: Polyline::with_flags(vertices, None, PolylineFlags::ORIENTED),
@@ -57,7 +57,7 @@ impl Ground {
 }
 
 impl ReferenceContact {
-    /// The shapes of a robot's parts and of the lanes that they meet.
+    /// Prepares the shapes of a robot's parts and the lanes under them.
     pub(crate) fn new(parts: &[Part], lanes: &[Profile]) -> Self {
         Self {
             bodies: parts
@@ -78,7 +78,7 @@ impl ReferenceContact {
         }
     }
 
-    /// Writes every contact with a gap below `prediction` into `contacts`.
+    /// Adds every contact with a gap below `prediction` to `contacts`.
     pub(crate) fn find(
         &mut self,
         pose: Pose,
@@ -114,7 +114,7 @@ impl ReferenceContact {
     ) {
         let (part, shape) = (&self.bodies[body].part, &self.bodies[body].solids[solid]);
         let Ground { line, profile, .. } = &self.lanes[part.lane];
-        // A manifold that was kept would be reused until the pose changes by a degree.
+        // A manifold that is kept would be reused until the pose changes by a degree.
         self.manifolds.clear();
         DefaultQueryDispatcher
             .contact_manifolds(
@@ -146,7 +146,7 @@ impl ReferenceContact {
     }
 }
 
-/// The convex pieces of a part in its own frame; the contacts of hulls are our own.
+/// The convex pieces of a part in its own frame; hulls use our own contacts and have none.
 fn solids_of(part: &Part) -> Vec<SharedShape> {
     match &part.shape {
         Shape::Disc { radius, .. } => vec![SharedShape::ball(*radius)],
@@ -161,7 +161,7 @@ fn solids_of(part: &Part) -> Vec<SharedShape> {
     }
 }
 
-/// Exactly these corners, however flat they are; none if a rounding error would be as thick.
+/// A polygon of exactly these corners, however flat; none if it is as thin as a rounding error.
 fn polygon(mut corners: Vec<Vector>) -> Option<SharedShape> {
     corners.dedup();
     SharedShape::convex_polyline_unmodified(corners)

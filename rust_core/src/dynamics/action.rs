@@ -1,23 +1,23 @@
-//! A direction in which a constraint acts, and how velocities count along it.
+//! The direction in which a constraint acts, and how velocities add up along it.
 //!
 //! The equations: docs/physics.md, "Levers".
 
 use super::levers::Direction;
 use crate::geometry::Vector;
 
-/// A direction in which a constraint acts, with the motors as they are in this solve.
+/// The direction in which a constraint acts, with the motors in their state in the current solve.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Action {
     pub unit: Vector,
     /// [m] Lever of the angular velocity of the chassis and of all drives that turn with it.
     pub lever: f64,
-    /// [m] Lever of the spin of a drive with a spin of its own.
+    /// [m] Lever of the spin of a drive that does not turn with the chassis.
     pub spin_lever: f64,
-    /// [m/s] What a surface that is held at the set-point adds, and what a frame that moves over the ground does.
+    /// [m/s] Constant part of the speed: from a surface held at the set-point, and from a moving frame.
     pub offset: f64,
-    /// [m] Lever of the reaction on the chassis, if that takes it.
+    /// [m] Lever of the reaction on the chassis, if the chassis takes it.
     pub back: f64,
-    /// [m] Lever of the turn of a flipper that turns by itself.
+    /// [m] Lever of the rate of a flipper that turns freely.
     pub flipper_lever: f64,
 }
 
@@ -44,7 +44,7 @@ impl Action {
         }
     }
 
-    /// The same where the flipper that it acts on turns over the chassis at a rate [rad/s], if it does.
+    /// The action on a flipper; if its motor holds a rate [rad/s] relative to the chassis, it turns with that.
     pub(super) fn of_flipper(self, held: Option<f64>) -> Self {
         match held {
             Some(rate) => Self {
@@ -57,7 +57,7 @@ impl Action {
         }
     }
 
-    /// The same of a place on the ground, measured in a frame that moves over it [m/s].
+    /// The action on a contact with the ground, in a frame that moves over the ground [m/s].
     pub(super) fn on_ground(self, frame: Vector) -> Self {
         Self {
             offset: self.offset + self.unit.dot(frame),
@@ -75,17 +75,17 @@ impl Action {
         }
     }
 
-    /// What it does to x, y and angle.
+    /// Its entries for x, y and angle.
     pub(super) fn body(&self) -> [f64; 3] {
         [self.unit.x, self.unit.y, self.lever]
     }
 
-    /// What it does to x, y and angle of the chassis that takes the reaction, and to idler or sprocket.
+    /// Entries of the reaction for x, y and angle of the chassis, and for the idler or sprocket.
     pub(super) fn reaction(&self) -> [f64; 4] {
         [-self.unit.x, -self.unit.y, -self.back, self.spin_lever]
     }
 
-    /// Together with a share of another.
+    /// The sum of this and a share of another action.
     pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
         Self {
             unit: self.unit + other.unit * share,
@@ -97,12 +97,12 @@ impl Action {
         }
     }
 
-    /// [m/s] Speed along it.
+    /// [m/s] Speed along the action.
     pub(super) fn speed(&self, velocity: Vector, angular_velocity: f64, spin: f64) -> f64 {
         self.change(velocity, angular_velocity, spin) + self.offset
     }
 
-    /// [m/s] What a change of the velocities changes of its speed.
+    /// [m/s] Change of that speed with a change of the velocities.
     pub(super) fn change(&self, velocity: Vector, angular_velocity: f64, spin: f64) -> f64 {
         self.unit.dot(velocity) + self.lever * angular_velocity + self.spin_lever * spin
     }

@@ -10,17 +10,17 @@ use super::state::Twist;
 use crate::geometry::{Vector, left_of};
 use crate::robot::Flipper;
 
-/// The arms at one end in the equations of motion.
+/// The arms at one end of the robot.
 pub(super) struct Arm {
     pub rule: Flipper,
     pub motor: Motor,
-    /// [rad/s] Turn over the chassis that is commanded in this step.
+    /// [rad/s] Rate relative to the chassis that is commanded in this step.
     pub rate: f64,
-    /// [m] From the chassis' centre of mass to the pivot, ...
+    /// [m] From the chassis' centre of mass to the pivot, in the middle of the step.
     pub pivot: Vector,
-    /// [m] ... and from there to its own, in the middle of the step.
+    /// [m] From the pivot to the arm's own centre of mass, in the middle of the step.
     pub center: Vector,
-    /// Its velocity in this piece as it would be without the pivot.
+    /// Its velocity in this piece if there were no pivot.
     pub free: Twist,
 }
 
@@ -37,12 +37,12 @@ impl Arm {
         }
     }
 
-    /// [rad/s] Its turn over the chassis, if its motor holds it.
+    /// [rad/s] Its rate relative to the chassis, if its motor holds it.
     pub(super) fn held_rate(&self) -> Option<f64> {
         self.motor.share().is_none().then_some(self.rate)
     }
 
-    /// [kg m^2]
+    /// [kg m^2] Moment of inertia about the pivot.
     pub(super) fn inertia_about_pivot(&self) -> f64 {
         self.rule.moment_of_inertia + self.rule.mass * self.rule.arm.length_squared()
     }
@@ -52,18 +52,18 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
-    /// [N s] Momentum that it would have by itself.
+    /// [N s] Momentum that it would have without the pivot.
     pub(super) fn free_momentum(&self) -> Vector {
         self.free.velocity * self.rule.mass
     }
 
-    /// [N m s] What its motor has given at a share of its limit.
+    /// [N m s] Angular impulse of its motor at a share of its limit.
     pub(super) fn given(&self, share: f64, phase: &Phase) -> f64 {
         share * self.rule.torque_limit * phase.elapsed
     }
 
-    /// Its inertia along x, along y and in turn, and its motor: how velocities count, and the impulses
-    /// that belong to them.
+    /// Its inertia along x, along y and in rotation, and its motor: the directions in which they act, and
+    /// their dampers.
     pub(super) fn dampers(&self, phase: &Phase) -> [(Action, Damper); 4] {
         let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {

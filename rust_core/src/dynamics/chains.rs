@@ -1,4 +1,4 @@
-//! What a robot's chains of shoes add to the equations of motion.
+//! The chains of shoes in the equations of motion.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -13,7 +13,7 @@ use crate::geometry::Vector;
 /// [m] A shoe this close to the guide may come to rest on it within a step.
 const NEAR_GUIDE: f64 = 2e-3;
 
-/// What the chains did in a step; the worst of all of them.
+/// State of the chains in the last step; the worst value of all chains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChainReading {
     /// [N] Largest force in a pin.
@@ -22,14 +22,14 @@ pub struct ChainReading {
     pub pin_gap: f64,
     /// [m] Deepest penetration of guide, wheels or teeth by a shoe.
     pub guide_penetration: f64,
-    /// [m] How far chain and sprocket have run apart.
+    /// [m] Difference in travel between chain and sprocket.
     pub sprocket_slip: f64,
-    /// Whether a shoe has left the guide for good, or the chain its wheels.
+    /// Whether a shoe has come off the guide, or the chain off its wheels.
     pub is_off: bool,
 }
 
 impl Dynamics {
-    /// What the chains did in the last step; nothing if there is none.
+    /// The state of the chains in the last step; zero if there are none.
     pub(crate) fn chain_reading(&self) -> ChainReading {
         let mut reading = ChainReading::default();
         for chain in &self.chains {
@@ -57,8 +57,8 @@ impl Dynamics {
         state.velocity * self.model.mass + of_shoes + self.momentum_of_flippers(state)
     }
 
-    /// Adds a row for each place where a shoe rests on guide, wheel or tooth, or nearly, in the middle of the
-    /// step.
+    /// Adds a row for each place where a shoe rests on guide, wheel or tooth, or nearly does, in the middle of
+    /// the step.
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64) {
         let pose = state.pose_after(half, &self.model);
         for chain in &mut self.chains {
@@ -79,7 +79,7 @@ impl Dynamics {
         }
     }
 
-    /// Keeps what the rests did, which come behind the contacts with the ground.
+    /// Stores the forces of the rests, whose rows come after those of the contacts with the ground.
     pub(super) fn remember_rests(&mut self, contacts: usize) {
         for chain in &mut self.chains {
             chain.forget_rests();
@@ -93,8 +93,8 @@ impl Dynamics {
 
     /// Advances by a piece of `h` [s].
     ///
-    /// The solve is done in the frame of the chassis: pins are so stiff that the rounding of a velocity that all
-    /// bodies share would be a force.
+    /// The solve uses a frame moving with the chassis: pins are so stiff that rounding errors of a velocity
+    /// common to all bodies would act as forces.
     pub(super) fn substep_of_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         let soft = self.softness(h);
         let frame = state.velocity;
@@ -107,7 +107,7 @@ impl Dynamics {
         }
         self.guess(h);
         self.solve(state, &phase);
-        // Eight digits are lost in the pins; what all bodies share follows from what acts on them from outside.
+        // The pins cost eight digits; the common velocity is corrected by the momentum balance of the robot.
         let lost = self.momentum_given(&phase) - self.momentum(state);
         self.end_phase(state, phase);
         state.add_velocity(frame + lost / self.model.total_mass());
@@ -115,7 +115,7 @@ impl Dynamics {
         self.move_chains(state, set_point, h);
     }
 
-    /// [N s] Momentum of chassis, shoes and flippers with what the weight and the ground have given in a piece.
+    /// [N s] Momentum of the robot after a piece by the impulses of weight and ground.
     fn momentum_given(&self, phase: &Phase) -> Vector {
         let of_chain = |chain: &Chain| {
             let velocities = chain.free.iter().map(|shoe| shoe.velocity);
@@ -134,7 +134,7 @@ impl Dynamics {
         phase.velocity * self.model.mass + of_shoes + of_arms + of_ground
     }
 
-    /// Moves shoes and idlers by `h` [s] at the velocities that they have.
+    /// Moves shoes and idlers by `h` [s] at their velocities.
     fn move_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         for (chain, motor) in self.chains.iter_mut().zip(&self.motors) {
             chain.count(state, set_point, motor.share().is_none(), h);
@@ -147,7 +147,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece of `h` [s]: velocities without constraints, pins in place, with their last forces.
+    /// Starts a piece of `h` [s]: velocities without constraints, and pins in place with their last forces.
     fn start_chains(&mut self, state: &State, h: f64) {
         let kick = Twist {
             velocity: Vector::new(0.0, -self.gravity) * h,
@@ -164,7 +164,7 @@ impl Dynamics {
         }
     }
 
-    /// [N s] What the drive of a chain gives if its motor does not hold the speed.
+    /// [N s] Impulse of a chain's drive, if its motor does not hold the speed.
     fn given(&self, k: usize, phase: &Phase) -> Option<f64> {
         if !self.chains[k].has_hold() {
             return Some(0.0);
@@ -180,7 +180,7 @@ impl Dynamics {
         }
     }
 
-    /// Velocity and angular velocity of the chassis, with the chains; none if the constraints contradict
+    /// Velocity and angular velocity of the chassis, chains included; none if the constraints contradict
     /// each other.
     pub(super) fn solve_system(&mut self) -> Option<(Vector, f64)> {
         if !self.chains.is_empty() {
@@ -200,7 +200,7 @@ impl Dynamics {
         Some((velocity, turn))
     }
 
-    /// Turns the velocities of the last solve into changes.
+    /// Converts the velocities of the last solve into changes.
     pub(super) fn change_shoes(&mut self, state: &State) {
         let solved = self.chains.iter_mut().flat_map(|chain| &mut chain.solved);
         for (twist, shoe) in solved.zip(&state.shoes) {
@@ -211,7 +211,7 @@ impl Dynamics {
         }
     }
 
-    /// Moves the shoes' velocities by a share of the change.
+    /// Changes the shoes' velocities by a share of the change.
     pub(super) fn move_shoes(&self, state: &mut State, share: f64) {
         let changes = self.chains.iter().flat_map(|chain| &chain.solved);
         for (shoe, change) in state.shoes.iter_mut().zip(changes) {
@@ -222,8 +222,8 @@ impl Dynamics {
         }
     }
 
-    /// Takes the impulses of pins and drives that belong to the velocities, and the speeds of the drives;
-    /// how far the velocities are from what they should be [m/s].
+    /// Updates the impulses of pins and drives, and the speeds of the drives, to match the velocities; returns
+    /// the largest error of a velocity [m/s].
     pub(super) fn chains_follow_velocities(&mut self, state: &mut State, phase: &Phase) -> f64 {
         let mut off: f64 = 0.0;
         for k in 0..self.chains.len() {
@@ -239,7 +239,7 @@ impl Dynamics {
         off
     }
 
-    /// What the chains add to the slope of the potential along a change.
+    /// The chains' part of the slope of the potential along a change.
     pub(super) fn slope_of_chains(
         &self,
         state: &State,

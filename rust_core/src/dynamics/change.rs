@@ -1,4 +1,4 @@
-//! A change of all velocities: from those of a state to those that come out of a solve.
+//! A change of all velocities, from those of a state to those of a solve.
 //!
 //! The equations: docs/physics.md, "Descent".
 
@@ -8,7 +8,7 @@ use super::row::Row;
 use super::state::{State, Twist};
 
 impl Dynamics {
-    /// Solves the system; the chassis' part of the change that leads there, with those of all else behind. None
+    /// Solves the system; returns the change of the chassis' velocity and stores those of all other bodies. None
     /// if the constraints contradict each other.
     pub(super) fn solve_for_change(&mut self, state: &State) -> Option<Twist> {
         let (velocity, turn) = self.solve_system()?;
@@ -27,7 +27,7 @@ impl Dynamics {
         Some(change)
     }
 
-    /// Moves all velocities by a share of the change.
+    /// Changes all velocities by a share of the change.
     pub(super) fn move_by(&self, state: &mut State, change: &Twist, share: f64) {
         state.velocity += change.velocity * share;
         state.angular_velocity += change.turn * share;
@@ -38,7 +38,7 @@ impl Dynamics {
         }
     }
 
-    /// [m/s] What the change is worth along a contact's normal and tangent.
+    /// [m/s] The change along a contact's normal and tangent.
     pub(super) fn changes_of(&self, row: &Row, change: &Twist) -> [f64; 2] {
         let shoe = |i: usize| self.chains[i / self.shoes_a_chain].solved[i % self.shoes_a_chain];
         let idler = |k: usize| self.chains[k].idler_rate;
@@ -46,7 +46,7 @@ impl Dynamics {
         row.count(*change, shoe, spin, idler, |k| self.system.changes[k])
     }
 
-    /// [m/s] A bound of what the change moves anything by, to the order.
+    /// [m/s] Approximate upper bound of the change of any velocity.
     pub(super) fn largest(&self, change: &Twist) -> f64 {
         let spins = self.system.spins.iter();
         let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());

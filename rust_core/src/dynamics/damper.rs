@@ -1,16 +1,16 @@
-//! An impulse that falls with a speed: what every constraint is to a solve.
+//! A damper: an impulse that decreases linearly with a speed; every constraint enters a solve as one.
 //!
 //! The equations: docs/physics.md, "The linear system".
 
 /// Compliance of the dampers, in units of the contact's own admittance.
 pub(super) const DAMPING: f64 = 1e-6;
 
-/// An impulse that falls with the speed along its direction.
+/// An impulse that decreases with the speed along its direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Damper {
-    /// [N s] At rest.
+    /// [N s] Impulse at zero speed.
     impulse: f64,
-    /// [kg]
+    /// [kg] Impulse per speed.
     pub stiffness: f64,
 }
 
@@ -19,12 +19,12 @@ impl Damper {
         Self { impulse, stiffness }
     }
 
-    /// The same about a speed other than rest [m/s].
+    /// The same damper about a speed [m/s] other than zero.
     pub(super) fn shifted(self, speed: f64) -> Self {
         Self::new(self.at(-speed), self.stiffness)
     }
 
-    /// One that no speed changes.
+    /// A constant impulse, whatever the speed.
     pub(super) fn constant(impulse: f64) -> Self {
         Self {
             impulse,
@@ -32,12 +32,12 @@ impl Damper {
         }
     }
 
-    /// [N s] Its impulse at a speed.
+    /// [N s] Impulse at a speed.
     pub(super) fn at(self, speed: f64) -> f64 {
         self.impulse - self.stiffness * speed
     }
 
-    /// [m/s] The speed at which it has an impulse.
+    /// [m/s] Speed at a given impulse.
     pub(super) fn speed_for(self, impulse: f64) -> f64 {
         (self.impulse - impulse) / self.stiffness
     }

@@ -1,9 +1,9 @@
-//! What all constraints agree on while the limits of friction stay as they are: it always exists.
+//! Descent: the solution of all constraints with frozen friction limits, which always exists.
 //!
-//! With frozen limits the impulses are the slope of a convex potential of the velocities. Newton's method,
-//! each step no longer than the potential falls along it, ends at the one minimum from wherever it
-//! starts, as in the primal solvers of friction by penalty (Todorov 2014). The impulses there take
-//! energy.
+//! With frozen limits the impulses are the gradient of a convex potential of the velocities. Newton's method
+//! with a line search that stops where the potential no longer falls ends at the one minimum from any start,
+//! as in the primal solvers of friction by penalty (Todorov 2014). The impulses at the minimum take energy
+//! out of the motion.
 //!
 //! The equations: docs/physics.md, "Descent".
 
@@ -16,16 +16,16 @@ use super::state::{State, Twist};
 
 /// Newton steps at most; a dozen contacts take three to six.
 const STEPS: u32 = 30;
-/// [m/s] A change that is smaller is rounding: at a kink the potential falls no further.
+/// [m/s] Smaller changes are rounding: at a kink the potential falls no further.
 const ROUNDING: f64 = 1e-14;
-/// What is left at most of a limit of friction beyond Coulomb's law where no limits agree, ...
+/// Factor by which friction limits beyond Coulomb's law shrink, at least, when no limits agree.
 const SHRINKING: f64 = 0.9;
-/// ... and how often limits shrink at most: by then nothing is left of any.
+/// How often limits shrink at most: by then nothing is left of them.
 const SHRINKINGS: u32 = 400;
 
 impl Dynamics {
-    /// Goes down to the minimum for the limits that the normal impulses give; whether it gives the same
-    /// limits.
+    /// Goes to the minimum for the limits given by the normal impulses; returns whether these give the same
+    /// limits again.
     pub(super) fn descend(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.effort.descents += 1;
         self.freeze_limits();
@@ -38,18 +38,18 @@ impl Dynamics {
         off < AGREEMENT
     }
 
-    /// Ends a search in which the limits never agreed: with the last impulses, if they gain no energy.
+    /// Ends a search in which the limits never agreed: keeps the last impulses unless they gain energy.
     pub(super) fn end_search(&mut self, state: &mut State, phase: &Phase) {
         if self.limit_motors(state, phase) {
             self.set_actions(state, phase);
         }
-        // What chains and flippers take and give is not summed up: to give way is always right.
+        // With chains or flippers the energy is not summed up; giving way is always safe.
         if self.model.is_one_body() {
             self.balance(state, phase);
         }
         if !self.model.is_one_body() || self.energy_of_contacts(state) > 0.0 {
             self.give_way(state, phase);
-            // Each time one more motor is at its limit.
+            // Each round one more motor may reach its limit.
             for _ in 0..self.motors.len() + self.flippers.len() {
                 if !self.limit_motors(state, phase) {
                     break;
@@ -60,8 +60,8 @@ impl Dynamics {
         }
     }
 
-    /// From here the limits only shrink, until all friction is within Coulomb's law. What slides may then
-    /// slide under less than its law allows, but gains nothing.
+    /// Shrinks the limits until all friction obeys Coulomb's law. Sliding contacts may end up with less friction
+    /// than the law allows, but gain no energy.
     fn give_way(&mut self, state: &mut State, phase: &Phase) {
         self.freeze_limits();
         for _ in 0..SHRINKINGS {
@@ -82,25 +82,25 @@ impl Dynamics {
         self.obey_coulombs_law();
     }
 
-    /// Limits friction by what the loads allow that each contact had last.
+    /// Limits friction by the normal impulses that the contacts had last.
     fn freeze_limits(&mut self) {
         for row in &mut self.rows {
             row.limit = row.friction * row.normal_impulse;
         }
     }
 
-    /// Cuts friction to what the loads allow that each contact has now.
+    /// Cuts friction to what the current normal impulses allow.
     fn obey_coulombs_law(&mut self) {
         for row in self.rows.iter_mut().filter(|row| row.bears) {
             let limit = row.friction * row.normal_impulse;
-            // A limit that is no number is found after the step, with all else that is none: no clamp, which panics.
+            // Not `clamp`, which panics on NaN; a NaN is found after the step, with all others.
             row.friction_impulse = row.friction_impulse.max(-limit).min(limit);
             row.guess_grip();
         }
     }
 
-    /// Goes down to the minimum for the limits as they are; how much velocity the change of a limit is
-    /// worth that would fit the loads there [m/s].
+    /// Goes to the minimum for the current limits; returns the largest velocity that corresponds to the change of
+    /// a limit towards the new normal impulses [m/s].
     fn go_down(&mut self, state: &mut State, phase: &Phase) -> f64 {
         self.settle();
         self.choose_dampers(state);
@@ -128,7 +128,7 @@ impl Dynamics {
         off
     }
 
-    /// Gives each contact the dampers that it is at these velocities; whether they are those that it had.
+    /// Sets each contact's dampers for the current velocities; returns whether none has changed.
     fn choose_dampers(&mut self, state: &State) -> bool {
         let mut same = true;
         for row in self.rows.iter_mut().filter(|row| row.bears) {
@@ -139,7 +139,7 @@ impl Dynamics {
         same
     }
 
-    /// The system of the contacts as they are at these velocities.
+    /// Assembles the system of the contacts at the current velocities.
     fn assemble_frozen(&mut self, phase: &Phase) {
         self.assemble_bodies(phase);
         for i in 0..self.rows.len() {
@@ -153,12 +153,12 @@ impl Dynamics {
         self.add_push();
     }
 
-    /// The share of a change after which the potential falls no more.
+    /// The share of a change up to which the potential falls.
     fn share_that_falls(&mut self, state: &State, change: &Twist, phase: &Phase) -> f64 {
         if self.slope(state, change, phase, 1.0) <= 0.0 {
             return 1.0;
         }
-        // The slope rises, and between two kinks in a straight line.
+        // The slope rises, linearly between two kinks.
         let mut kinks = std::mem::take(&mut self.kinks);
         kinks.clear();
         for row in self.rows.iter().filter(|row| row.bears) {
@@ -183,7 +183,7 @@ impl Dynamics {
         }
     }
 
-    /// The slope of the potential along a change, a share of it further on.
+    /// The slope of the potential along a change, at a share of it.
     fn slope(&self, state: &State, change: &Twist, phase: &Phase, share: f64) -> f64 {
         let m = &self.model;
         let velocity = state.velocity + change.velocity * share - phase.velocity;
@@ -217,8 +217,8 @@ impl Dynamics {
 }
 
 impl Row {
-    /// What normal and tangent are at such speeds while the limit of friction is frozen: beyond a limit,
-    /// an impulse that no speed changes.
+    /// The dampers of normal and tangent at these speeds with the friction limit frozen: beyond a limit, a
+    /// constant impulse.
     fn frozen_dampers(&self, [approach, slip]: [f64; 2]) -> [Damper; 2] {
         let [normal, tangent] = self.dampers;
         let stuck = tangent.at(slip);
@@ -238,7 +238,7 @@ impl Row {
         ]
     }
 
-    /// Calls `found` with the shares of a change at which its dampers begin or end.
+    /// Calls `found` with the shares of a change at which a damper reaches or leaves a limit.
     fn kinks(&self, state: &State, changes: [f64; 2], mut found: impl FnMut(f64)) {
         let [approach, slip] = self.speeds(state);
         let [normal, tangent] = self.dampers;
@@ -248,8 +248,8 @@ impl Row {
         }
     }
 
-    /// Takes the impulses that belong to the velocities; how much velocity the change of its limit is
-    /// worth that would fit the load [m/s].
+    /// Updates the impulses to match the velocities; returns the velocity that corresponds to the change of its
+    /// limit towards the new normal impulse [m/s].
     fn follow_frozen(&mut self, state: &State) -> f64 {
         let [approach, slip] = self.speeds(state);
         let [normal, tangent] = self.frozen;

@@ -1,11 +1,11 @@
-//! All constraints at once: which contacts are open, stick or slide is guessed from the last solve, the
-//! velocities follow from one small linear system, and the guess is mended until it fits.
+//! Direct search: guesses from the last solve which contacts are open, stick or slide, finds the velocities
+//! from one small linear system, and corrects the guess until it fits.
 //!
-//! A contact enters as a stiff damper about the impulse that it had (the proximal point of an augmented
-//! Lagrangian), so that contacts that share one load have a solution, too, and the nearest one. What
-//! the damping leaves vanishes as the impulses become their own starting point. The system has three
-//! rows for the chassis, whatever the number of contacts, and one more to be eliminated at once for
-//! each drive with a spin of its own.
+//! A contact enters as a stiff damper about its last impulse (the proximal point of an augmented Lagrangian),
+//! so that contacts that share one load have a solution too, and the nearest one. The effect of the damping
+//! vanishes as each solution becomes the centre of the next. The system has three rows for the chassis,
+//! whatever the number of contacts, and one more, eliminated right away, for each drive that does not turn
+//! with the chassis.
 //!
 //! The equations: docs/physics.md, "Direct search".
 
@@ -20,12 +20,12 @@ use super::solve::AGREEMENT;
 use super::state::State;
 use super::system::{Acts, Spin};
 
-/// Solutions of the system in search of one that fits, with all misfits mended at once: they can chase each
-/// other for ever.
+/// Solutions of the system in one search; since all misfits are corrected at once, corrections could
+/// alternate for ever.
 const AT_ONCE: u32 = 4;
 
 impl Dynamics {
-    /// Finds the impulses that all constraints agree on, if a guess can be mended to fit.
+    /// Finds the impulses that satisfy all constraints, if corrected guesses lead there.
     pub(super) fn solve_at_once(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
         for _ in 0..AT_ONCE {
@@ -61,8 +61,7 @@ impl Dynamics {
         false
     }
 
-    /// Gives the rows the impulses that belong to the velocities; how far these are from what they should be
-    /// [m/s].
+    /// Updates the rows' impulses to match the velocities; returns the largest error of a velocity [m/s].
     fn rows_follow_velocities(&mut self, state: &State) -> f64 {
         let bearing = self.rows.iter_mut().filter(|row| row.bears);
         bearing.fold(0.0, |off, row| {
@@ -70,7 +69,7 @@ impl Dynamics {
         })
     }
 
-    /// Changes the grips that do not fit; whether all fitted.
+    /// Corrects the grips that do not fit; returns whether all fitted.
     fn mend(&mut self) -> bool {
         let mut fits = true;
         for row in self.rows.iter_mut().filter(|row| row.bears) {
@@ -81,7 +80,7 @@ impl Dynamics {
         fits
     }
 
-    /// Makes the impulses the ones that constraints are damped about.
+    /// Makes the current impulses the ones about which constraints are damped.
     pub(super) fn settle(&mut self) {
         self.rows.iter_mut().for_each(Row::settle);
         self.chains.iter_mut().for_each(Chain::settle);
@@ -90,7 +89,7 @@ impl Dynamics {
         }
     }
 
-    /// The system without constraints.
+    /// Assembles the system without constraints.
     pub(super) fn assemble_bodies(&mut self, phase: &Phase) {
         let m = &self.model;
         let moment = self.free_moment(phase);
@@ -99,7 +98,7 @@ impl Dynamics {
         for (k, motor) in self.motors.iter().enumerate() {
             let share = motor.share().unwrap_or_default();
             let of_motor = phase.motor_turn(share, m);
-            // The drive of a chain has no inertia but the chain's.
+            // The drive of a chain has no inertia of its own.
             let drive_inertia = if k < self.chains.len() {
                 1.0
             } else {
@@ -112,7 +111,7 @@ impl Dynamics {
         self.assemble_flippers(phase);
     }
 
-    /// The system of the constraints as they are guessed.
+    /// Assembles the system with the constraints as guessed.
     pub(super) fn assemble(&mut self, phase: &Phase) {
         self.assemble_bodies(phase);
         for i in 0..self.rows.len() {
@@ -141,7 +140,7 @@ impl Dynamics {
         self.add_push();
     }
 
-    /// Adds a constraint of a row whose impulse along `force` is that of a damper along `action`.
+    /// Adds a constraint of a row: its impulse acts along `force`, with a damper along `action`.
     pub(super) fn add(&mut self, row: usize, force: &Action, action: &Action, damper: Damper) {
         let row = &self.rows[row];
         let on_body = [force.body(), action.body()];
@@ -155,7 +154,7 @@ impl Dynamics {
             }
             Link::Shoe(i) => {
                 let (chain, i) = (i / self.shoes_a_chain, i % self.shoes_a_chain);
-                // Shoes have no offset of their own in the system.
+                // In the system, shoes have no offset of their own.
                 self.chains[chain].add(i, on_body, damper.shifted(-action.offset));
             }
             Link::Guide { shoe, chain } => {
@@ -169,7 +168,7 @@ impl Dynamics {
         }
     }
 
-    /// Adds the push of a track that is modelled by a force alone to the system.
+    /// Adds the push of a track that is modelled as a force only.
     pub(super) fn add_push(&mut self) {
         if let Some(push) = &self.push {
             let along = &push.action;

@@ -1,24 +1,24 @@
-//! What the solves of the motion took: nothing that moves depends on it.
+//! Counts of the solver's work; the motion does not depend on them.
 //!
 //! The equations: docs/physics.md, "Direct search".
 
 use serde::{Deserialize, Serialize};
 
-/// Numbers of solves, and of what they took.
+/// Number of solves, and of their parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Effort {
-    /// Searches for the impulses that all constraints agree on: two a piece of a substep, one with chains.
+    /// Searches for impulses that satisfy all constraints: two per piece of a substep, one with chains.
     pub solves: u64,
-    /// Linear systems solved in them with the grips as they were guessed.
+    /// Linear systems solved in direct searches.
     pub rounds: u64,
-    /// Descents, where guesses could not be mended.
+    /// Descents, where no guess could be corrected.
     pub descents: u64,
-    /// Solves that ended without agreement.
+    /// Solves that ended without a solution.
     pub unresolved: u64,
 }
 
 impl Effort {
-    /// With what more was done.
+    /// The sum with further work.
     pub(crate) fn plus(self, more: Self) -> Self {
         Self {
             solves: self.solves + more.solves,

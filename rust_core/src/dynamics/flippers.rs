@@ -1,9 +1,9 @@
-//! What the flippers add to the equations of motion.
+//! The flippers in the equations of motion.
 //!
-//! An arm is a body that hangs on the chassis by its pivot, so it adds one unknown, its turn, and none
-//! while its motor holds the commanded rate: it is then inertia of the chassis. Its mass enters as a
-//! damper about the velocity that its centre of mass would have by itself: the impulse of that damper is
-//! what the pivot takes.
+//! An arm is a body that hangs on the chassis by its pivot, so it adds one unknown, its rate, and none while
+//! its motor holds the commanded rate: it then adds to the inertia of the chassis. Its mass enters as a damper
+//! about the velocity that its centre of mass would have without the pivot; the impulse of that damper is the
+//! impulse of the pivot.
 //!
 //! The equations: docs/physics.md, "Arms".
 
@@ -21,7 +21,7 @@ use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 
 impl Dynamics {
-    /// Commands the angles of the flippers [rad], upwards > 0, which they approach as fast as they may.
+    /// Commands angles of the flippers [rad], upwards > 0, which they approach at their rate limit.
     pub(crate) fn command_flippers(&mut self, state: &State, angles: [f64; 2]) {
         let dt = self.solver.time_step;
         for (k, arm) in self.flippers.iter_mut().enumerate() {
@@ -31,7 +31,7 @@ impl Dynamics {
         }
     }
 
-    /// Brings the arms to where they are in the middle of a step, half its time [s] from now.
+    /// Places the arms as they are in the middle of a step, `half` [s] from now.
     pub(super) fn place_flippers(&mut self, state: &State, half: f64) {
         let center = self.model.center_of_mass;
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -40,7 +40,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece: the arms' velocities after a time [s] in which the weight alone acts.
+    /// Starts a piece: velocities of the arms after a time [s] under weight alone.
     pub(super) fn start_flippers(&mut self, state: &State, time: f64) {
         let chassis = state.twist();
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -52,10 +52,10 @@ impl Dynamics {
         self.pull_flippers(state, state.angular_velocity, time);
     }
 
-    /// Goes on for a time [s], as the weight pulls and as the turns do: the pivot goes round with the
-    /// chassis and the arm round the pivot, and what that takes inwards changes no turn. `began` is the
-    /// turn of the chassis at the beginning of the piece [rad/s]: half of it on, turns have changed by half of
-    /// what they will, and this half is that of its end.
+    /// Continues for a time [s] under weight and centripetal acceleration: the pivot goes round with the chassis
+    /// and the arm round the pivot, which changes no rate. `began` is the angular velocity of the chassis at the
+    /// beginning of the piece [rad/s]. Half of the piece is over, so rates have made half of their change; they
+    /// are extrapolated to its end.
     pub(super) fn pull_flippers(&mut self, state: &State, began: f64, time: f64) {
         let (center, gravity) = (self.model.center_of_mass, self.gravity);
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -82,7 +82,7 @@ impl Dynamics {
         }
     }
 
-    /// Gives the flippers the turns of the last solve.
+    /// Sets the flippers' rates to those of the last solve.
     pub(super) fn take_flippers(&self, state: &mut State) {
         for (turn, solved) in state.flippers.iter_mut().zip(self.system.turns) {
             turn.rate = solved;
@@ -90,9 +90,9 @@ impl Dynamics {
         self.turn_flippers_with_chassis(state);
     }
 
-    /// [1/kg] What a flipper adds to the admittance of its contacts.
+    /// [1/kg] The flipper's part of the admittance of its contacts.
     pub(super) fn admittance_of_flipper(&self, k: usize, action: &Action) -> f64 {
-        // It bears beside shoes, and as softly: as one of many contacts it would chase their grips.
+        // Beside shoes it is as soft as they are; otherwise its grip would keep changing with theirs.
         if let Some(chain) = self.chains.first() {
             return action.unit.length_squared() / chain.rule.shoe_mass;
         }
@@ -100,7 +100,7 @@ impl Dynamics {
         lever * lever / self.flippers[k].inertia_about_pivot()
     }
 
-    /// Turns those that their motors hold with the chassis.
+    /// Sets the rates of flippers held by their motors, which turn with the chassis.
     pub(super) fn turn_flippers_with_chassis(&self, state: &mut State) {
         for (turn, arm) in state.flippers.iter_mut().zip(&self.flippers) {
             if let Some(rate) = arm.held_rate() {
@@ -109,7 +109,7 @@ impl Dynamics {
         }
     }
 
-    /// Turns the solved turns into changes, that of the chassis given.
+    /// Converts the solved rates into changes, given that of the chassis.
     pub(super) fn change_flippers(&mut self, state: &State, chassis: &Twist) {
         for (k, arm) in self.flippers.iter().enumerate() {
             self.system.changes[k] = match arm.held_rate() {
@@ -119,14 +119,14 @@ impl Dynamics {
         }
     }
 
-    /// Moves their turns by a share of the changes.
+    /// Changes the flippers' rates by a share of the changes.
     pub(super) fn move_flippers(&self, state: &mut State, share: f64) {
         for (turn, change) in state.flippers.iter_mut().zip(self.system.changes) {
             turn.rate += change * share;
         }
     }
 
-    /// What the flippers add to the slope of the potential along a change, a share of it further on.
+    /// The flippers' part of the slope of the potential along a change, at a share of it.
     pub(super) fn slope_of_flippers(
         &self,
         state: &State,
@@ -148,13 +148,13 @@ impl Dynamics {
         slope
     }
 
-    /// [N m s] What the motor of a flipper has given so far, upwards at the front.
+    /// [N m s] Angular impulse of a flipper's motor so far, upwards at the front.
     pub(super) fn flipper_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
         let (arm, rate) = (&self.flippers[k], state.flippers[k].rate);
         if let Some(share) = arm.motor.share() {
             return arm.given(share, phase);
         }
-        // What the contacts have not, the motor has changed of its moment of momentum about the pivot.
+        // The motor has made the change of angular momentum about the pivot that the contacts have not.
         let gained = arm.velocity(state.twist(), rate) - arm.free.velocity;
         let of_arm = arm.rule.mass * left_of(arm.center).dot(gained)
             + arm.rule.moment_of_inertia * (rate - arm.free.turn);
@@ -166,8 +166,8 @@ impl Dynamics {
         of_arm - of_contacts.sum::<f64>()
     }
 
-    /// Lets motors of flippers beyond their limit go, and, if `both`, those past their rate take hold;
-    /// whether any did.
+    /// Releases motors of flippers beyond their limit and, if `both`, lets those past their rate hold again;
+    /// returns whether any changed.
     pub(super) fn switch_flippers(&mut self, state: &State, phase: &Phase, both: bool) -> bool {
         let mut switched = false;
         for k in 0..self.flippers.len() {
@@ -194,7 +194,7 @@ impl Dynamics {
         switched
     }
 
-    /// Adds what a piece applied to the means of a step of `dt` [s].
+    /// Adds the impulses of a piece to the means of a step of `dt` [s].
     pub(super) fn collect_flippers(&self, state: &mut State, phase: &Phase, dt: f64) {
         for k in 0..self.flippers.len() {
             state.flippers[k].torque += self.flipper_impulse(state, phase, k) / dt;

@@ -1,16 +1,16 @@
-//! What a contact does: it is open, sticks or slides.
+//! The state of a contact: open, sticking or sliding.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
 use serde::{Deserialize, Serialize};
 
-/// What a contact does in a solve.
+/// The state of a contact in a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Grip {
-    /// Nothing.
+    /// No contact force.
     #[default]
     Open,
-    /// It holds.
+    /// It sticks.
     Sticks,
     /// It slides; friction acts along the tangent.
     Forwards,
@@ -19,7 +19,7 @@ pub(crate) enum Grip {
 }
 
 impl Grip {
-    /// The next guess: between the two directions of slip lies none.
+    /// The next guess: a change of the direction of slip goes through sticking.
     pub(super) fn towards(self, fitting: Self) -> Self {
         match (self, fitting) {
             (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Sticks,

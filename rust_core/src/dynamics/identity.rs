@@ -1,8 +1,8 @@
-//! Which contact is which: each has one number for as long as it lasts, and all who ask go by it.
+//! Identity of contacts: each has one number for as long as it lasts, and everything refers to it by that.
 //!
-//! A contact goes on from the one of the last step that lies nearest, and keeps its number. One that opened
-//! wider than contacts are looked for, and closes again at the same place, is the same one, though its forces
-//! are gone: else each of the contacts of a robot that rattles would be many.
+//! A contact continues the nearest one of the last step and keeps its number. If it opens wider than the
+//! search distance and closes again at the same place, it is still the same contact, though its forces are
+//! gone: otherwise each contact of a rattling robot would be counted many times.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -16,27 +16,27 @@ use crate::contact::Contact;
 use crate::robot::Model;
 use crate::terrain::Profile;
 
-/// [m] A contact goes on from one that it has moved less than this from.
+/// [m] A contact continues one that is no farther away than this.
 const SAME_PLACE: f64 = 5e-3;
-/// Normals whose cosine is larger are of one contact: it turns by less than 26 degrees from step to step.
+/// Cosine between normals of one contact: it turns by less than 26 degrees from step to step.
 const SAME_NORMAL: f64 = 0.9;
-/// [s] For so long a contact that has opened is remembered: the default window of a stop, over which its
+/// [s] How long a contact that has opened is remembered: the default window of a stop, over which its
 /// forces are averaged.
 const REMEMBERED: f64 = 1.0;
-/// So many of them are remembered at most. Runs have some ten of them, those of 24 gear wheels up to 240; more
-/// there are only where all moves so fast that no contact is at the place of another.
+/// How many of them are remembered at most. Runs have about ten, runs with 24 gear wheels up to 240; there
+/// are more only if everything moves so fast that no contact is at the place of another.
 const MOST_LOST: usize = 256;
-/// Numbers that a run comes nowhere near, and that leave room for more.
+/// A number that no run comes near, with room for more above it.
 const MOST_GIVEN: u64 = 1 << 60;
 
 /// What is remembered of contacts besides the last step's.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Identity {
-    /// The last number that was given; the first is 1.
+    /// The last number given; the first is 1.
     given: u64,
-    /// Contacts that have opened, those of long ago first.
+    /// Contacts that have opened, the oldest first.
     lost: Vec<Lost>,
-    /// Which of the last step's are taken: of use within a step alone.
+    /// Which contacts of the last step have been matched; used only within a step.
     #[serde(skip)]
     taken: Vec<bool>,
 }
@@ -44,15 +44,14 @@ pub(super) struct Identity {
 /// A contact that has opened.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Lost {
-    /// As it was last.
+    /// Its last state.
     contact: Contact,
-    /// [s] Since then.
+    /// [s] Time since it opened.
     age: f64,
 }
 
 impl Identity {
-    /// Numbers the contacts of a step that comes a time `dt` [s] after the `last` one; both are in order of
-    /// part and x.
+    /// Numbers the contacts of a step, `dt` [s] after the `last` one; both are sorted by part and x.
     pub(super) fn recognise(&mut self, last: &[LoadedContact], contacts: &mut [Contact], dt: f64) {
         for lost in &mut self.lost {
             lost.age += dt;
@@ -80,8 +79,8 @@ impl Identity {
         self.lost.drain(..too_many);
     }
 
-    /// The nearest contact of the last step, if near enough; each is taken once. Those before
-    /// `from` lie too far left for all that come.
+    /// Takes the nearest contact of the last step, if it is near enough; each is taken once. Those before
+    /// `from` are too far left for this and all later contacts.
     fn take_nearest(
         &mut self,
         last: &[LoadedContact],
@@ -103,7 +102,7 @@ impl Identity {
         Some(last[nearest].contact)
     }
 
-    /// The number of the nearest contact that has opened, if near enough; it is lost no more.
+    /// Takes the number of the nearest contact that has opened, if it is near enough.
     fn find_again(&mut self, contact: &Contact) -> Option<u64> {
         let lost = self.lost.iter().map(|lost| lost.contact).enumerate();
         let of_part = lost.filter(|(_, lost)| lost.part == contact.part);
@@ -118,7 +117,7 @@ impl Identity {
         Some(self.lost.remove(nearest).contact.number)
     }
 
-    /// Whether these can be the contacts of the last step: no two of all that are known share a number.
+    /// Whether these can be the contacts of the last step; no two known contacts may share a number.
     pub(super) fn fits(&self, last: &[LoadedContact], model: &Model, lanes: &[Profile]) -> bool {
         let fits =
             |lost: &Lost| lost.contact.fits(model, lanes) && (0.0..REMEMBERED).contains(&lost.age);
@@ -136,7 +135,7 @@ impl Identity {
     }
 }
 
-/// The nearest of the contacts of the same part, if it is at the same place.
+/// The nearest known contact of the same part, if it is at the same place.
 fn nearest(known: impl Iterator<Item = (usize, Contact)>, contact: &Contact) -> Option<usize> {
     let alike = known.filter(|(_, c)| c.normal.dot(contact.normal) > SAME_NORMAL);
     alike
@@ -146,10 +145,10 @@ fn nearest(known: impl Iterator<Item = (usize, Contact)>, contact: &Contact) -> 
         .map(|(i, _)| i)
 }
 
-/// The last step's contacts, to be asked for by their numbers.
+/// The contacts of the last step, looked up by number.
 pub(super) struct Numbered<'a> {
     contacts: &'a [LoadedContact],
-    /// Where the next one is likely to be: contacts come in the same order as in the last step.
+    /// Likely position of the next one: contacts come in the same order as in the last step.
     next: usize,
 }
 
@@ -158,7 +157,7 @@ impl<'a> Numbered<'a> {
         Self { contacts, next: 0 }
     }
 
-    /// The contact of a number, if the last step had it.
+    /// The contact with a number, if the last step had it.
     pub(super) fn get(&mut self, number: u64) -> Option<LoadedContact> {
         let mut all = (self.next..self.contacts.len()).chain(0..self.next);
         let found = all.find(|i| self.contacts[*i].contact.number == number)?;

@@ -1,4 +1,4 @@
-//! What a step hands to the next besides the state: where its solves start from.
+//! What a step passes on to the next besides the state: the start values of its solves.
 //!
 //! The equations: docs/physics.md, "State".
 
@@ -13,7 +13,7 @@ use crate::contact::Contact;
 use crate::geometry::plausible;
 use crate::terrain::Profile;
 
-/// Of one robot; a snapshot holds them.
+/// The impulses of one robot; part of a snapshot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Impulses {
     push: Option<f64>,
@@ -32,7 +32,7 @@ impl Impulses {
 }
 
 impl Dynamics {
-    /// What the next step starts from.
+    /// The start values of the next step.
     pub(crate) fn impulses(&self) -> Impulses {
         Impulses {
             push: self.push.as_ref().map(|push| push.force),
@@ -44,7 +44,7 @@ impl Dynamics {
         }
     }
 
-    /// Whether a step of this model can have left them.
+    /// Whether a step of this model can have left these impulses.
     pub(crate) fn fits(&self, impulses: &Impulses, lanes: &[Profile]) -> bool {
         let Impulses {
             push,
@@ -67,7 +67,7 @@ impl Dynamics {
             && identity.fits(contacts, &self.model, lanes)
     }
 
-    /// Starts from what a step of the same model left.
+    /// Starts from the impulses that a step of the same model left.
     pub(crate) fn start_from(&mut self, impulses: Impulses) {
         if let (Some(push), Some(force)) = (&mut self.push, impulses.push) {
             push.force = force;

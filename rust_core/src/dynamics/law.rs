@@ -1,4 +1,4 @@
-//! What a contact does at given velocities, and with which impulses: Coulomb's law with softness.
+//! Coulomb's law with softness: the grip and the impulses of a contact at given velocities.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
@@ -8,7 +8,7 @@ use super::row::Row;
 use super::state::State;
 
 impl Row {
-    /// Makes its impulses the ones that it is damped about.
+    /// Makes the current impulses the ones about which the contact is damped.
     pub(super) fn settle(&mut self) {
         self.center.0 = self.normal_impulse;
         if self.give == 0.0 {
@@ -17,12 +17,12 @@ impl Row {
         self.place_dampers();
     }
 
-    /// Takes these back.
+    /// Goes back to the impulses about which the contact is damped.
     pub(super) fn unsettle(&mut self) {
         (self.normal_impulse, self.friction_impulse) = self.center;
     }
 
-    /// Guesses its grip from its impulses.
+    /// Guesses the grip from the impulses.
     pub(super) fn guess_grip(&mut self) {
         let limit = self.friction * self.normal_impulse * (1.0 - 1e-9);
         self.grip = if self.normal_impulse <= 0.0 {
@@ -36,7 +36,7 @@ impl Row {
         };
     }
 
-    /// Finds its dampers, about the impulses that they are centred on.
+    /// Sets the dampers about their centres.
     pub(super) fn place_dampers(&mut self) {
         let (normal, friction) = self.center;
         let damping = DAMPING * self.admittance.normal;
@@ -50,7 +50,7 @@ impl Row {
         ];
     }
 
-    /// [m/s] Along normal and tangent.
+    /// [m/s] Speeds along normal and tangent.
     pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
         let (shoe, spin) = (
             |i: usize| state.shoes[i].twist,
@@ -62,8 +62,8 @@ impl Row {
         [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 
-    /// Takes the impulses that belong to speeds along normal and tangent [m/s], and the grip that fits them; how
-    /// far the velocities are from what they should be [m/s].
+    /// Updates impulses and fitting grip for speeds along normal and tangent [m/s]; returns the error of the
+    /// velocity [m/s].
     pub(super) fn follow_speeds(&mut self, speeds: [f64; 2]) -> f64 {
         let (grip, [normal, friction]) = self.law(speeds);
         self.fitting = grip;
@@ -79,7 +79,7 @@ impl Row {
         DAMPING * off
     }
 
-    /// What it does at such speeds, and its impulses along normal and tangent [N s].
+    /// The grip at these speeds, and the impulses along normal and tangent [N s].
     pub(super) fn law(&self, [approach, slip]: [f64; 2]) -> (Grip, [f64; 2]) {
         let [n, t] = self.dampers;
         let (normal, friction) = (n.at(approach), t.at(slip));
@@ -87,7 +87,7 @@ impl Row {
         let (grip, friction) = if normal <= 0.0 {
             (Grip::Open, 0.0)
         } else if friction > limit || limit == 0.0 {
-            // Which way it slides makes no difference without friction.
+            // Without friction the direction of slip makes no difference.
             (Grip::Forwards, limit)
         } else if friction < -limit {
             (Grip::Backwards, -limit)

@@ -1,4 +1,4 @@
-//! Where a contact lies on the robot, and how the velocities of body, flipper and drive add up along it.
+//! Levers of a contact: how the velocities of body, flipper and drive add up along its directions.
 //!
 //! The equations: docs/physics.md, "Levers".
 
@@ -7,23 +7,22 @@ use crate::contact::Contact;
 use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
 
-/// A direction at a contact, and how the velocities of body and drive add up along it.
+/// A direction at a contact, with the levers by which the velocities of body and drive act along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Direction {
     pub unit: Vector,
-    /// [m] Lever of the body's angular velocity, the drive's spin held over ground.
+    /// [m] Lever of the body's angular velocity, with the drive's spin over ground held constant.
     pub lever: f64,
-    /// [m] Lever of the spin of the drive or sprocket; of a place on an idler, the share of its slide.
+    /// [m] Lever of the spin of the drive or sprocket; at an idler, the share of its slide.
     pub drive_lever: f64,
-    /// [m] Lever of the reaction on the chassis, of a place between two bodies of the robot.
+    /// [m] Lever of the reaction on the chassis, if the contact is between two bodies of the robot.
     pub back: f64,
-    /// [m] Lever of a flipper's turn; that of the chassis is then its pivot's.
+    /// [m] Lever of a flipper's rate; `lever` is then that of its pivot about the chassis.
     pub flipper_lever: f64,
 }
 
 impl Carried {
-    /// [m] From the end of the arm to the contact when the chassis has turned and the drive has run so
-    /// far since.
+    /// [m] From the end of the arm to the contact, after the chassis has turned and the drive has run by `run`.
     pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
         let spoke = turned * self.spoke;
         let spoke = if self.turn == 0.0 {
@@ -34,7 +33,7 @@ impl Carried {
         spoke + turned * self.along * run
     }
 
-    /// As it was before that.
+    /// The same before these motions.
     pub(super) fn before(&self, turned: Rotation, run: f64) -> Self {
         let back = turned.inverse();
         Self {
@@ -60,7 +59,7 @@ impl Direction {
         }
     }
 
-    /// The same of a contact of a flipper whose pivot lies so far from the chassis' centre of mass [m].
+    /// The direction at a contact of a flipper whose pivot is at `pivot` from the chassis' centre of mass [m].
     pub(super) fn on_flipper(self, pivot: Vector) -> Self {
         Self {
             lever: cross(pivot, self.unit),
@@ -70,7 +69,7 @@ impl Direction {
     }
 }
 
-/// Where a contact lies on the robot, and its directions.
+/// The position of a contact on the robot, and its directions.
 pub(crate) struct Levers {
     pub normal: Direction,
     pub tangent: Direction,
@@ -79,19 +78,19 @@ pub(crate) struct Levers {
     pub(super) carried: Carried,
 }
 
-/// How the touching point moves over its carrier for each metre of its drive.
+/// How the touching point moves relative to its carrier per metre of drive travel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carried {
-    /// [m] To it from the axle that it turns about, or from where it began.
+    /// [m] From the axle about which it turns, or from where it began, to the point.
     pub spoke: Vector,
-    /// [1/m] Turn about that axle.
+    /// [1/m] Rotation about that axle.
     turn: f64,
-    /// Motion along a line, besides.
+    /// Translation in addition to that.
     along: Vector,
 }
 
 impl Levers {
-    /// Those of a contact of a part that its drive moves so over what carries it.
+    /// The levers of a contact of a part that its drive moves in this way relative to its carrier.
     pub(crate) fn new(
         contact: &Contact,
         carrier: &Carrier,
@@ -109,7 +108,7 @@ impl Levers {
             }
             right_of(carried.spoke) * motion.turn + carried.along
         } else if part.drive.is_some() {
-            left_of(contact.normal) // the surface moves along itself
+            left_of(contact.normal) // the surface moves tangentially
         } else {
             Vector::ZERO
         };

@@ -1,4 +1,4 @@
-//! A contact with what a step found that it does.
+//! A contact with the forces and the grip that a step has found.
 //!
 //! The equations: docs/physics.md, "State".
 
@@ -13,24 +13,24 @@ use crate::terrain::Profile;
 /// A contact as the solver keeps it from step to step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct LoadedContact {
-    /// Where and what.
+    /// The contact itself.
     pub contact: Contact,
     /// [N] Mean normal force over the step.
     pub normal_force: f64,
     /// [N] Mean friction on the robot over the step, along the normal turned by -90 degrees.
     pub friction_force: f64,
-    /// [m/s] Velocity of the surface over ground in the same direction.
+    /// [m/s] Velocity of the surface over the ground in the same direction.
     pub surface_speed: f64,
-    /// [N] Force that the next step starts from.
+    /// [N] Normal force from which the next step starts.
     pub normal_guess: f64,
-    /// [N] The same along the tangent.
+    /// [N] Friction from which the next step starts.
     pub friction_guess: f64,
-    /// What it did last.
+    /// Its last grip.
     pub grip: Grip,
 }
 
 impl LoadedContact {
-    /// One that has not borne yet.
+    /// A contact that has not carried a load yet.
     pub(crate) fn open(contact: Contact) -> Self {
         Self {
             contact,
@@ -43,7 +43,7 @@ impl LoadedContact {
         }
     }
 
-    /// The same, with its forces.
+    /// Whether a robot and its lanes have this contact, and its forces are plausible.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         let forces = [
             self.normal_force,

@@ -1,10 +1,10 @@
-//! The equations of motion: one body, drives that turn surfaces, contacts with Coulomb friction.
+//! The equations of motion: one body, drives that turn surfaces, and contacts with Coulomb friction.
 //!
-//! A substep is symmetric: half of the weight's push, the constraints, the motion, the other half, the
-//! constraints again. Free flight is exact so, and a constant load enters with the square of the step
-//! only. Before the motion constraints close gaps and push out of penetration, after it they do not:
-//! the soft step of Erin Catto's 2D solvers (2024). A surface speed is found together with the contact
-//! forces, so that the force limit of its motor acts on the net traction inside the step.
+//! A substep is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
+//! constraints again. Free flight is therefore exact, and a constant load causes only a second-order error.
+//! Before the motion, constraints close gaps and push out of penetration; after it they do not: the soft step
+//! of Erin Catto's 2D solvers (2024). The speed of a surface is found together with the contact forces, so
+//! that its motor's force limit acts on the net traction within the step.
 //!
 //! The equations: docs/physics.md, "A substep".
 
@@ -65,36 +65,36 @@ pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
 
-/// [s] Contacts that stick can pull against each other without end, which no body that gives way at
-/// all would keep up. The friction that balance does not ask for fades with this time.
+/// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
+/// sustain. Friction that balance does not require fades with this time constant.
 const SELF_STRESS_TIME: f64 = 0.1;
 /// Pieces of a substep at most; a part that strikes the ground takes three.
 const MOST_PIECES: u32 = 50;
-/// [m/s] A gap that closes faster is a collision; slower ones are contacts that come and go. Jammed
-/// small gear wheels rattle at some mm/s: at 10 mm/s they shake themselves free too often.
+/// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
+/// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
 const COLLISION_SPEED: f64 = 0.001;
-/// [s] Substep of a collision. What motor and weight do during the substep in which a wheel strikes
-/// an edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which
-/// a robot just climbs by 1 %, this shifts it by less than 0.1 %.
+/// [s] Length of the piece with a collision. What motor and weight do in the piece in which a wheel strikes an
+/// edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which a robot just
+/// climbs by 1 %, this value shifts it by less than 0.1 %.
 const COLLISION_SUBSTEP: f64 = 2e-5;
 
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
     model: Model,
-    /// Of each lane.
+    /// Friction of each lane.
     frictions: Vec<f64>,
     gravity: f64,
     solver: Solver,
     rows: Vec<Row>,
-    /// The push of a track that is modelled by a force alone.
+    /// The push of a track that is modelled as a force only.
     push: Option<Push>,
     motors: Vec<Motor>,
-    /// [N m s] What the contacts turn each drive with in this piece.
+    /// [N m s] Angular impulse of the contacts on each drive in this piece.
     torques: Vec<f64>,
-    /// [kg m^2] Of the chassis with the drives that turn with it.
+    /// [kg m^2] Moment of inertia of the chassis with the drives that turn with it.
     inertia: f64,
     system: System,
-    /// Where the potential of a descent has kinks along a step.
+    /// Shares of a descent step at which the potential has kinks.
     kinks: Vec<f64>,
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
@@ -102,9 +102,9 @@ pub(crate) struct Dynamics {
     phase: Phase,
     loaded: Vec<LoadedContact>,
     identity: Identity,
-    /// What the last step took.
+    /// The solver's work in the last step.
     effort: Effort,
-    /// [N] Push of the surroundings at the centre of mass.
+    /// [N] External force at the centre of mass.
     pub outer_force: Vector,
 }
 
@@ -146,7 +146,7 @@ impl Dynamics {
         &self.loaded
     }
 
-    /// What the last step took.
+    /// The solver's work in the last step.
     pub(crate) fn effort(&self) -> Effort {
         self.effort
     }
@@ -161,8 +161,8 @@ impl Dynamics {
         self.identity.recognise(&self.loaded, contacts, dt);
     }
 
-    /// The same of contacts that another model of the robot takes over: the next step goes on from them,
-    /// without forces.
+    /// Numbers contacts that another model of the robot takes over; the next step continues them, without
+    /// forces.
     pub(crate) fn take_over(&mut self, contacts: &mut [Contact]) {
         self.recognise(contacts);
         self.loaded = contacts.iter().copied().map(LoadedContact::open).collect();
@@ -170,8 +170,8 @@ impl Dynamics {
 
     /// Advances the state by one step towards the surface speed `set_point`.
     ///
-    /// The contacts are those of the middle of the step, [`State::pose_after`] half of it, with the numbers
-    /// of [`Dynamics::recognise`].
+    /// The contacts are those in the middle of the step ([`State::pose_after`] half of it), numbered by
+    /// [`Dynamics::recognise`].
     pub(crate) fn advance(
         &mut self,
         state: &mut State,
@@ -216,11 +216,11 @@ impl Dynamics {
         }
     }
 
-    /// [s] How far to go in one piece, at most `left`, and whether something strikes the ground in it.
+    /// [s] Length of the next piece, at most `left`, and whether something strikes the ground in it.
     ///
-    /// A piece ends just before a part strikes the ground, and the next is short.
+    /// A piece ends just before a part strikes the ground; the next, with the impact, is short.
     fn piece(&self, state: &State, left: f64) -> (f64, bool) {
-        // A chain meets its guide all the time; its shoes are light, so are their blows.
+        // A chain hits its guide all the time, but its shoes are light and so are their impacts.
         if !self.chains.is_empty() {
             return (left, false);
         }
@@ -239,7 +239,7 @@ impl Dynamics {
         } else {
             (COLLISION_SUBSTEP, true)
         };
-        // No splinter of a piece is left.
+        // Leaves no remainder shorter than a collision.
         if left - h < COLLISION_SUBSTEP {
             (left, strikes)
         } else {
@@ -277,12 +277,12 @@ impl Dynamics {
         Softness::new(frequency, damping, h)
     }
 
-    /// [m/s] What weight and surroundings change of the velocity in a time [s].
+    /// [m/s] Change of velocity by weight and external force in a time [s].
     fn kick(&self, time: f64) -> Vector {
         (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * time
     }
 
-    /// What a solve starts from after a time [s] in which nothing but weight and surroundings push.
+    /// The start of a solve after a time [s] in which only weight and external force act.
     fn start_phase(&mut self, state: &State, set_point: f64, time: f64) -> Phase {
         let mut phase = std::mem::take(&mut self.phase);
         phase.velocity = state.velocity + self.kick(time);
@@ -294,7 +294,7 @@ impl Dynamics {
         phase
     }
 
-    /// Moves chassis, drives, flippers and gaps by `h` [s] at the velocities that they have.
+    /// Moves chassis, drives, flippers and gaps by `h` [s] at their velocities.
     fn move_on(&mut self, state: &mut State, h: f64) {
         state.center += state.velocity * h;
         state.angle += state.angular_velocity * h;
@@ -314,7 +314,7 @@ impl Dynamics {
         self.phase = phase;
     }
 
-    /// Turns contacts into rows, each with the impulses that it had in the last step.
+    /// Turns contacts into rows, with the impulses that they had in the last step.
     fn prepare(&mut self, state: &State, contacts: &[Contact]) {
         let half = 0.5 * self.solver.time_step;
         let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;

@@ -1,25 +1,25 @@
-//! What one motor does.
+//! The state of a motor.
 //!
 //! The equations: docs/physics.md, "Motors".
 
 use serde::{Deserialize, Serialize};
 
-/// What a motor does in a solve.
+/// The state of a motor in a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Motor {
-    /// Its force gives the surface the set-point.
+    /// Holds the surface at the set-point.
     Holds,
     /// At its limit, forwards.
     Pushes,
     /// At its limit, backwards.
     Brakes,
-    /// There is none.
+    /// There is no motor.
     Free,
 }
 
-/// Of the limit: less beyond it is rounding.
+/// Relative tolerance of the limit; a smaller excess is rounding.
 pub(super) const AT_LIMIT: f64 = 1e-12;
-/// [m/s] A motor at its limit takes hold again when its surface is past the set-point by this.
+/// [m/s] A motor at its limit holds again once its surface is past the set-point by this.
 pub(super) const PAST: f64 = 1e-9;
 
 impl Motor {
@@ -33,7 +33,7 @@ impl Motor {
         }
     }
 
-    /// One that holds with an impulse, if that is within its limit.
+    /// A motor that holds with this impulse, or is at its limit if the impulse exceeds that.
     pub(super) fn within(impulse: f64, limit: f64) -> Self {
         if impulse > limit {
             Self::Pushes

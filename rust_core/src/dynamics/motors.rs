@@ -1,8 +1,8 @@
-//! Motors: each holds its surface at the set-point, as far as its force limit lets it.
+//! Motors: each holds its surface at the set-point, up to its force limit.
 //!
-//! A drive whose motor holds turns with the chassis but for the set-point: it is inertia of the chassis,
-//! wherever its wheel is, and nothing to solve for. Only drives at their limit, or without a motor, have
-//! a spin of their own.
+//! A drive whose motor holds turns with the chassis, apart from the set-point: it adds to the inertia of the
+//! chassis, wherever its wheel is, and is not an unknown. Only drives at their limit or without a motor have a
+//! spin to solve for.
 //!
 //! The equations: docs/physics.md, "Motors".
 
@@ -12,7 +12,7 @@ use super::phase::Phase;
 use super::state::State;
 
 impl Dynamics {
-    /// Lets motors beyond their limit go, and those past the set-point take hold; whether any did.
+    /// Releases motors beyond their limit, and lets those past the set-point hold again; returns whether any changed.
     pub(super) fn switch_motors(&mut self, state: &State, phase: &Phase) -> bool {
         let mut switched = self.switch_flippers(state, phase, true);
         for k in 0..self.motors.len() {
@@ -31,7 +31,7 @@ impl Dynamics {
         switched
     }
 
-    /// Lets motors beyond their limit go; whether any did.
+    /// Releases motors beyond their limit; returns whether any changed.
     pub(super) fn limit_motors(&mut self, state: &State, phase: &Phase) -> bool {
         let mut switched = self.switch_flippers(state, phase, false);
         for k in 0..self.motors.len() {
@@ -43,7 +43,7 @@ impl Dynamics {
         switched
     }
 
-    /// [m/s] What the surface of a drive is ahead of the set-point.
+    /// [m/s] How far the surface speed of a drive exceeds the set-point.
     fn ahead(&self, state: &State, phase: &Phase, k: usize) -> f64 {
         match self.chains.get(k) {
             Some(chain) => chain.ahead(state, phase.set_point),
@@ -51,13 +51,13 @@ impl Dynamics {
         }
     }
 
-    /// What a motor that holds has to do.
+    /// The next state of a motor that holds.
     fn at_limit(&self, state: &State, phase: &Phase, k: usize) -> Motor {
         let limit = self.model.drive_force * phase.elapsed * (1.0 + AT_LIMIT);
         Motor::within(self.motor_impulse(state, phase, k), limit)
     }
 
-    /// [N s] What a motor has given so far.
+    /// [N s] Impulse of a motor so far.
     pub(super) fn motor_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
         if let Some(chain) = self.chains.get(k) {
             return chain.drive_impulse();
@@ -65,7 +65,7 @@ impl Dynamics {
         if let Some(share) = self.motors[k].share() {
             return phase.motor_impulse(share, &self.model);
         }
-        // What the contacts have not, the motor has changed of the spin.
+        // The motor has made the change of spin that the contacts have not.
         let change = self.model.drive_inertia(k) * (state.drives[k].spin - phase.spins[k]);
         (self.torques[k] - change) / self.model.drive_radius
     }

@@ -1,11 +1,11 @@
-//! The solve of a robot with chains: Newton's method, with steps no longer than the contacts agree better.
+//! The solve of a robot with chains: Newton's method with a line search on the misfit of the contacts.
 //!
-//! The dozens of contacts of a chain, guessed and mended all at once, throw each other about. Here the
-//! velocities go towards those of the next guess only so far as that pays. On the way between two solutions
-//! of the linear system velocities change in straight lines, and so do the impulses that balance them; what
-//! the contacts' laws give at the velocities differs from these impulses by a misfit. Newton's method
-//! has each law start along the way that the guess follows, so that at first every contact's misfit shrinks
-//! in proportion: a step that is short enough always pays, but for kinks on the spot.
+//! If the guesses of the dozens of contacts of a chain were corrected all at once, they would upset each other.
+//! Instead, the velocities move towards those of the next guess only as far as that helps. Between two
+//! solutions of the linear system velocities change linearly, and so do the impulses that balance them; the
+//! misfit is the difference between these impulses and those that the contact laws give at the velocities. In
+//! Newton's method each law starts out along the line that the guess follows, so that at first all misfits
+//! shrink in proportion to the step: a short enough step always helps, unless it starts at a kink.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -18,15 +18,15 @@ use super::state::{State, Twist};
 
 /// Steps at most; a typical solve takes three.
 const STEPS: u32 = 16;
-/// The least share of a step that is gone; ...
+/// Smallest share of a step to take.
 const LEAST: f64 = 1.0 / 16.0;
-/// ... and this often it may have come to that before the search is left to the descent.
+/// How often that may happen before the descent takes over.
 const STALLS: u32 = 2;
-/// The least share of what a step promises that it has to keep.
+/// Smallest share of the promised improvement that a step must achieve.
 const PAYS: f64 = 0.1;
 
 impl Dynamics {
-    /// Finds the impulses that all constraints agree on, if steps lead there.
+    /// Finds the impulses that satisfy all constraints, if steps lead there.
     pub(super) fn solve_in_steps(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
         self.set_out(state);
@@ -38,7 +38,7 @@ impl Dynamics {
                 return false;
             };
             self.look_ahead(&change);
-            // What balances the velocities that the solve starts from is not known.
+            // The impulses that balance the start velocities are not known.
             let share = if step == 0 {
                 1.0
             } else {
@@ -67,7 +67,7 @@ impl Dynamics {
         false
     }
 
-    /// Starts the ways of all contacts at these velocities.
+    /// Starts the lines of all contacts at the current velocities.
     fn set_out(&mut self, state: &State) {
         for row in self.rows.iter_mut().filter(|row| row.bears) {
             row.way.speeds = row.speeds(state);
@@ -87,7 +87,7 @@ impl Dynamics {
         }
     }
 
-    /// The share of a step after which the misfits are smaller, about as much as it promises.
+    /// The share of a step after which the misfit is smaller by enough of what the step promises.
     fn share_that_pays(&self) -> f64 {
         let now = self.misfit_after(0.0);
         let mut share = 1.0;
@@ -97,8 +97,8 @@ impl Dynamics {
         share
     }
 
-    /// [m/s] By what the impulses that balance the velocities differ from those of the contacts' laws, after
-    /// a share of the step.
+    /// [m/s] Difference between the impulses that balance the velocities and those of the contact laws, after a
+    /// share of the step.
     fn misfit_after(&self, share: f64) -> f64 {
         let of_row = |row: &Row| {
             let [speeds, held] = row.way.after(share);
@@ -111,8 +111,8 @@ impl Dynamics {
         bearing.map(of_row).sum::<f64>().sqrt()
     }
 
-    /// Ends a step; how far the velocities are from what they should be [m/s], and whether the guess fits
-    /// them. If not, the next one does.
+    /// Ends a step; returns the largest error of a velocity [m/s], and whether the guess fits the velocities. If
+    /// not, the next guess does.
     fn arrive(&mut self, state: &mut State, phase: &Phase, share: f64) -> (f64, bool) {
         let (mut change, mut fits): (f64, _) = (0.0, true);
         for row in self.rows.iter_mut().filter(|row| row.bears) {
@@ -129,7 +129,7 @@ impl Dynamics {
 }
 
 impl Row {
-    /// [N s] Along normal and tangent as its grip has them at such speeds.
+    /// [N s] Impulses along normal and tangent at these speeds for the guessed grip.
     fn guessed(&self, [approach, slip]: [f64; 2]) -> [f64; 2] {
         let [n, t] = self.dampers;
         let normal = n.at(approach);
@@ -198,7 +198,7 @@ mod tests {
         let now = dynamics.misfit_after(0.0);
         assert!(now > 1e-3);
         for share in [1e-6, 1e-4] {
-            // Linear until the first contact opens or closes; what is left is rounding.
+            // Linear until the first contact opens or closes; the remainder is rounding.
             let after = dynamics.misfit_after(share);
             assert_relative_eq!(after, (1.0 - share) * now, max_relative = 1e-9);
         }

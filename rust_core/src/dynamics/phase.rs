@@ -1,34 +1,34 @@
-//! What a solve starts from.
+//! The starting point of a solve.
 //!
 //! The equations: docs/physics.md, "A substep".
 
 use crate::geometry::Vector;
 use crate::robot::Model;
 
-/// What a solve starts from: the velocities as they would be without contacts and motors.
+/// The starting point of a solve: the velocities without contacts and motors.
 #[derive(Default)]
 pub(super) struct Phase {
-    /// [m/s] Of the centre of mass, with the weight's push.
+    /// [m/s] Velocity of the centre of mass, with the impulse of the weight.
     pub velocity: Vector,
-    /// [rad/s] Of the chassis.
+    /// [rad/s] Angular velocity of the chassis.
     pub angular_velocity: f64,
-    /// [rad/s] Of the drives.
+    /// [rad/s] Spins of the drives.
     pub spins: Vec<f64>,
-    /// [m/s] For the surfaces.
+    /// [m/s] Set-point of the surfaces.
     pub set_point: f64,
-    /// [s] Time in which motors can push.
+    /// [s] Time for which motors push.
     pub elapsed: f64,
-    /// [m/s] Velocity over the ground of the frame that velocities are measured in.
+    /// [m/s] Velocity over the ground of the frame in which velocities are measured.
     pub frame: Vector,
 }
 
 impl Phase {
-    /// [N s] What a motor at that share of its limit has given so far, ...
+    /// [N s] Impulse of a motor at a share of its limit.
     pub(super) fn motor_impulse(&self, share: f64, model: &Model) -> f64 {
         share * model.drive_force * self.elapsed
     }
 
-    /// [N m s] ... and what that has turned its drive back with.
+    /// [N m s] Angular impulse of that on its drive, against the spin.
     pub(super) fn motor_turn(&self, share: f64, model: &Model) -> f64 {
         self.motor_impulse(share, model) * model.drive_radius
     }

@@ -1,4 +1,4 @@
-//! The push of a track that is modelled by a force alone.
+//! The push of a track that is modelled as a force only.
 //!
 //! The equations: docs/physics.md, "Motors".
 
@@ -9,15 +9,15 @@ use super::state::State;
 use crate::geometry::{Rotation, Vector, cross};
 use crate::robot::Model;
 
-/// The push of a track that is modelled by a force alone: its axis runs on a rail without slip, and the
-/// motor limits it.
+/// The push of a track that is modelled as a force only: as if its axis ran on a rail without slip, up to the
+/// limit of the motor.
 #[derive(Default)]
 pub(super) struct Push {
-    /// [N] As it was last.
+    /// [N] The last force.
     pub force: f64,
-    /// [N s] In this piece.
+    /// [N s] Impulse in this piece.
     pub impulse: f64,
-    /// [N s] What a direct solve starts from.
+    /// [N s] Impulse about which a direct solve damps it.
     pub center: f64,
     pub action: Action,
     pub admittance: f64,
@@ -28,14 +28,14 @@ impl Push {
         Damper::new(self.center, 1.0 / (DAMPING * self.admittance))
     }
 
-    /// [m/s] Of the rail that its axis runs on.
+    /// [m/s] Slip on the rail.
     pub(super) fn slip(&self, state: &State) -> f64 {
         let spin = state.drives[0].spin;
         self.action
             .speed(state.velocity, state.angular_velocity, spin)
     }
 
-    /// Takes the impulse that belongs to the velocities; how far these are from what they should be [m/s].
+    /// Updates the impulse to match the velocities; returns the error of the velocity [m/s].
     pub(super) fn follow_velocities(&mut self, state: &State) -> f64 {
         let slip = self.slip(state);
         self.impulse = self.damper().at(slip);
@@ -47,7 +47,7 @@ impl Push {
 pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
     let rotation = Rotation::new(angle);
     let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);
-    // As for a contact, one drive radius above the line of action: the motor's reaction does the rest.
+    // One drive radius above the line of action, as for a contact: the motor's reaction does the rest.
     let arm = model.drive_radius * up - rotation * model.center_of_mass;
     Direction {
         unit: axis,

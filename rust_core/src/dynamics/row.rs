@@ -1,4 +1,4 @@
-//! One contact as the solver sees it: levers on the body and its drive, gap, impulses.
+//! A row: one contact as the solver sees it, with its levers on body and drive, its gap and its impulses.
 //!
 //! The equations: docs/physics.md, "Softness".
 
@@ -14,27 +14,27 @@ use crate::contact::Contact;
 use crate::geometry::{Rotation, Vector};
 use crate::robot::{Model, Mount};
 
-/// Compliance of the contacts of shoes in units of what goes with the contact frequency: shoes are light, but
-/// the robot stands on them. Harder ones meet hardly any deeper, and jam harder.
+/// Compliance of the contacts of shoes, in units of that of the contact frequency: shoes are light, but the
+/// robot stands on them. Harder ones hardly reduce the penetration, and jam more.
 const ON_GUIDE: f64 = 0.1;
 const ON_GROUND: f64 = 0.3;
 
-/// What a row holds.
+/// The bodies that a row connects.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Link {
-    /// The chassis, or what a drive carries over it, to the ground.
+    /// The chassis, or what a drive moves relative to it, to the ground.
     Chassis,
     /// A shoe to the ground.
     Shoe(usize),
-    /// A shoe to the guide, or to a wheel in the chain: the chassis takes the reaction.
+    /// A shoe to the guide, or to a wheel of the chain: the chassis takes the reaction.
     Guide { shoe: usize, chain: usize },
-    /// A flipper, or what a drive carries over it, to the ground.
+    /// A flipper, or what a drive moves relative to it, to the ground.
     Flipper(usize),
-    /// A pin of a shoe to a tooth: the sprocket takes the reaction, and the chassis at its axle.
+    /// A pin of a shoe to a tooth: the sprocket takes the reaction, and the chassis takes it at the axle.
     Tooth { shoe: usize, chain: usize },
 }
 
-/// [1/kg] Velocity along normal and tangent for a unit impulse along them.
+/// [1/kg] Velocity along normal and tangent per unit impulse along them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Admittance {
     pub normal: f64,
@@ -49,43 +49,43 @@ pub(super) struct Row {
     pub link: Link,
     pub drive: Option<usize>,
     pub friction: f64,
-    /// Normal and tangent with the motors as they are in this solve.
+    /// Normal and tangent, with the motors in their state in this solve.
     pub actions: [Action; 2],
     pub admittance: Admittance,
-    /// [m/s] Speed that the gap may close with, or must open with if negative.
+    /// [m/s] Speed at which the gap may close or, if negative, must open.
     pub bias: f64,
-    /// In units of its own admittance.
+    /// Compliance in units of its own admittance.
     pub compliance: f64,
-    /// The same of a grip that gives way elastically: it is damped about what it held in the last piece.
+    /// The same of a grip that gives way elastically; it is damped about its impulse of the last piece.
     pub give: f64,
-    /// Whether it can bear in this solve.
+    /// Whether it can carry a load in this solve.
     pub bears: bool,
-    /// [N s] In this piece.
+    /// [N s] Normal impulse in this piece.
     pub normal_impulse: f64,
-    /// [N s] In this piece.
+    /// [N s] Friction impulse in this piece.
     pub friction_impulse: f64,
-    /// What it does, ...
+    /// The guessed state.
     pub grip: Grip,
-    /// ... and what would fit the last velocities.
+    /// The state that fits the last velocities.
     pub fitting: Grip,
-    /// Normal and tangent while nothing limits them, in this solve.
+    /// Dampers of normal and tangent in this solve while no limit is reached.
     pub dampers: [Damper; 2],
-    /// Where a step of a search leads it.
+    /// Its line in a step of Newton's method.
     pub way: Way,
-    /// [N s] Largest friction in a descent, ...
+    /// [N s] Friction limit in a descent.
     pub limit: f64,
-    /// ... and what normal and tangent are below it.
+    /// Dampers of normal and tangent in a descent.
     pub frozen: [Damper; 2],
-    /// [N s] What a direct solve starts from.
+    /// [N s] Impulses about which a direct solve damps it.
     pub center: (f64, f64),
-    /// [N] As they were last, to start from.
+    /// [N] Normal force to start from, the last one.
     pub normal_guess: f64,
     pub friction_guess: f64,
     pub normal_total: f64,
     pub friction_total: f64,
-    /// [m] Gap now.
+    /// [m] Current gap.
     pub gap: f64,
-    /// Which of a shoe's rests it is.
+    /// Index among the shoe's rests.
     pub place: usize,
     start: Place,
 }
@@ -95,19 +95,19 @@ pub(super) struct Row {
 struct Place {
     /// [m] Gap.
     gap: f64,
-    /// What carries it.
+    /// Its carrier.
     carrier: Carrier,
-    /// [m] From the carrier's centre to the contact, or to the axle that it turns about.
+    /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
     arm: Vector,
-    /// From there on.
+    /// The way from there to the contact.
     carried: Carried,
     /// [m] Position of the drive.
     drive_position: f64,
 }
 
 impl Row {
-    /// The row of a contact that was found in the middle of the step, which is half its `time` [s] from
-    /// now; `last` is the same contact of the last step.
+    /// The row of a contact found in the middle of the step, half of `time` [s] from now; `last` is the same
+    /// contact in the last step.
     pub(super) fn new(
         contact: &Contact,
         last: Option<LoadedContact>,
@@ -139,7 +139,7 @@ impl Row {
             carried: carried.before(turned, advance),
             drive_position,
         };
-        // The gap was found in the middle of the step; the touching point was here at its start.
+        // The gap was found in the middle of the step; this was the touching point at its start.
         let then = now.center + start.arm + start.carried.spoke;
         start.gap -= contact.normal.dot(contact.point - then);
         Self {
@@ -161,7 +161,7 @@ impl Row {
         }
     }
 
-    /// One along these directions, without friction or a past.
+    /// A row along these directions, without friction or history.
     pub(super) fn between(normal: Direction, tangent: Direction, link: Link) -> Self {
         Self {
             normal,
@@ -194,13 +194,13 @@ impl Row {
         }
     }
 
-    /// The drive whose spin it acts on.
+    /// The drive on whose spin it acts.
     pub(super) fn spin(&self) -> Option<usize> {
         self.drive
             .filter(|_| matches!(self.link, Link::Chassis | Link::Flipper(_)))
     }
 
-    /// The flipper that it acts on.
+    /// The flipper on which it acts.
     pub(super) fn flipper(&self) -> Option<usize> {
         match self.link {
             Link::Flipper(k) => Some(k),
@@ -239,7 +239,7 @@ impl Row {
         }
     }
 
-    /// [m/s] What velocities of chassis, shoes, drives, idlers and flippers count along normal and tangent.
+    /// [m/s] Speeds along normal and tangent from velocities of chassis, shoes, drives, idlers and flippers.
     pub(super) fn count(
         &self,
         chassis: Twist,
@@ -278,7 +278,7 @@ impl Row {
             Link::Chassis => Mount::Chassis,
             Link::Flipper(k) => Mount::Flipper(k),
             Link::Shoe(_) | Link::Guide { .. } | Link::Tooth { .. } => {
-                // Its directions stay, and so does its speed through the piece.
+                // Its directions are kept, and so is its speed during the piece.
                 self.gap += self.opening_speed(state) * h;
                 return;
             }
@@ -292,7 +292,7 @@ impl Row {
         self.gap = s.gap + self.normal.unit.dot(moved);
     }
 
-    /// Towards the end of the motion a gap may just close, softly; a penetration is pushed out.
+    /// Sets it up for the end of the motion: an open gap may just close, softly; a penetration is pushed out.
     pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
         self.bears = true;
         let share = match self.link {
@@ -309,19 +309,19 @@ impl Row {
         };
     }
 
-    /// Before the motion an open gap may just close, and a penetration is pushed out softly.
+    /// Sets it up before the motion: an open gap may just close, and a penetration is pushed out softly.
     pub(super) fn close(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
         self.bears = true;
         if self.gap > 0.0 {
             (self.bias, self.compliance) = (self.gap / h, 0.0);
         } else {
             self.bias = (soft.push_rate * self.gap).max(-max_push_speed);
-            // The load of half the time stands for the load of all of it.
+            // Here the impulse of half the piece stands for that of all of it.
             self.compliance = 2.0 * soft.compliance;
         }
     }
 
-    /// [N m s] What its impulses turn the drive with.
+    /// [N m s] Angular impulse on the drive.
     pub(super) fn torque(&self) -> f64 {
         self.normal.drive_lever * self.normal_impulse
             + self.tangent.drive_lever * self.friction_impulse

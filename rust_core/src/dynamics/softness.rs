@@ -1,11 +1,11 @@
-//! How contacts give way: as a damped spring that a step integrates implicitly.
+//! Softness of contacts: a damped spring that is integrated implicitly.
 //!
 //! The equations: docs/physics.md, "Softness".
 
 /// Coefficients of a damped spring integrated implicitly.
 #[derive(Clone, Copy)]
 pub(super) struct Softness {
-    /// [1/s] Share of a penetration that is pushed out in a second.
+    /// [1/s] Rate at which a penetration is pushed out.
     pub push_rate: f64,
     /// Compliance in units of the contact's own admittance.
     pub compliance: f64,

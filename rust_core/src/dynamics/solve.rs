@@ -1,4 +1,5 @@
-//! The velocities at which all constraints agree: which contacts bear, grip and slide, and which motors hold.
+//! The solve: finds velocities that satisfy all constraints, so which contacts bear, grip and slide, and which
+//! motors hold.
 //!
 //! The equations: docs/physics.md, "The linear system".
 
@@ -12,21 +13,21 @@ use super::row::{Admittance, Link, Row};
 use super::state::State;
 use crate::geometry::Vector;
 
-/// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms
-/// that is a force of 1e-5 of the weight, far below what any outcome turns on.
+/// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
+/// corresponds to a force of 1e-5 of the weight, far below anything that decides an outcome.
 pub(super) const AGREEMENT: f64 = 1e-7;
-/// Rounds of a search at most, unless the scenario says otherwise: a robot without arms takes one as a rule.
+/// Rounds of a search at most, unless the scenario says otherwise; a robot without arms usually takes one.
 const ITERATIONS: u32 = 30;
-/// [m] Surfaces closer than this touch; a gap that a piece has just closed is rounding.
+/// [m] Surfaces closer than this touch; a gap that a piece has just closed is only rounding.
 const TOUCHING: f64 = 1e-10;
 
 impl Dynamics {
-    /// Finds the impulses that all constraints agree on.
+    /// Finds the impulses that satisfy all constraints.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
         self.effort.solves += 1;
         self.set_actions(state, phase);
         let agreed = if self.chains.is_empty() {
-            // What they agree on with limits of friction is a better guess of what grips and what slides.
+            // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
             (0..self.solver.iterations.unwrap_or(ITERATIONS))
                 .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
         } else {
@@ -37,12 +38,12 @@ impl Dynamics {
             self.end_search(state, phase);
         }
         if self.model.is_one_body() {
-            // From the impulses, so that momentum is kept to the last digit; elsewhere pins come first.
+            // From the impulses, so that momentum is conserved to the last digit; with pins, the pins matter more.
             self.balance(state, phase);
         }
     }
 
-    /// How constraints act while the motors do what they do.
+    /// Sets the actions of all constraints for the current state of the motors.
     pub(super) fn set_actions(&mut self, state: &State, phase: &Phase) {
         let motors = &self.motors;
         let held = (0..motors.len()).filter(|k| motors[*k].share().is_none());
@@ -80,14 +81,13 @@ impl Dynamics {
         }
     }
 
-    /// The same in the middle of a search: the dampers follow, about the impulses that they have.
+    /// The same in the middle of a search: also updates the dampers, about their centres.
     pub(super) fn act_with_motors(&mut self, state: &State, phase: &Phase) {
         self.set_actions(state, phase);
         self.rows.iter_mut().for_each(Row::place_dampers);
     }
 
-    /// [N m s] Moment of momentum of the chassis, and of the drives that turn with it over it, as it would
-    /// be without contacts.
+    /// [N m s] Angular momentum of the chassis and the drives that turn with it, without contacts.
     pub(super) fn free_moment(&self, phase: &Phase) -> f64 {
         let m = &self.model;
         let spin_of_set_point = phase.set_point / m.drive_radius;
@@ -100,7 +100,7 @@ impl Dynamics {
         m.moment_of_inertia * phase.angular_velocity + of_drives
     }
 
-    /// Velocities from all impulses so far, with the motors as they are.
+    /// Computes the velocities from all impulses so far, for the current state of the motors.
     pub(super) fn balance(&mut self, state: &mut State, phase: &Phase) {
         let m = &self.model;
         let (mut impulse, mut moment) = (Vector::ZERO, self.free_moment(phase));
@@ -126,8 +126,8 @@ impl Dynamics {
         }
     }
 
-    /// [J] What the contacts have added to the energy, at the velocities that their impulses give, but
-    /// for the work of pushing out of the ground.
+    /// [J] Energy added by the contacts, at the velocities that follow from their impulses, without the work of
+    /// pushing out of the ground.
     pub(super) fn energy_of_contacts(&self, state: &State) -> f64 {
         let m = &self.model;
         let (mut work, mut impulse, mut moment) = (0.0, Vector::ZERO, 0.0);
@@ -147,12 +147,12 @@ impl Dynamics {
         let of_spins: f64 = own
             .map(|k| self.torques[k] * self.torques[k] / m.drive_inertia(k))
             .sum();
-        // An impulse works at the mean of the speeds before and after.
+        // The work of an impulse uses the mean of the speeds before and after.
         let change = impulse.length_squared() / m.mass + moment * moment / self.inertia + of_spins;
         work - 0.5 * change
     }
 
-    /// [1/kg] Velocity along an action for a unit impulse along it.
+    /// [1/kg] Velocity along an action per unit impulse along it.
     fn admittance(&self, action: &Action, link: Link, drive: Option<usize>) -> f64 {
         let of_body = |mass: f64, inertia: f64, lever: f64| {
             action.unit.length_squared() / mass + lever * lever / inertia
@@ -180,7 +180,7 @@ impl Dynamics {
         }
     }
 
-    /// Gives the drives that motors hold their spin, and sums what the contacts turn them with.
+    /// Sets the spins of drives held by motors, and sums the angular impulses of the contacts on the drives.
     pub(super) fn turn_with_chassis(&mut self, state: &mut State, phase: &Phase) {
         let back = phase.set_point / self.model.drive_radius;
         // A chain is held at its driving end, and has a speed of its own.
@@ -202,7 +202,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece from the forces of the last one, in half its time.
+    /// Starts a piece from the forces of the last one, for half its time.
     pub(super) fn guess(&mut self, half: f64) {
         for row in &mut self.rows {
             row.normal_impulse = row.normal_guess * half;
@@ -213,10 +213,10 @@ impl Dynamics {
         }
     }
 
-    /// The same for the other half, where something bears.
+    /// The same for the other half, for contacts that bear.
     pub(super) fn guess_more(&mut self, half: f64) {
         for row in &mut self.rows {
-            // What pressed before the motion has closed its gap, but for the curve of a turning grouser.
+            // Contacts loaded before the motion have closed their gap, apart from the arc of a turning grouser.
             row.bears = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
             (row.bias, row.compliance) = (0.0, 0.0);
             if row.normal_impulse >= row.normal_guess * half {
@@ -229,7 +229,7 @@ impl Dynamics {
         }
     }
 
-    /// Keeps the forces of a piece of `h` [s] for the next.
+    /// Stores the forces of a piece of `h` [s] for the next.
     pub(super) fn remember(&mut self, h: f64) {
         for row in &mut self.rows {
             row.normal_guess = row.normal_impulse / h;
@@ -243,7 +243,7 @@ impl Dynamics {
         }
     }
 
-    /// Adds what a piece applied to the means of a step of `dt` [s].
+    /// Adds the impulses of a piece to the means of a step of `dt` [s].
     pub(super) fn collect(&mut self, state: &mut State, phase: &Phase, dt: f64) {
         for row in &mut self.rows {
             row.normal_total += row.normal_impulse;

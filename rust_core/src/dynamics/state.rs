@@ -1,4 +1,4 @@
-//! What moves: the body and its drives.
+//! The state of motion: the body, its drives, shoes and flippers.
 //!
 //! The equations: docs/physics.md, "State".
 
@@ -7,53 +7,53 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
 use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
 
-/// The moving state.
+/// The state of motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct State {
     /// [m] Centre of mass.
     pub center: Vector,
-    /// [rad] Chassis angle; it counts full turns.
+    /// [rad] Chassis angle; full turns count.
     pub angle: f64,
     /// [m/s] Velocity of the centre of mass.
     pub velocity: Vector,
     /// [rad/s] Angular velocity of the chassis.
     pub angular_velocity: f64,
-    /// One for each drive.
+    /// State of each drive.
     pub drives: Vec<DriveState>,
-    /// The shoes of its chains, ...
+    /// The shoes of all chains.
     pub shoes: Vec<Shoe>,
-    /// ... and their idlers.
+    /// The idlers of all chains.
     pub idlers: Vec<Idler>,
-    /// Its flippers.
+    /// The flippers.
     pub flippers: Vec<Turn>,
 }
 
-/// How a flipper is turned over ground.
+/// Rotation of a flipper relative to the ground.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Turn {
-    /// [rad] It counts full turns.
+    /// [rad] Angle; full turns count.
     pub angle: f64,
-    /// [rad/s] Its rate.
+    /// [rad/s] Rate of the angle.
     pub rate: f64,
     /// [N m] Mean torque of its motor over the last step, counter-clockwise.
     pub torque: f64,
 }
 
-/// Where a body that carries parts is.
+/// Pose of a body that carries parts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Carrier {
-    /// [m] The centre of mass of the chassis, the pivot of a flipper; ...
+    /// [m] The centre of mass of the chassis, or the pivot of a flipper.
     pub center: Vector,
-    /// [m] ... and the same in the body's own frame.
+    /// [m] The same point in the body's own frame.
     pub origin: Vector,
-    /// [rad]
+    /// [rad] Angle of the body.
     pub angle: f64,
 }
 
 /// State of the idler of a chain.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Idler {
-    /// [m] How far it is out.
+    /// [m] Travel, outwards.
     pub travel: f64,
     /// [m/s] Its rate.
     pub rate: f64,
@@ -64,13 +64,13 @@ pub(crate) struct Idler {
 pub(crate) struct Shoe {
     /// [m] Halfway between its pins.
     pub center: Vector,
-    /// [rad] Direction of its travel along the chain; it counts full turns.
+    /// [rad] Direction of travel along the chain; full turns count.
     pub angle: f64,
     /// Its velocity.
     pub twist: Twist,
 }
 
-/// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its turn.
+/// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its rotation.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Twist {
     pub velocity: Vector,
@@ -78,17 +78,17 @@ pub(crate) struct Twist {
 }
 
 impl Twist {
-    /// As x, y and turn.
+    /// The components: x, y and rotation.
     pub(crate) fn entries(self) -> [f64; 3] {
         [self.velocity.x, self.velocity.y, self.turn]
     }
 
-    /// [m/s] Velocity of a point that lies so far from the centre [m].
+    /// [m/s] Velocity of a point at `arm` from the centre [m].
     pub(crate) fn at(self, arm: Vector) -> Vector {
         self.velocity + self.turn * left_of(arm)
     }
 
-    /// What leads from another to this.
+    /// The difference from another velocity.
     pub(crate) fn less(self, other: Self) -> Self {
         Self {
             velocity: self.velocity - other.velocity,
@@ -96,7 +96,7 @@ impl Twist {
         }
     }
 
-    /// With a share of a change.
+    /// The sum with a share of a change.
     pub(crate) fn plus(self, change: Self, share: f64) -> Self {
         Self {
             velocity: self.velocity + change.velocity * share,
@@ -130,7 +130,7 @@ impl Shoe {
         Pose::new(self.center, self.angle)
     }
 
-    /// The same after a time [s] if nothing changes the velocity.
+    /// The shoe after a time [s] at constant velocity.
     pub(crate) fn after(&self, time: f64) -> Self {
         Self {
             center: self.center + self.twist.velocity * time,
@@ -143,9 +143,9 @@ impl Shoe {
 /// State of one drive.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct DriveState {
-    /// [rad/s] Spin over ground; a drive of a robot at rest has none.
+    /// [rad/s] Spin relative to the ground; 0 for a robot at rest.
     pub spin: f64,
-    /// [m] How far the surface has run along its path.
+    /// [m] Travel of the surface along its path.
     pub position: f64,
     /// [N] Mean force of the motor at the surface over the last step.
     pub force: f64,
@@ -186,13 +186,13 @@ impl State {
         pose_at(self.center, self.angle, model)
     }
 
-    /// The same after a time [s] if nothing changes the velocity.
+    /// The same after a time [s] at constant velocity.
     pub(crate) fn pose_after(&self, time: f64, model: &Model) -> Pose {
         let (center, angle) = self.moved(time);
         pose_at(center, angle, model)
     }
 
-    /// Where the moving parts are by then.
+    /// Computes where the moving parts are after a time [s].
     pub(crate) fn running_after(&self, time: f64, model: &Model, running: &mut Running) {
         let speeds = (0..self.drives.len()).map(|k| self.track_speed(model, k));
         let drives = self.drives.iter().zip(speeds);
@@ -210,12 +210,12 @@ impl State {
         model.set_running(running, drives, shoes, turns);
     }
 
-    /// [rad] Angle of a flipper over the chassis, counter-clockwise.
+    /// [rad] Angle of a flipper relative to the chassis, counter-clockwise.
     pub(crate) fn over_chassis(&self, flipper: usize) -> f64 {
         self.flippers[flipper].angle - self.angle
     }
 
-    /// What carries a part, after a time [s] if nothing changes the velocity.
+    /// The carrier of a part after a time [s] at constant velocity.
     pub(super) fn carrier(&self, mount: Mount, time: f64, model: &Model) -> Carrier {
         let (center, angle) = self.moved(time);
         match mount {
@@ -236,7 +236,7 @@ impl State {
         }
     }
 
-    /// [m] How far the surface of a drive has run over a mount, ...
+    /// [m] Travel of a drive's surface relative to a mount.
     pub(super) fn run_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
         let run = self.drives[drive].position;
         match mount {
@@ -245,7 +245,7 @@ impl State {
         }
     }
 
-    /// [m/s] ... and its rate.
+    /// [m/s] Speed of a drive's surface relative to a mount.
     pub(super) fn speed_over(&self, mount: Mount, drive: usize, model: &Model) -> f64 {
         let turn = match mount {
             Mount::Flipper(k) => self.flippers[k].rate,
@@ -254,7 +254,7 @@ impl State {
         (turn - self.drives[drive].spin) * model.drive_radius
     }
 
-    /// Adds a velocity [m/s] to that of all bodies.
+    /// Adds a velocity [m/s] to all bodies.
     pub(super) fn add_velocity(&mut self, velocity: Vector) {
         self.velocity += velocity;
         for shoe in &mut self.shoes {
@@ -262,14 +262,14 @@ impl State {
         }
     }
 
-    /// [m/s] Speed of the fastest point of the robot, at most; `reach` is the farthest from its centre.
+    /// [m/s] Upper bound of the speed of any point; `reach` is the farthest from the centre of mass.
     pub(crate) fn fastest(&self, reach: f64) -> f64 {
         let turns = self.flippers.iter().map(|flipper| flipper.rate.abs());
         let turn = turns.fold(self.angular_velocity.abs(), f64::max);
         self.velocity.length() + turn * reach
     }
 
-    /// Centre of mass [m] and angle [rad] after a time [s] if nothing changes the velocity.
+    /// Centre of mass [m] and angle [rad] after a time [s] at constant velocity.
     pub(crate) fn moved(&self, time: f64) -> (Vector, f64) {
         (
             self.center + self.velocity * time,
@@ -277,7 +277,7 @@ impl State {
         )
     }
 
-    /// [m/s] Velocity of a point that rides with the chassis.
+    /// [m/s] Velocity of a point fixed to the chassis.
     pub(crate) fn velocity_at(&self, point: Vector) -> Vector {
         self.velocity + self.angular_velocity * left_of(point - self.center)
     }
@@ -287,7 +287,7 @@ impl State {
         (self.angular_velocity - self.drives[drive].spin) * model.drive_radius
     }
 
-    /// Lets the shoes ride with the chassis and run at a speed [m/s] along the paths of their chains.
+    /// Sets the shoes' velocities: with the chassis, and along their chains at a track speed [m/s].
     pub(crate) fn run_shoes(&mut self, model: &Model, track_speed: f64) {
         let pose = self.pose(model);
         for chain in &model.chains {
@@ -304,11 +304,11 @@ impl State {
         }
     }
 
-    /// Whether a robot can be in it: it has what the robot has, and none of that is lost far away.
+    /// Whether a robot can be in this state: it has the robot's parts, and none of them is far away.
     pub(crate) fn fits(&self, model: &Model) -> bool {
-        /// [m] From the chassis to a shoe of its chains.
+        /// [m] Largest distance from the chassis to a shoe.
         const FAR: f64 = 1e3;
-        /// [m/s], [rad/s], [rad] No run comes near; only what falls grows ever faster.
+        /// [m/s], [rad/s], [rad] No run comes near these values; only something in free fall gets ever faster.
         const MOST: f64 = 1e6;
         const FALLS: f64 = -1e9;
 
@@ -353,7 +353,7 @@ impl State {
     }
 }
 
-/// The shoes of a robot at rest whose chassis frame is `pose`.
+/// The shoes of a robot at rest with its chassis frame at `pose`.
 pub(crate) fn shoes_at_rest(model: &Model, pose: Pose, track_phase: f64) -> Vec<Shoe> {
     let of_chain = |chain: &ChainOfShoes| chain.path.places(track_phase);
     let places = model.chains.iter().flat_map(of_chain);
@@ -368,7 +368,7 @@ pub(crate) fn shoes_at_rest(model: &Model, pose: Pose, track_phase: f64) -> Vec<
     places.map(shoe).collect()
 }
 
-/// The idlers of a robot at rest: where its chains are taut.
+/// The idlers of a robot at rest, in the position where its chains are taut.
 pub(crate) fn idlers_at_rest(model: &Model, track_phase: f64) -> Vec<Idler> {
     let idler = |chain: &ChainOfShoes| Idler {
         travel: chain.path.travel(track_phase),
@@ -377,7 +377,7 @@ pub(crate) fn idlers_at_rest(model: &Model, track_phase: f64) -> Vec<Idler> {
     model.chains.iter().map(idler).collect()
 }
 
-/// The flippers of a robot at rest at an angle [rad].
+/// The flippers of a robot at rest, at an angle [rad].
 pub(crate) fn flippers_at_rest(model: &Model, angle: f64) -> Vec<Turn> {
     let turned = |arm: &Flipper| Turn {
         angle: angle + arm.sign() * arm.start_angle,

@@ -1,4 +1,4 @@
-//! The linear system of a solve: chassis, flippers that turn by themselves, drives with a spin of their own.
+//! The linear system of a solve: chassis, flippers that turn freely, and drives with a spin of their own.
 //!
 //! The equations: docs/physics.md, "The linear system".
 
@@ -6,24 +6,24 @@ use super::action::Action;
 use super::damper::Damper;
 use crate::geometry::Vector;
 
-/// Flippers at most: one at either end.
+/// Flippers at most: one pair at either end.
 const FLIPPERS: usize = 2;
 /// Columns of the chassis, of the flippers, and the right-hand side.
 const CHASSIS: usize = 3;
 const UNKNOWNS: usize = CHASSIS + FLIPPERS;
 const RIGHT: usize = UNKNOWNS;
-/// A pivot smaller than this share of the largest entry is none.
+/// A pivot below this share of the largest entry counts as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// The linear system, and what the drives with a spin of their own add to it.
+/// The linear system, and the equations of the drives with a spin of their own.
 pub(super) struct System {
-    /// Of the chassis and of the flippers that turn by themselves.
+    /// Rows of the chassis and of the flippers that turn freely.
     rows: [[f64; UNKNOWNS + 1]; UNKNOWNS],
     flippers: usize,
     pub(super) spins: Vec<Spin>,
-    /// [rad/s] Turns of the flippers as they were solved, ...
+    /// [rad/s] Solved rates of the flippers.
     pub(super) turns: [f64; FLIPPERS],
-    /// ... and what a step of the descent changes them by.
+    /// [rad/s] Changes of these rates in a step of the descent.
     pub(super) changes: [f64; FLIPPERS],
 }
 
@@ -34,8 +34,8 @@ pub(super) struct Acts {
     pub flipper: Option<usize>,
 }
 
-/// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the velocity's
-/// equations have `rows x spin`.
+/// The equation of one drive's spin: `inertia x spin + columns . velocity = moment`; the equations of the
+/// velocity contain `rows x spin`.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Spin {
     inertia: f64,
@@ -44,14 +44,14 @@ pub(super) struct Spin {
     rows: [f64; UNKNOWNS],
     /// Whether a constraint acts on it.
     acts: bool,
-    /// [rad/s] As it was solved.
+    /// [rad/s] Solved spin.
     pub value: f64,
-    /// [rad/s] What a step of the descent changes it by.
+    /// [rad/s] Change of the spin in a step of the descent.
     pub change: f64,
 }
 
 impl Spin {
-    /// One that nothing acts on.
+    /// The equation of a drive on which nothing acts.
     pub(super) fn new(inertia: f64, moment: f64) -> Self {
         Self {
             inertia,
@@ -62,7 +62,7 @@ impl Spin {
 }
 
 impl System {
-    /// Of a robot with so many drives and flippers.
+    /// The system of a robot with this number of drives and flippers.
     pub(super) fn new(drives: usize, flippers: usize) -> Self {
         Self {
             rows: [[0.0; UNKNOWNS + 1]; UNKNOWNS],
@@ -73,7 +73,7 @@ impl System {
         }
     }
 
-    /// A chassis that nothing acts on.
+    /// Starts from a chassis on which nothing acts.
     pub(super) fn start(&mut self, mass: f64, inertia: f64, velocity: Vector, moment: f64) {
         self.rows = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
         let momentum = [mass * velocity.x, mass * velocity.y, moment];
@@ -83,12 +83,12 @@ impl System {
         }
     }
 
-    /// Gives a flipper that turns with the chassis a row of its own.
+    /// Gives a trivial row to a flipper that turns with the chassis.
     pub(super) fn hold(&mut self, flipper: usize) {
         self.rows[CHASSIS + flipper][CHASSIS + flipper] = 1.0;
     }
 
-    /// The rows of the chassis alone: three columns and the right-hand side.
+    /// The rows of the chassis: three columns and the right-hand side.
     pub(super) fn of_chassis(&self) -> [[f64; 4]; 3] {
         let row = |i: usize| {
             let [a, b, c, ..] = self.rows[i];
@@ -104,7 +104,7 @@ impl System {
         }
     }
 
-    /// Adds a constraint whose impulse along `force` is that of a damper along `action`.
+    /// Adds a constraint whose impulse acts along `force`, with a damper along `action`.
     pub(super) fn add(&mut self, force: &Action, action: &Action, acts: Acts, damper: Damper) {
         let (f, d) = (force.body(), action.body());
         let (impulse, stiffness) = (damper.at(action.offset), damper.stiffness);
@@ -153,7 +153,7 @@ impl System {
         }
     }
 
-    /// The same for as many unknowns: most robots have three, and the compiler knows what that is.
+    /// The same for a fixed number of unknowns: most robots have three, and the compiler can use that.
     fn solve_for<const COUNT: usize>(&mut self) -> Option<(Vector, f64)> {
         for spin in self.spins.iter().filter(|spin| spin.acts) {
             for i in 0..COUNT {
@@ -184,7 +184,7 @@ impl System {
         Some((Vector::new(x, y), turn))
     }
 
-    /// Takes the turn of a flipper out of the rows before its own; none if it has no inertia.
+    /// Eliminates the rate of a flipper from the rows before its own; none if it has no inertia.
     fn eliminate_flipper(&mut self, own: usize) -> Option<()> {
         let pivot = self.rows[own];
         if pivot[own] <= 0.0 || !pivot[own].is_finite() {
@@ -200,7 +200,7 @@ impl System {
     }
 }
 
-/// Gauss's elimination with pivots.
+/// Gaussian elimination with pivoting.
 fn eliminate(mut a: [[f64; 4]; 3]) -> Option<[f64; 3]> {
     let largest = a
         .iter()

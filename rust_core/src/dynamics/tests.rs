@@ -1,4 +1,4 @@
-//! Motion without ground, and on contacts that no terrain could make.
+//! Motion without ground, and on contacts that no terrain could produce.
 
 use approx::assert_relative_eq;
 
@@ -44,7 +44,7 @@ fn free_fall_is_half_g_t_squared() {
     let (mut dynamics, mut state) = setup(|_| {});
     let start = state.center.y;
     advance(&mut dynamics, &mut state, 1000, 0.0, &[]);
-    // Half of the weight's push comes before the motion of a substep and half after: exact but for rounding.
+    // Half of the weight's impulse comes before the motion of a substep and half after: exact but for rounding.
     assert_relative_eq!(start - state.center.y, 0.5 * 9.81, max_relative = 1e-12);
     assert_relative_eq!(state.velocity.y, -9.81, max_relative = 1e-12);
 }
@@ -58,7 +58,7 @@ fn drive_in_the_air_spins_up_by_its_force_and_turns_the_chassis_back() {
     let expected = force * 0.01 * (1.0 / m.drive_masses[0] + radius * radius / m.moment_of_inertia);
     assert_relative_eq!(state.track_speed(m, 0), expected, max_relative = 1e-4);
     assert_relative_eq!(state.drives[0].force, force, max_relative = 1e-9);
-    // No outer moment: what the chassis turns one way, the drive turns the other.
+    // There is no external moment: the chassis turns against the drive.
     let of_drive = m.drive_masses[0] * radius * radius * state.drives[0].spin;
     assert_relative_eq!(
         m.moment_of_inertia * state.angular_velocity,
@@ -85,7 +85,7 @@ fn clamped(state: &State) -> [Contact; 2] {
 
 #[test]
 fn force_limit_acts_on_the_signed_sum_of_the_tractions() {
-    // A free belt sliding between floor and ceiling: each drags it, one forwards and one backwards.
+    // A belt without torque slides between floor and ceiling, which drag it in opposite directions.
     let (mut dynamics, mut state) = setup(|s| {
         s.robot.drivetrain.max_torque = 0.0;
         s.robot.center_of_mass = [0.0, 0.0];
@@ -131,7 +131,7 @@ fn energy(m: &Model, state: &State) -> f64 {
         + of_drives.sum::<f64>())
 }
 
-/// Contacts from all sides, at will: they hold, slide, part or jam.
+/// Random contacts from all sides: they hold, slide, part or jam.
 #[test]
 fn contacts_from_all_sides_take_energy_within_coulombs_law() {
     let mut drawn = Draw(1);

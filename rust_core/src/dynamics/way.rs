@@ -1,20 +1,20 @@
-//! Where a step of a search leads a contact.
+//! The line along which a step of Newton's method moves a contact.
 //!
 //! The equations: docs/physics.md, "Chains".
 
-/// A row on the way between two solutions: its speeds along normal and tangent [m/s], and the impulses
-/// along them that balance these velocities [N s].
+/// A row between two solutions: its speeds along normal and tangent [m/s], and the impulses along them that
+/// balance these velocities [N s].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Way {
     pub speeds: [f64; 2],
     pub held: [f64; 2],
-    /// The same at its end.
+    /// The same at the end of the step.
     pub to_speeds: [f64; 2],
     pub to_held: [f64; 2],
 }
 
 impl Way {
-    /// Speeds and impulses after a share of it.
+    /// Speeds and impulses at a share of the step.
     pub(super) fn after(&self, share: f64) -> [[f64; 2]; 2] {
         let between =
             |from: [f64; 2], to: [f64; 2]| [0, 1].map(|i| from[i] + (to[i] - from[i]) * share);

@@ -1,12 +1,12 @@
-//! Which part bears where, as one number: while it stays, the same parts bear on the same places.
+//! A signature of what bears: while it is the same, the same parts bear on the same places.
 
 use crate::dynamics::LoadedContact;
 
-/// The number of what bears; the order of the contacts does not matter.
+/// The signature of the loaded contacts; their order does not matter.
 pub(super) fn signature(loaded: &[LoadedContact]) -> u64 {
     let bearing = loaded.iter().filter(|l| l.normal_force > 0.0);
     sum(bearing.map(|l| {
-        // On which side of a vertex an edge was found does not matter, either.
+        // Nor does it matter on which side of a vertex an edge was found.
         let place = if l.contact.edge >= 0 {
             l.contact.edge as u64 + (1 << 32)
         } else {
@@ -16,7 +16,7 @@ pub(super) fn signature(loaded: &[LoadedContact]) -> u64 {
     }))
 }
 
-/// Part and place are mixed before they are summed: otherwise two parts could swap their places unseen.
+/// Part and place are mixed before they are summed: otherwise two parts could swap places unnoticed.
 fn sum(bearing: impl Iterator<Item = (u64, u64)>) -> u64 {
     let mixed = bearing.map(|(part, place)| mix(mix(part) ^ place));
     mixed.fold(0, u64::wrapping_add)
@@ -39,7 +39,7 @@ mod tests {
     use crate::dynamics::Grip;
     use crate::geometry::Vector;
 
-    /// Parts that bear on facets, with such a force [N].
+    /// Parts that bear on facets, each with this force [N].
     fn on_facets(bearing: &[(usize, usize)], force: f64) -> Vec<LoadedContact> {
         let loaded = |(part, facet): &(usize, usize)| LoadedContact {
             contact: Contact {

@@ -3,23 +3,23 @@
 use crate::contact::Contact;
 use crate::dynamics::LoadedContact;
 
-/// Contacts seen since the last sample, each with its summed forces.
+/// Contacts since the last sample, each with the sum of its forces.
 #[derive(Default)]
 pub(crate) struct Readings {
     steps: u32,
     seen: Vec<Reading>,
 }
 
-/// One contact over the interval.
+/// One contact during the interval.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading {
-    /// As it was last seen.
+    /// Its last state.
     pub contact: Contact,
     /// [N] Mean over the interval.
     pub normal_force: f64,
     /// [N] Mean over the interval.
     pub friction_force: f64,
-    /// [m/s] When last seen.
+    /// [m/s] Last value.
     pub surface_speed: f64,
 }
 
@@ -46,12 +46,12 @@ impl Readings {
         }
     }
 
-    /// Contacts seen since the last sample.
+    /// Number of contacts since the last sample.
     pub(crate) fn count(&self) -> usize {
         self.seen.len()
     }
 
-    /// The means, in the order of first sight; the next interval starts empty.
+    /// Returns the means, in the order in which contacts first appeared, and starts a new interval.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = Reading> + '_ {
         let share = 1.0 / f64::from(self.steps.max(1));
         self.steps = 0;

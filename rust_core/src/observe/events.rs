@@ -1,4 +1,4 @@
-//! What happened during a run, with a beginning and an end: stops, and edges inside the track.
+//! Events of a run that have a beginning and an end: stops, and intrusions of edges into the track.
 
 #[cfg(test)]
 mod tests;
@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use crate::contact::Intrusion;
 use crate::terrain::{Profile, Side};
 
-/// What an event is.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
-    /// A span without progress, though commanded.
+    /// A span of time without progress although a speed is commanded.
     Stop,
-    /// A span in which an edge was inside the envelope of the track.
+    /// A span of time in which an edge was inside the envelope of the track.
     Intrusion,
 }
 
 impl EventKind {
-    /// Name as in tables.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stop => "stop",
@@ -27,31 +27,31 @@ impl EventKind {
     }
 }
 
-/// One event; a stop carries the most loaded of the intrusions that were there at its end.
+/// One event; a stop carries the data of the most loaded intrusion present at its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// What it is.
+    /// Kind of the event.
     pub kind: EventKind,
-    /// [s] When it began.
+    /// [s] Beginning.
     pub start: f64,
-    /// [s] When it ended; the end of the run if it lasted.
+    /// [s] End; the end of the run if it was still going on.
     pub end: f64,
-    /// Lane of that edge; of none, that of both tracks.
+    /// Lane of the edge; without an edge, the lane under both tracks.
     pub side: Side,
     /// Edge inside the envelope, or -1.
     pub edge: i32,
-    /// Bodies on either side of it, first the one that the belt passes before it; none without an edge.
+    /// Bodies on either side of the edge, in the order in which the belt passes them; none without an edge.
     pub bodies: Option<[usize; 2]>,
-    /// [m] Deepest reach below the belt round the circumscribed circles.
+    /// [m] Largest depth below the belt round the circumscribed circles.
     pub depth: f64,
-    /// [m] Deepest reach below the belt round the root circles.
+    /// [m] Largest depth below the belt round the root circles.
     pub root_depth: f64,
-    /// [N] Normal force that the robot put on the piece, the mean over the event.
+    /// [N] Normal force of the robot on the piece, mean over the event.
     pub force: f64,
 }
 
 impl Event {
-    /// Whether a robot of so many parts on lanes can have given it.
+    /// Whether a robot with this number of parts on these lanes can have produced it.
     pub(crate) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
         let numbers = [
             self.start,
@@ -67,7 +67,7 @@ impl Event {
             && numbers.iter().all(|number| number.is_finite())
     }
 
-    /// A stop with what was inside the track.
+    /// A stop, with the intrusion present.
     pub(crate) fn stop(start: f64, end: f64, inside: Option<&Self>) -> Self {
         Self {
             kind: EventKind::Stop,
@@ -83,25 +83,25 @@ impl Event {
     }
 }
 
-/// Follows intrusions from look to look.
+/// Tracks intrusions from check to check.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct IntrusionWatch {
     present: Vec<Present>,
     past: Vec<Event>,
 }
 
-/// An intrusion that goes on.
+/// An intrusion that is going on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Present {
     event: Event,
-    /// Edges inside when it was last seen.
+    /// Edges inside at the last check.
     edges: Vec<i32>,
     looks: f64,
     seen: bool,
 }
 
 impl IntrusionWatch {
-    /// Takes in what is inside the track at `time`, each with the force [N] on it.
+    /// Takes the intrusions at `time`, each with the force [N] on it.
     pub(crate) fn look(&mut self, time: f64, inside: impl Iterator<Item = (Intrusion, f64)>) {
         for (intrusion, force) in inside {
             let same = |p: &&mut Present| {
@@ -125,7 +125,7 @@ impl IntrusionWatch {
         }
     }
 
-    /// Whether a robot of so many parts on lanes can have given them.
+    /// Whether a robot with this number of parts on these lanes can have produced it.
     pub(crate) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
         let present = self.present.iter().map(|p| &p.event);
         let looks = self.present.iter().all(|p| p.looks >= 1.0);
@@ -137,7 +137,7 @@ impl IntrusionWatch {
                 .all(|e| e.fits(parts, lanes))
     }
 
-    /// The most loaded of those that go on.
+    /// The most loaded intrusion that is going on.
     pub(crate) fn most_loaded(&self) -> Option<&Event> {
         let present = self.present.iter().map(|p| &p.event);
         present.reduce(|most, other| {
@@ -149,7 +149,7 @@ impl IntrusionWatch {
         })
     }
 
-    /// All so far; those that go on end at `now`.
+    /// All intrusions so far; those still going on end at `now`.
     pub(crate) fn events(&self, now: f64) -> impl Iterator<Item = Event> {
         let present = self.present.iter().map(move |p| Event {
             end: now,

@@ -1,4 +1,4 @@
-//! What is seen of a run: it only reads.
+//! Observation of a run, which never changes the motion.
 
 mod bearing;
 mod contacts;

@@ -1,4 +1,4 @@
-//! Watches a run: goal, tip-over, stops. It only reads, and ends a run when its outcome is certain.
+//! Monitors a run for goal, tip-over and stops: it only reads, and ends a run once its outcome is certain.
 
 #[cfg(test)]
 mod tests;
@@ -16,32 +16,32 @@ use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::terrain::{Ground, Profile};
 
-/// [s] Time between two looks at the progress; far below any stop window.
+/// [s] Time between two checks of the progress; far shorter than any stop window.
 const LOOK: f64 = 0.01;
 
-/// Watches one run.
+/// The monitor of one run.
 pub(crate) struct Monitor {
     criteria: SeizureCriteria,
     ground: Arc<Ground>,
     goal: f64,
-    /// [m] A metre below the whole ground.
+    /// [m] Height one metre below all of the ground.
     floor: f64,
     half_length: f64,
     rear_radius: f64,
     grouser_pitch: f64,
-    /// What the robot is made of.
+    /// The parts of the robot.
     parts: Vec<Part>,
-    /// Of each track, with its lane.
+    /// Envelopes of the tracks, each with its lane.
     envelopes: Vec<TrackEnvelope>,
-    /// A driver may do something later that changes everything.
+    /// Whether a driver may still do something that changes everything.
     may_change: bool,
-    /// A turning grouser changes what is there although the pose does not.
+    /// Whether a turning grouser may change the contacts while the pose stays the same.
     has_grousers: bool,
-    /// What it has seen.
+    /// Its observations.
     pub seen: Seen,
 }
 
-/// What a monitor remembers of a run.
+/// What a monitor has observed of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Seen {
     looks: u64,
@@ -53,7 +53,7 @@ pub(crate) struct Seen {
     goal_since: Option<f64>,
     ended: Option<Outcome>,
     stays: bool,
-    /// [s] When the goal was first held, if it was.
+    /// [s] When the goal was first held, if ever.
     pub time_to_clear: f64,
     /// [m] Deepest penetration so far.
     pub max_penetration: f64,
@@ -63,9 +63,9 @@ pub(crate) struct Seen {
     pub min_angle: f64,
     /// [J] Work of the motors so far.
     pub drive_work: f64,
-    /// [m] How far the chassis frame has moved along its own axis so far.
+    /// [m] Distance that the chassis frame has moved along its own axis so far.
     pub path_length: f64,
-    /// How much the chassis shook so far.
+    /// Shaking of the chassis so far.
     pub shaking: Shaking,
     /// [N] Largest force in a pin of a chain so far.
     pub max_track_tension: f64,
@@ -73,14 +73,14 @@ pub(crate) struct Seen {
     pub max_pin_gap: f64,
     /// [m] Deepest penetration of a chain's guide, wheels or teeth by a shoe so far.
     pub max_guide_penetration: f64,
-    /// [m] Farthest that a chain and its sprocket have run apart so far.
+    /// [m] Largest difference in travel between a chain and its sprocket so far.
     pub max_sprocket_slip: f64,
-    /// What the solves took so far.
+    /// Work of the solver so far.
     pub effort: Effort,
 }
 
 impl Seen {
-    /// Nothing yet, at a time [s].
+    /// No observations, at a time [s].
     pub(crate) fn from(time: f64) -> Self {
         Self {
             looks: (time / LOOK).ceil() as u64,
@@ -109,10 +109,10 @@ impl Seen {
 }
 
 impl Seen {
-    /// Whether a robot on lanes can have been seen so until a time [s].
+    /// Whether these can be the observations of a robot on these lanes up to a time [s].
     pub(crate) fn fits(&self, time: f64, model: &Model, lanes: &[Profile]) -> bool {
         let parts = model.parts.len();
-        // Looks are counted: ahead of time there would be none.
+        // Checks are counted; if the count were ahead of time, there would be none for a while.
         let next_look = self.looks as f64 * LOOK;
         let numbers = [
             self.time_to_clear,
@@ -136,14 +136,14 @@ impl Seen {
     }
 }
 
-/// A pose that the robot has not left since.
+/// A pose that the robot has not left since a certain time.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Anchor {
     since: f64,
     x: f64,
     y: f64,
     angle: f64,
-    /// Of what bears there.
+    /// Signature of what bears there.
     bearing: u64,
 }
 
@@ -172,8 +172,8 @@ impl Monitor {
         }
     }
 
-    /// Takes in one step: what the robot did, the contacts' forces, the drives with their speeds, and where
-    /// the flippers are.
+    /// Takes one step: the state of the robot, the contact forces, the drives with their speeds, and the
+    /// flipper positions.
     pub(crate) fn observe(
         &mut self,
         now: &Reading,
@@ -216,12 +216,12 @@ impl Monitor {
         }
     }
 
-    /// Takes in what the solves of the same step took.
+    /// Takes the solver's work in the same step.
     pub(crate) fn observe_effort(&mut self, effort: Effort) {
         self.seen.effort = self.seen.effort.plus(effort);
     }
 
-    /// Takes in what the chains did in the same step.
+    /// Takes the state of the chains in the same step.
     pub(crate) fn observe_chains(&mut self, chains: ChainReading) {
         let seen = &mut self.seen;
         seen.max_track_tension = seen.max_track_tension.max(chains.tension);
@@ -233,7 +233,7 @@ impl Monitor {
         }
     }
 
-    /// Ends that need no window.
+    /// Checks for outcomes that need no stop window.
     fn ended(&mut self, now: &Reading) -> Option<Outcome> {
         if now.chassis_angle.abs() > self.criteria.tip_over_angle {
             return Some(Outcome::TippedOver);
@@ -260,7 +260,7 @@ impl Monitor {
         None
     }
 
-    /// Follows what is inside the track.
+    /// Tracks what is inside the track.
     fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact], running: &Running) {
         let pose = Pose::new(now.position, now.chassis_angle);
         let lanes = &self.ground.lanes;
@@ -280,7 +280,7 @@ impl Monitor {
         self.seen.intrusions.look(now.time, with_force);
     }
 
-    /// Compares the progress with that of one window ago.
+    /// Compares the progress with that one stop window ago.
     fn look(&mut self, now: &Reading, command: f64, window: f64) {
         let least = self.criteria.stop_progress;
         let seen = &mut self.seen;
@@ -297,7 +297,7 @@ impl Monitor {
         }
     }
 
-    /// [s] Time without progress that is a stop.
+    /// [s] Time without progress that counts as a stop.
     fn window(&self, command: f64) -> f64 {
         let pitches = self.criteria.stop_pitches * self.grouser_pitch / command.abs();
         if pitches.is_finite() {
@@ -307,7 +307,7 @@ impl Monitor {
         }
     }
 
-    /// A state that does not change at all will not change later: the run may end.
+    /// If the state does not change at all, it will not change later either: the run may end.
     fn watch_stationary(&mut self, now: &Reading, window: f64, loaded: &[LoadedContact]) {
         let here = Anchor {
             since: now.time,
@@ -330,32 +330,32 @@ impl Monitor {
         seen.stays |= seen.progress.stop_since.is_some() && still >= enough;
     }
 
-    /// Nothing that still happens could change the outcome.
+    /// Whether the outcome is certain.
     pub(crate) fn is_over(&self) -> bool {
         self.seen.ended.is_some() || self.seen.stays
     }
 
-    /// The outcome of a run that ended otherwise than by a stop or its time.
+    /// The outcome of a run that did not end in a stop or by time.
     pub(crate) fn ended_as(&self) -> Option<Outcome> {
         self.seen.ended
     }
 
-    /// [s] Since when the robot has stopped, if it has.
+    /// [s] Since when the robot has been stopped, if it is.
     pub(crate) fn stop_since(&self) -> Option<f64> {
         self.seen.progress.stop_since
     }
 
-    /// Share of the commanded distance made in the last stop window; 1 before the first is over.
+    /// Share of the commanded distance covered in the last stop window; 1 before the first window is over.
     pub(crate) fn progress(&self) -> f64 {
         self.seen.progress.share
     }
 
-    /// What was seen of a stop: means of the last one to two stop windows.
+    /// Means over the last one to two stop windows.
     pub(crate) fn stance(&self) -> Stance {
         self.seen.signals.stance()
     }
 
-    /// Stops and intrusions so far, in order of their beginning; those that last end at `now`.
+    /// Stops and intrusions so far, ordered by their beginning; those still going on end at `now`.
     pub(crate) fn events(&self, now: f64) -> Vec<Event> {
         let Seen {
             progress,
@@ -372,13 +372,13 @@ impl Monitor {
         events
     }
 
-    /// [s] Longest stop from which the robot freed itself, 0 if there was none.
+    /// [s] Duration of the longest stop from which the robot freed itself, 0 if there was none.
     pub(crate) fn time_to_free(&self) -> f64 {
         let stops = self.seen.progress.stops.iter();
         stops.fold(0.0, |longest, stop| longest.max(stop.end - stop.start))
     }
 
-    /// The most loaded of what is inside the track.
+    /// The most loaded intrusion into the track.
     pub(crate) fn intrusion(&self) -> Option<&Event> {
         self.seen.intrusions.most_loaded()
     }

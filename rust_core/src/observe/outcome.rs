@@ -1,4 +1,4 @@
-//! How a run ended.
+//! The outcome of a run.
 
 #[cfg(test)]
 mod tests;
@@ -7,18 +7,18 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// How a run ended; where several apply, the first of this list.
+/// The outcome of a run; if several apply, the first in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// The chain of the track has left its guide.
+    /// The chain of the track has come off its guide.
     Detracked,
     /// The chassis turned past its balance point.
     TippedOver,
     /// An end axle left the terrain.
     LeftTerrain,
-    /// The goal lies behind the robot.
+    /// The robot is past the goal.
     Cleared,
-    /// It moves to and fro without gain.
+    /// The robot moves to and fro without progress.
     Cycling,
     /// Stopped by ground in a pocket of the track.
     Seized,
@@ -28,12 +28,12 @@ pub enum Outcome {
     Stalled,
     /// Stopped with the surfaces turning.
     Slipping,
-    /// The time ran out on the way.
+    /// The time ran out while the robot was still moving.
     TimedOut,
 }
 
 impl Outcome {
-    /// All of them; where several apply, the first counts.
+    /// All outcomes; if several apply, the first counts.
     pub const ALL: [Self; 10] = [
         Self::Detracked,
         Self::TippedOver,
@@ -47,7 +47,7 @@ impl Outcome {
         Self::TimedOut,
     ];
 
-    /// Name as in tables.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Detracked => "detracked",
@@ -63,7 +63,7 @@ impl Outcome {
         }
     }
 
-    /// Whether the robot got nowhere although commanded.
+    /// Whether the robot made no progress although a speed was commanded.
     pub fn is_stop(self) -> bool {
         matches!(
             self,

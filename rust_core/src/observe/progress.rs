@@ -1,4 +1,4 @@
-//! Progress over a sliding window, and the stops that its lack makes.
+//! Progress over a sliding window, and the stops where there is none.
 
 #[cfg(test)]
 mod tests;
@@ -10,25 +10,25 @@ use serde::{Deserialize, Serialize};
 use super::{Event, Reading};
 use crate::terrain::Profile;
 
-/// How far the robot has come, and when it came no further.
+/// How far the robot has come, and since when it has been stopped.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
-    /// +1 or -1, as commanded; 0 in a pause.
+    /// +1 or -1 as commanded; 0 in a pause.
     direction: f64,
     history: VecDeque<Look>,
     best_advance: f64,
     best_angle: f64,
     commanded: f64,
     falters: bool,
-    /// [s] Since when the robot has stopped, if it has.
+    /// [s] Since when the robot has been stopped, if it is.
     pub stop_since: Option<f64>,
-    /// Stops that are over.
+    /// Stops that have ended.
     pub stops: Vec<Event>,
-    /// Share of the commanded distance made in the last window; 1 before the first is over.
+    /// Share of the commanded distance covered in the last window; 1 before the first window is over.
     pub share: f64,
 }
 
-/// Progress at one instant.
+/// Progress at one check.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Look {
     advance: f64,
@@ -37,7 +37,7 @@ struct Look {
 }
 
 impl Look {
-    /// Share of the commanded distance made since, in x or in raising the nose.
+    /// Share of the commanded distance covered since then, either in x or by raising the nose.
     fn share_since(&self, then: &Self) -> f64 {
         let progress = (self.advance - then.advance).max(self.angle - then.angle);
         let commanded = self.commanded - then.commanded;
@@ -66,7 +66,7 @@ impl Default for Progress {
 }
 
 impl Progress {
-    /// Whether a robot of so many parts on lanes can have made it.
+    /// Whether a robot with this number of parts on these lanes can have made it.
     pub(super) fn fits(&self, parts: usize, lanes: &[Profile]) -> bool {
         let looks = self.history.iter();
         let known = |look: &Look| {
@@ -82,7 +82,7 @@ impl Progress {
             && self.stops.iter().all(|stop| stop.fits(parts, lanes))
     }
 
-    /// Takes in one step of `dt` [s] of a robot of a `length` [m] between its end axles.
+    /// Takes one step of `dt` [s] of a robot whose end axles are `length` [m] apart.
     pub(super) fn advance(&mut self, now: &Reading, command: f64, length: f64, dt: f64) {
         let direction = if command == 0.0 {
             0.0
@@ -90,7 +90,7 @@ impl Progress {
             command.signum()
         };
         if direction * self.direction <= 0.0 {
-            // What was gained the other way, or before a pause, is no measure of what comes now.
+            // Distance covered in the other direction or before a pause is no reference for the new command.
             self.direction = direction;
             self.history.clear();
             (self.best_advance, self.best_angle) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
@@ -100,8 +100,8 @@ impl Progress {
         self.commanded += now.commanded_speed.abs() * dt;
     }
 
-    /// Compares with one window ago, at looks `every` [s]; less than `least` of the commanded
-    /// distance is a stop. Returns the beginning of a stop that has just ended.
+    /// Compares with one window ago, at checks `every` [s]; less than `least` of the commanded distance is a
+    /// stop. Returns the beginning of a stop that has just ended.
     pub(super) fn look(
         &mut self,
         time: f64,
@@ -115,7 +115,7 @@ impl Progress {
             commanded: self.commanded,
         };
         self.history.push_back(here);
-        // Slow commands have windows longer than any run: such a one is never whole.
+        // For slow commands the window may be longer than any run, and is then never complete.
         let span = (window / every).ceil() as usize;
         while self.history.len() > span.saturating_add(1) {
             self.history.pop_front();
@@ -137,7 +137,7 @@ impl Progress {
         None
     }
 
-    /// Half a window has gone by without progress, so that a stop may be near.
+    /// Whether half a window has passed without progress, so that a stop may be near.
     pub(super) fn falters(&self) -> bool {
         self.falters
     }

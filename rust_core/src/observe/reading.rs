@@ -1,25 +1,25 @@
-//! The state of an instant as a user reads it.
+//! The state at an instant as users see it.
 
 use crate::geometry::Vector;
 
-/// The state as a user reads it.
+/// The state as users see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
     /// [s] Simulated time.
     pub time: f64,
-    /// [m] Origin of the chassis frame.
+    /// [m] Position of the origin of the chassis frame.
     pub position: Vector,
-    /// [m/s] Velocity of that point.
+    /// [m/s] Velocity of the origin of the chassis frame.
     pub velocity: Vector,
-    /// [rad] Nose up > 0.
+    /// [rad] Chassis angle, nose up > 0.
     pub chassis_angle: f64,
-    /// [rad/s] Its rate.
+    /// [rad/s] Rate of the chassis angle.
     pub angular_velocity: f64,
     /// [m/s] Set-point of the drivetrain.
     pub commanded_speed: f64,
-    /// [m/s] Surface speed, the mean of the drives.
+    /// [m/s] Surface speed, mean of the drives.
     pub track_speed: f64,
-    /// [m] How far the surface has run, the mean of the drives.
+    /// [m] Travel of the surface, mean of the drives.
     pub track_position: f64,
 }
 

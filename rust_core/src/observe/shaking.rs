@@ -1,4 +1,4 @@
-//! How much the chassis shakes, as an inertial sensor with a bandwidth of one look would see it.
+//! Shaking of the chassis, as an inertial sensor with the bandwidth of the checks would measure it.
 
 #[cfg(test)]
 mod tests;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Reading;
 
-/// Sums over the looks of a run.
+/// Sums over the checks of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Shaking {
     last: Option<(f64, f64)>,
@@ -17,7 +17,7 @@ pub(crate) struct Shaking {
 }
 
 impl Shaking {
-    /// Takes in one look.
+    /// Takes one check.
     pub(crate) fn look(&mut self, now: &Reading) {
         if let Some((time, speed)) = self.last {
             let dt = now.time - time;

@@ -1,7 +1,7 @@
-//! What is seen of a stop: the means of contacts, drives and pose over its last windows.
+//! Averages of a stop: contacts, drives and pose over the last stop windows.
 //!
-//! A state that rattles has no forces of an instant that balance, but its means over a time in
-//! which it gets nowhere do.
+//! While a robot rattles, its forces do not balance at any instant, but their means over a time without
+//! progress do.
 
 use std::collections::HashSet;
 
@@ -14,10 +14,10 @@ use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Profile;
 
-/// [m] Surfaces closer than this could bear, though they do not.
+/// [m] Surfaces closer than this could carry a load, even if they do not.
 const TOUCHES: f64 = 1e-6;
 
-/// Sums over the last window that is complete and the one under way.
+/// Sums over the last complete window and the current one.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Signals {
     older: Block,
@@ -36,7 +36,7 @@ struct Block {
     high: [f64; 3],
 }
 
-/// One contact's sums.
+/// Sums of one contact.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Summed {
     last: Contact,
@@ -49,22 +49,22 @@ struct Summed {
     loaded: f64,
 }
 
-/// A contact in the mean.
+/// Means of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bearing {
-    /// Where and what; point and normal are means.
+    /// The contact, with mean point and normal.
     pub contact: Contact,
     /// [N] Mean normal force.
     pub normal_force: f64,
     /// [N] Mean friction on the robot, along the normal turned by -90 degrees.
     pub friction_force: f64,
-    /// [m/s] Mean velocity of the surface over ground in the same direction.
+    /// [m/s] Mean slip velocity of the surface over the ground, in the same direction.
     pub slip: f64,
-    /// Share of the time for which it bore.
+    /// Share of the time during which it carried a load.
     pub duration: f64,
 }
 
-/// A drive in the mean.
+/// Means of a drive.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct DriveMean {
     /// [N] Force of its motor at the surface.
@@ -73,23 +73,23 @@ pub(crate) struct DriveMean {
     pub speed: f64,
 }
 
-/// A stop in the mean.
+/// Means of a stop.
 #[derive(Clone, Debug)]
 pub(crate) struct Stance {
-    /// [m] Chassis frame.
+    /// [m] Position of the chassis frame.
     pub position: Vector,
     /// [rad] Chassis angle.
     pub angle: f64,
-    /// How far the chassis frame moved to and fro in x [m] and y [m], and turned [rad].
+    /// Range of motion of the chassis frame in x [m], y [m] and angle [rad].
     pub range: [f64; 3],
-    /// Contacts that bear or could.
+    /// Contacts that carry or could carry a load.
     pub bearings: Vec<Bearing>,
     /// One for each drive.
     pub drives: Vec<DriveMean>,
 }
 
 impl Signals {
-    /// Takes in one step; `window` [s] is that of a stop.
+    /// Takes one step; `window` [s] is the stop window.
     pub(crate) fn add(
         &mut self,
         now: &Reading,
@@ -104,7 +104,7 @@ impl Signals {
         self.newer.add(now, loaded, drives);
     }
 
-    /// Whether a robot and its lanes can have given them.
+    /// Whether a robot on these lanes can have produced them.
     pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
         [&self.older, &self.newer].into_iter().all(|block| {
             let numbers = [block.place, block.low, block.high].concat();
@@ -175,7 +175,7 @@ impl Block {
         }
     }
 
-    /// Adds a contact to what was summed of it.
+    /// Adds a contact to its sums.
     fn gather(&mut self, new: &Summed) {
         let number = new.last.number;
         let mut known = self.contacts.iter_mut();
@@ -225,7 +225,7 @@ impl Summed {
     }
 
     fn new(l: &LoadedContact) -> Self {
-        // A contact without a force has a place all the same.
+        // A contact without a force has a position all the same.
         let weight = l.normal_force.max(1e-9);
         Self {
             last: l.contact,

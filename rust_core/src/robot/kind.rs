@@ -1,6 +1,6 @@
-//! What a part of the robot is.
+//! The kinds of bodies of a robot.
 
-/// What a part of the robot stands for; the code is the `body_kind` of the contact table.
+/// What a body represents; its code is the `body_kind` of the contact table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyKind {
     /// A wheel.
@@ -19,16 +19,16 @@ pub enum BodyKind {
     Guide = 6,
     /// The toothed wheel that drives a chain.
     Sprocket = 7,
-    /// The wheel at the other end, on the tensioner.
+    /// The front wheel of a chain, on the tensioner.
     Idler = 8,
-    /// A wheel that the lower run of a chain carries.
+    /// A wheel that runs on the lower run of a chain.
     RoadWheel = 9,
     /// A return roller, which carries the upper run.
     Roller = 10,
 }
 
 impl BodyKind {
-    /// All of them, in the order of their codes.
+    /// All kinds, in the order of their codes.
     pub const ALL: [Self; 11] = [
         Self::Wheel,
         Self::Belt,
@@ -43,7 +43,7 @@ impl BodyKind {
         Self::Roller,
     ];
 
-    /// Name as in tables.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Wheel => "wheel",

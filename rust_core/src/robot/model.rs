@@ -1,4 +1,4 @@
-//! The robot as it is simulated: one body, the parts that meet the ground, the drives.
+//! The robot as it is simulated: one body, the parts that meet the ground, and the drives.
 
 use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
@@ -11,15 +11,15 @@ pub struct Model {
     pub mass: f64,
     /// [m] Centre of mass in the chassis frame.
     pub center_of_mass: Vector,
-    /// [kg m^2] Moment of inertia without the part that turns with the drives.
+    /// [kg m^2] Moment of inertia without the parts that turn with the drives.
     pub moment_of_inertia: f64,
-    /// What meets the ground; the belly, if any, is the last.
+    /// Parts that can meet the ground; the belly, if there is one, is the last.
     pub parts: Vec<Part>,
-    /// Number of drives, the driven ones first.
+    /// Number of drives; those with a motor come first.
     pub drives: usize,
     /// Number of drives with a motor; the others turn freely.
     pub motors: usize,
-    /// [kg] Mass that moves at the surface speed of each drive.
+    /// [kg] Mass that moves at the surface speed, for each drive.
     pub drive_masses: Vec<f64>,
     /// [m] Radius that relates surface speed and spin of a drive.
     pub drive_radius: f64,
@@ -106,8 +106,8 @@ impl Model {
         running
     }
 
-    /// The same when its drives have run so far [m], its shoes have these frames in that of the chassis and its
-    /// flippers are turned so far over it [rad], counter-clockwise: the start, a step, a sample of a trace.
+    /// The same for drives at these positions [m], shoes with these frames in that of the chassis, and flippers
+    /// at these angles [rad] relative to it, counter-clockwise: at the start, in a step, at a sample of a trace.
     pub(crate) fn set_running(
         &self,
         running: &mut Running,
@@ -185,7 +185,7 @@ impl Model {
             // Shoes and arms: at most a corner beyond the hull that they travel round.
             _ if part.mount != Mount::Chassis => 0.0,
             Shape::Polygon { corners } => corners.iter().map(from_center).fold(0.0, f64::max),
-            // Never beyond the tips of the belt's hull.
+            // Never beyond the circles of the belt's hull.
             Shape::Grouser(_) => 0.0,
             _ => part
                 .discs()

@@ -1,4 +1,4 @@
-//! What carries a part.
+//! The carriers of parts.
 
 /// A body of the robot that carries parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

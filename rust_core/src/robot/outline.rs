@@ -1,4 +1,4 @@
-//! The bodies of a robot as pictures have them: the outline of each, what carries it and what turns it.
+//! The bodies of a robot for pictures: the outline of each, what carries it and what turns it.
 
 use std::f64::consts::TAU;
 
@@ -10,49 +10,49 @@ use crate::scenario::End;
 const CIRCLE: u32 = 180;
 /// Points of one root arc between two grousers.
 const ARC_POINTS: usize = 12;
-/// [rad] Turn between two points of a belt.
+/// [rad] Angle between two points on the arc of a belt.
 const BELT_TURN: f64 = 0.05;
 
 /// A body with its outline.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Index of the part that it is; none for the wheels within a belt or a guide, which meet nothing.
+    /// Index of its part; none for the wheels inside a belt or a guide, which never touch the ground.
     pub part: Option<usize>,
-    /// What it stands for.
+    /// What it represents.
     pub kind: BodyKind,
-    /// Index of the lane of the ground that its track, or the belly, meets.
+    /// Index of the lane under its track, or under the belly.
     pub lane: usize,
-    /// What carries it.
+    /// Its carrier.
     pub mount: Mount,
-    /// [m] Radius, where it is a circle.
+    /// [m] Radius, if it is a circle.
     pub radius: Option<f64>,
     /// [m] Corners in its own frame, counter-clockwise.
     pub outline: Vec<Vector>,
     turning: Turning,
 }
 
-/// How a body moves over what carries it.
+/// How a body moves relative to its carrier.
 #[derive(Clone, Copy, Debug)]
 enum Turning {
-    /// As the part of its own that meets the ground.
+    /// Like its part, which has this index.
     AsPart(usize),
     /// About its centre, with the belt or chain that runs round it.
     With { drive: usize, disc: Disc },
-    /// With the pins of the chain of a number.
+    /// With the pins of the chain with this index.
     Sprocket(usize),
 }
 
-/// What a belt carries along, all the way round.
+/// The path of a belt, all the way round.
 #[derive(Clone, Debug)]
 pub struct Circuit {
-    /// [m] Ways along the belt; between them it is straight, or so little bent that poses may be interpolated.
+    /// [m] Distances along the belt; between two of them it is straight enough to interpolate poses.
     pub ways: Vec<f64>,
-    /// [m, m, rad] Poses there in the frame of what carries the belt; the last is the first, one turn on.
+    /// [m, m, rad] Poses there in the frame of the belt's carrier; the last is the first after a full turn.
     pub poses: Vec<[f64; 3]>,
 }
 
 impl Model {
-    /// The bodies of all tracks and the belly: the parts in their order, then the wheels within belts and guides.
+    /// The bodies of all tracks and the belly: the parts in order, then the wheels inside belts and guides.
     pub fn outlines(&self) -> Vec<Body> {
         let parts = self.parts.iter().enumerate();
         let mut bodies: Vec<Body> = parts.map(|(i, part)| self.outline(i, part)).collect();
@@ -86,7 +86,7 @@ impl Model {
         body
     }
 
-    /// The sprocket of a chain, or a wheel that its plates turn.
+    /// Sets up the sprocket of a chain, or a wheel turned by its plates.
     fn wheel_in_chain(&self, body: &mut Body, disc: Disc) {
         let chain = &self.chains[body.lane];
         if let (BodyKind::Sprocket, Some(sprocket)) = (body.kind, &chain.sprocket) {
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// The two wheels that a belt, or a chain on a guide, runs round.
+    /// The two wheels inside a belt, or inside a chain on a guide.
     fn within(&self, part: &Part) -> Vec<Body> {
         let drive = match part.kind {
             BodyKind::Belt => part.drive,
@@ -109,7 +109,7 @@ impl Model {
         let (Shape::Hull { discs, .. }, Some(drive)) = (&part.shape, drive) else {
             return Vec::new();
         };
-        // A belt is driven at the rear of the robot, that of an arm at its pivot.
+        // A belt is driven at the rear of the robot, or at the pivot of its arm.
         let driven = match part.mount {
             Mount::Flipper(k) if self.flippers[k].end == End::Rear => discs.len() - 1,
             _ => 0,
@@ -143,7 +143,7 @@ impl Body {
         self.outline = (0..CIRCLE).map(corner).collect();
     }
 
-    /// Origin [m] and angle [rad] of its frame in that of its mount; the angle counts full turns.
+    /// Origin [m] and angle [rad] of its frame in that of its mount; full turns count.
     pub(crate) fn place(&self, model: &Model, running: &Running) -> (Vector, f64) {
         match self.turning {
             Turning::AsPart(index) => {
@@ -164,14 +164,14 @@ impl Body {
         }
     }
 
-    /// [m] How far its surface has run over its mount.
+    /// [m] Travel of its surface relative to its mount.
     pub(crate) fn run(&self, model: &Model, running: &Running) -> f64 {
         self.part.map_or(0.0, |part| model.parts[part].run(running))
     }
 }
 
 impl Part {
-    /// What it carries along, if it is a belt.
+    /// Its path, if it is a belt.
     pub fn circuit(&self) -> Option<Circuit> {
         let (Shape::Hull { discs, .. }, BodyKind::Belt) = (&self.shape, self.kind) else {
             return None;

@@ -1,26 +1,26 @@
-//! A part of the robot: its shape, what carries it, where it is, how its drive moves it.
+//! A part of the robot: its shape, its carrier, its position, and how its drive moves it.
 
 use super::{BodyKind, Mount, Running};
 use crate::geometry::{Disc, Gear, Grouser, Motion, Pose, Rotation, Vector};
 
-/// A shape on a body of the robot that meets the ground.
+/// A shape on a body of the robot that can meet the ground.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// What it stands for.
+    /// What it represents.
     pub kind: BodyKind,
-    /// Its form in the frame of its mount.
+    /// Its shape in the frame of its mount.
     pub shape: Shape,
     /// The drive that moves its surface.
     pub drive: Option<usize>,
-    /// Friction of its own; the smaller of this and the ground's counts.
+    /// Its own friction; the smaller of this and that of the ground counts.
     pub friction_limit: f64,
-    /// Index of the lane of the ground that it meets.
+    /// Index of the lane under it.
     pub lane: usize,
     /// The body that it is fixed to.
     pub mount: Mount,
 }
 
-/// Forms in the chassis frame.
+/// Shapes in the frame of their mount.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A disc.
@@ -37,7 +37,7 @@ pub enum Shape {
         /// [m] Height of the grousers that travel along it.
         grouser_height: f64,
     },
-    /// A grouser that a belt carries along.
+    /// A grouser on a belt.
     Grouser(Grouser),
     /// A wheel with grousers that turns with its drive.
     Gear {
@@ -54,7 +54,7 @@ pub enum Shape {
 }
 
 impl Part {
-    /// Discs whose hull it fills: circumscribed and root circle of each; none for a polygon.
+    /// Circumscribed and root circle of each disc whose hull it fills; none for a polygon.
     pub(crate) fn discs(&self) -> impl Iterator<Item = (Disc, Disc)> {
         let round = |center, radius| {
             let disc = Disc { center, radius };
@@ -82,7 +82,7 @@ impl Part {
         discs.into_iter()
     }
 
-    /// A disc round it in its own frame: centre and radius [m].
+    /// A disc that contains it, in its own frame: centre and radius [m].
     pub(crate) fn bound(&self) -> (Vector, f64) {
         let corners: Vec<Disc> = match &self.shape {
             Shape::Disc { radius, .. } => return (Vector::ZERO, *radius),
@@ -97,12 +97,12 @@ impl Part {
         (middle, corners.iter().map(reach).fold(0.0, f64::max))
     }
 
-    /// [m] How far its surface has run over its mount.
+    /// [m] Travel of its surface relative to its mount.
     pub(crate) fn run(&self, running: &Running) -> f64 {
         self.drive.map_or(0.0, |k| running.run(self.mount, k))
     }
 
-    /// [rad] How far it has turned over its mount when its surface has run so far [m]; it counts full turns.
+    /// [rad] Its rotation relative to its mount when its surface has run this far [m]; full turns count.
     pub(crate) fn turn(&self, run: f64) -> f64 {
         match &self.shape {
             Shape::Disc { radius, .. } => -run / radius,
@@ -112,7 +112,7 @@ impl Part {
         }
     }
 
-    /// Its own frame in that of its mount; that of a disc does not turn, which looks the same.
+    /// Its own frame in that of its mount; that of a disc does not turn, which makes no visible difference.
     pub(crate) fn place(&self, running: &Running) -> Pose {
         let run = self.run(running);
         match &self.shape {
@@ -123,8 +123,8 @@ impl Part {
         }
     }
 
-    /// How its drive moves its shape over the chassis when the surface has run so far [m], the mean over as
-    /// much as `reach` [m] before and behind. A surface that only runs along itself moves no shape.
+    /// How its drive moves its shape relative to its mount when the surface has run by `run` [m], as a mean over
+    /// `reach` [m] in both directions. A surface that only moves tangentially does not move the shape.
     pub(crate) fn motion(&self, run: f64, reach: f64) -> Motion {
         match &self.shape {
             Shape::Gear { center, gear } if self.drive.is_some() => Motion {
@@ -137,7 +137,7 @@ impl Part {
         }
     }
 
-    /// Whether its shape moves over the chassis at all.
+    /// Whether its shape moves relative to its mount at all.
     pub(crate) fn is_carried(&self) -> bool {
         matches!(self.shape, Shape::Gear { .. } | Shape::Grouser(_)) || self.mount.shoe().is_some()
     }

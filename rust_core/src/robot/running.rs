@@ -1,16 +1,16 @@
-//! How far what moves over the chassis has moved, and so where every part is.
+//! The positions of everything that moves relative to the chassis, and so the pose of every part.
 
 use super::{Mount, Mounted};
 use crate::geometry::Pose;
 
-/// How far what moves over the chassis has moved.
+/// The positions of everything that moves relative to the chassis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Running {
-    /// [m] How far the surface of each drive has run.
+    /// [m] Travel of the surface of each drive.
     pub drives: Vec<f64>,
     /// Frames of the shoes in that of the chassis.
     pub shoes: Vec<Pose>,
-    /// Places of the flippers.
+    /// Poses of the flippers.
     pub flippers: Vec<Mounted>,
 }
 
@@ -24,7 +24,7 @@ impl Running {
         }
     }
 
-    /// [m] How far the surface of a drive has run over a mount.
+    /// [m] Travel of a drive's surface relative to a mount.
     pub(crate) fn run(&self, mount: Mount, drive: usize) -> f64 {
         let over_chassis = self.drives[drive];
         match mount {

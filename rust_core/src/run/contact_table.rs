@@ -1,4 +1,4 @@
-//! Contacts of a run as columns.
+//! The contacts of a run as columns.
 
 use std::collections::TryReserveError;
 
@@ -39,7 +39,7 @@ impl Simulation {
 }
 
 impl ContactTable {
-    /// Every column.
+    /// All columns.
     fn columns(&mut self) -> ([&mut Vec<f64>; 9], [&mut Vec<i64>; 6]) {
         let numbers = [
             &mut self.time,
@@ -63,21 +63,21 @@ impl ContactTable {
         (numbers, codes)
     }
 
-    /// Room in every column for so many rows in all.
+    /// Reserves room in every column for a total number of rows.
     pub(super) fn reserve(&mut self, rows: usize) -> Result<(), TryReserveError> {
         let (numbers, codes) = self.columns();
         numbers.into_iter().try_for_each(|c| reserve(c, rows))?;
         codes.into_iter().try_for_each(|c| reserve(c, rows))
     }
 
-    /// Gives back the room that no row takes.
+    /// Releases room that no row uses.
     pub(super) fn shrink(&mut self) {
         let (numbers, codes) = self.columns();
         numbers.into_iter().for_each(Vec::shrink_to_fit);
         codes.into_iter().for_each(Vec::shrink_to_fit);
     }
 
-    /// Writes the readings of an interval that ends now.
+    /// Appends the readings of the interval that ends now.
     pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
         for r in readings.drain() {
             self.time.push(simulation.time());

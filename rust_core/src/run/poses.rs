@@ -1,4 +1,4 @@
-//! Where every body of a robot was, at every sample of a run: what pictures draw, from the trace.
+//! Poses of all bodies of a robot at every sample of a run, computed from the trace for pictures.
 
 #[cfg(test)]
 mod tests;
@@ -12,22 +12,22 @@ use crate::limits::memory::ask;
 use crate::robot::{Body, Model, Mount, Running};
 use crate::scenario::ScenarioError;
 
-/// Places at every sample of a run; angles count full turns.
+/// Poses at every sample of a run; in angles full turns count.
 #[derive(Clone, Debug, Default)]
 pub struct Poses {
     /// Number of samples.
     pub samples: usize,
-    /// Number of bodies, those of [`Model::outlines`].
+    /// Number of bodies, as in [`Model::outlines`].
     pub count: usize,
     /// Number of ends with flippers.
     pub flippers: usize,
-    /// [m, m, rad] Of each body.
+    /// [m, m, rad] Pose of each body.
     pub bodies: Vec<f64>,
-    /// [m, m, rad] Of the flippers at each end: midway between their axles.
+    /// [m, m, rad] Pose of the flippers at each end: the point midway between their axles.
     pub arms: Vec<f64>,
-    /// [m] How far the surface of each body has run over what carries it.
+    /// [m] Travel of each body's surface relative to its carrier.
     pub travels: Vec<f64>,
-    /// [m, m] Centre of mass of all that moves.
+    /// [m, m] Centre of mass of the whole robot.
     pub centers_of_mass: Vec<f64>,
 }
 
@@ -41,7 +41,7 @@ struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// Where all that moves over the chassis was.
+    /// Sets the positions of everything that moves relative to the chassis.
     fn set(&self, model: &Model, running: &mut Running) {
         let back = self.chassis.inverse();
         let shoe = |[x, y, angle]: &[f64; 3]| back * Pose::new(Vector::new(*x, *y), *angle);
@@ -50,12 +50,12 @@ impl Sample<'_> {
         model.set_running(running, drives, shoes, turns);
     }
 
-    /// [rad] How far a flipper was turned over the chassis, counter-clockwise.
+    /// [rad] Angle of a flipper relative to the chassis, counter-clockwise.
     fn turn(&self, model: &Model, flipper: usize) -> f64 {
         model.flippers[flipper].sign() * self.flippers[flipper]
     }
 
-    /// [rad] Angle of a mount over ground.
+    /// [rad] Angle of a mount relative to the ground.
     fn angle_of(&self, model: &Model, mount: Mount) -> f64 {
         match mount {
             Mount::Chassis => self.angle,
@@ -65,11 +65,11 @@ impl Sample<'_> {
     }
 }
 
-/// Where the bodies of a scenario's robot were, from the columns of its trace: positions, chassis angles, drive
+/// Poses of the bodies of a scenario's robot, from the columns of its trace: positions, chassis angles, drive
 /// positions, shoe poses, flipper angles.
 ///
 /// # Errors
-/// Columns that are not those of the scenario; more samples than fit in the memory; the caller's wish.
+/// Columns that do not belong to the scenario; more samples than fit into memory; cancellation by the caller.
 pub fn poses(checked: &Checked, trace: &Trace, cancel: &Cancel) -> Result<Poses, Error> {
     let model = checked.model();
     let bodies = model.outlines();
@@ -127,7 +127,7 @@ impl Poses {
 }
 
 impl Columns {
-    /// Whether the columns that poses are made of have the entries of this robot.
+    /// Checks that the columns needed for poses have the entries of this robot.
     fn check(self, trace: &Trace) -> Result<(), ScenarioError> {
         let samples = trace.chassis_angle.len();
         for (name, column, entries) in [

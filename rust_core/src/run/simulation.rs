@@ -1,4 +1,4 @@
-//! One robot on one ground, step by step.
+//! A simulation of one robot on one ground, step by step.
 
 mod branch;
 mod command;
@@ -26,7 +26,7 @@ use crate::robot::{BodyKind, Model, Running, start_position};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Side};
 
-/// A simulation under way: what was built from the scenario, and the state.
+/// A simulation: what was built from the scenario, and the current state.
 pub struct Simulation {
     scenario: Scenario,
     ground: Arc<Ground>,
@@ -40,21 +40,21 @@ pub struct Simulation {
     set_point: f64,
     dents: Dents,
     contacts: Vec<Contact>,
-    /// Where the moving parts are when contacts are looked for.
+    /// Positions of the moving parts for the search for contacts.
     then: Running,
-    /// [m] Farthest point of the robot from its centre of mass.
+    /// [m] Distance of the robot's farthest point from its centre of mass.
     reach: f64,
 }
 
 impl Simulation {
-    /// Places the robot before the first edge, at rest.
+    /// Places the robot in front of the first edge, at rest.
     pub fn new(checked: &Checked) -> Self {
         let ground = Arc::clone(checked.ground());
         let model = checked.model().clone();
         Self::at_rest(checked.scenario(), ground, model, checked.position())
     }
 
-    /// The same on a ground of the caller's own in place of the scenario's.
+    /// The same on a ground given by the caller in place of the scenario's.
     ///
     /// # Errors
     /// [`Error::Scenario`] if the robot does not fit on it.
@@ -70,7 +70,7 @@ impl Simulation {
         Self::of(scenario, ground, model, state)
     }
 
-    /// A robot in a state on a ground.
+    /// A robot in a given state on a ground.
     fn of(scenario: &Scenario, ground: Arc<Ground>, model: Model, state: State) -> Self {
         let method = scenario.solver.contact;
         let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
@@ -103,7 +103,7 @@ impl Simulation {
     /// Advances by one time step.
     ///
     /// # Errors
-    /// [`Error::Simulation`] if the state became non-finite; the simulation cannot go on.
+    /// [`Error::Simulation`] if the state has become non-finite; the simulation cannot go on then.
     pub fn step(&mut self) -> Result<(), Error> {
         self.step += 1;
         self.command();
@@ -114,15 +114,15 @@ impl Simulation {
     }
 
     fn find_contacts(&mut self) {
-        // A fast body sees a contact one step before it closes.
+        // A fast body finds a contact one step before it closes.
         let speed = self.state.fastest(self.reach);
         let prediction = self
             .scenario
             .solver
             .prediction_distance
             .max(2.0 * speed * self.time_step());
-        // In the middle of the step: normals that lag behind by half a step would be wrong by as
-        // much as a wheel turns round an edge meanwhile.
+        // In the middle of the step: with normals from its beginning, the error would be as large as the angle that
+        // a wheel turns round an edge in half a step.
         let (half, model) = (0.5 * self.time_step(), self.dynamics.model());
         let middle = self.state.pose_after(half, model);
         self.state.running_after(half, model, &mut self.then);
@@ -133,7 +133,7 @@ impl Simulation {
         self.dents.forgive(&mut self.contacts, &last);
     }
 
-    /// Contacts of this very instant.
+    /// Contacts at the current instant.
     fn contacts_now(&mut self) -> Vec<Contact> {
         let mut contacts = Vec::new();
         let pose = self.state.pose(self.dynamics.model());
@@ -143,7 +143,7 @@ impl Simulation {
         contacts
     }
 
-    /// Where the moving parts are now.
+    /// Current positions of the moving parts.
     fn running(&self) -> Running {
         let mut running = Running::default();
         self.state
@@ -151,7 +151,7 @@ impl Simulation {
         running
     }
 
-    /// The robot, where its moving parts are now, and its chassis.
+    /// The robot, the current positions of its moving parts, and the pose of its chassis.
     #[cfg(test)]
     pub(crate) fn placed(&self) -> (&Model, Running, Pose) {
         let model = self.dynamics.model();
@@ -172,7 +172,7 @@ impl Simulation {
         if !model.flippers.is_empty() {
             self.state.running_after(0.0, model, &mut self.then);
         }
-        // First: of the outcomes of one step, a chain that has come off counts before all others.
+        // First, because a chain that has come off takes precedence over all other outcomes of the same step.
         if !model.chains.is_empty() {
             self.monitor.observe_chains(self.dynamics.chain_reading());
         }
@@ -188,7 +188,7 @@ impl Simulation {
         );
     }
 
-    /// The state of this instant.
+    /// The current state.
     pub fn reading(&self) -> Reading {
         let pose = self.state.pose(self.dynamics.model());
         let model = self.dynamics.model();
@@ -206,20 +206,20 @@ impl Simulation {
         }
     }
 
-    /// [rad] Angles of the flippers over the chassis, the front first, upwards > 0.
+    /// [rad] Angles of the flippers relative to the chassis, the front first, upwards > 0.
     pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter().enumerate();
         flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
     }
 
-    /// [rad/s] Their rates.
+    /// [rad/s] Rates of these angles.
     pub fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter();
         let turns = flippers.zip(&self.state.flippers);
         turns.map(|(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
     }
 
-    /// [N m] Torques of their motors, the means over the last step, upwards > 0.
+    /// [N m] Torques of the flipper motors, means over the last step, upwards > 0.
     pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
         let flippers = self.dynamics.model().flippers.iter();
         let turns = flippers.zip(&self.state.flippers);
@@ -231,7 +231,7 @@ impl Simulation {
         self.step as f64 * self.time_step()
     }
 
-    /// [s] Time of one step.
+    /// [s] Length of one step.
     pub fn time_step(&self) -> f64 {
         self.scenario.solver.time_step
     }
@@ -241,7 +241,7 @@ impl Simulation {
         self.step
     }
 
-    /// What is simulated.
+    /// The scenario.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
@@ -261,14 +261,14 @@ impl Simulation {
         self.is_over().then(|| self.outcome_now())
     }
 
-    /// The outcome if the run ended here.
+    /// The outcome if the run ended now.
     pub fn outcome_now(&self) -> Outcome {
         let ended = self.monitor.ended_as();
         let stopped = || self.diagnosis().map(|d| d.outcome);
         ended.or_else(stopped).unwrap_or(Outcome::TimedOut)
     }
 
-    /// Why the robot has stopped, if it has.
+    /// The diagnosis, if the robot is stopped.
     pub fn diagnosis(&self) -> Option<Diagnosis> {
         let since = self.monitor.stop_since()?;
         if self.monitor.ended_as().is_some() {
@@ -296,7 +296,7 @@ impl Simulation {
         Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
     }
 
-    /// What of the ground is inside the envelope of each track now, from the left.
+    /// The current intrusions into the envelope of each track, from the left.
     pub fn intrusions(&self) -> Vec<Intrusion> {
         let pose = self.state.pose(self.dynamics.model());
         let running = self.running();
@@ -312,7 +312,7 @@ impl Simulation {
         self.monitor.events(self.time())
     }
 
-    /// What the chains of shoes did in the last step; nothing if there are none.
+    /// State of the chains of shoes in the last step; zero if there are none.
     pub fn chain(&self) -> ChainReading {
         self.dynamics.chain_reading()
     }
@@ -327,13 +327,13 @@ impl Simulation {
         &self.state.shoes
     }
 
-    /// Points of the ground, and parts of the robot.
+    /// Number of points of the ground, and of parts of the robot.
     pub fn size(&self) -> (usize, usize) {
         let points = self.ground.lanes.iter().map(|lane| lane.points.len());
         (points.sum(), self.dynamics.model().parts.len())
     }
 
-    /// What of it is recorded.
+    /// The columns that are recorded.
     pub(crate) fn columns(&self) -> Columns {
         Columns::of(self.dynamics.model())
     }
@@ -348,7 +348,7 @@ impl Simulation {
         self.state.track_speed(self.dynamics.model(), drive)
     }
 
-    /// [N] Force of all motors at the surface, the mean over the last step.
+    /// [N] Force of all motors at the surface, mean over the last step.
     pub fn drive_force(&self) -> f64 {
         self.state.drives.iter().map(|drive| drive.force).sum()
     }
@@ -366,7 +366,7 @@ impl Simulation {
         self.dynamics.loaded()
     }
 
-    /// Lane that a part meets.
+    /// The lane of a part.
     pub(crate) fn side(&self, part: usize) -> Side {
         let part = &self.dynamics.model().parts[part];
         self.ground.lanes[part.lane].side

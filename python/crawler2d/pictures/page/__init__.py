@@ -1,4 +1,4 @@
-"""A run to look at: one HTML page that replays it, alone or inside a notebook."""
+"""One HTML page that replays a run, on its own or inside a notebook."""
 
 from crawler2d.pictures.page.notebook import embedded
 from crawler2d.pictures.page.replay import replay_page

@@ -5,8 +5,8 @@ class Camera {
     [this.left, this.right, this.bottom, this.top] = extent;
     this.robotLength = robotLength;
     this.width = this.height = 1;
-    this.scale = 1; // pixels a metre
-    this.x = this.y = 0; // what is in the middle, from the robot where it is followed
+    this.scale = 1; // pixels per metre
+    this.x = this.y = 0; // centre of the view; relative to the robot while it is followed
     this.follows = this.right - this.left > 5 * robotLength;
     this.touched = false;
   }
@@ -21,7 +21,7 @@ class Camera {
     this.touched = false;
     if (this.follows) {
       this.scale = Math.min(this.width / (2.4 * this.robotLength), this.height / (1.3 * this.robotLength));
-      // More of what is ahead than behind, more sky than ground.
+      // More room ahead than behind, more sky than ground.
       this.x = 0.15 * this.robotLength;
       this.y = 0.12 * this.robotLength;
       return;
@@ -44,7 +44,7 @@ class Camera {
     }
   }
 
-  // Where the middle is, with the robot where it is.
+  // Sets the centre of the view for the current position of the robot.
   look(robot) {
     this.middleX = this.x + (this.follows ? robot.x : 0);
     this.middleY = this.y + (this.follows ? robot.y : 0);
@@ -63,7 +63,7 @@ class Camera {
     this.touched = true;
   }
 
-  // Zooms so that what is under a pixel stays there.
+  // Zooms about a pixel: the point under it stays there.
   zoom(factor, px = this.width / 2, py = this.height / 2) {
     const widest = 4 * Math.max(this.right - this.left, 2 * this.robotLength);
     const least = this.width / widest;

@@ -1,4 +1,4 @@
-// The chassis, or the flippers at one end: the bodies that it carries, in its own frame, in metres.
+// The chassis, or the flippers at one end, with the bodies that it carries, in metres in its own frame.
 
 const HULLS = ["belt", "skid", "guide"];
 const SHOE = "shoe";
@@ -14,7 +14,7 @@ class Carrier {
     this.shoes = are((body) => body.kind === SHOE);
     const round = are((body) => ![...HULLS, SHOE, BELLY].includes(body.kind));
     this.wheels = round.filter((wheel) => wheel.body >= 0);
-    this.within = round.filter((wheel) => wheel.body < 0); // a belt runs round them
+    this.within = round.filter((wheel) => wheel.body < 0); // inside a belt
     this.circuit = data.circuit && new Circuit(data.circuit, outlines);
     for (const name of ["envelope", "inner", "root"]) {
       if (!data[name]) continue;
@@ -24,7 +24,7 @@ class Carrier {
     this.reach = this.envelope ? reachOf(this.envelope.points) : 0;
   }
 
-  // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
+  // `pixel` is the size of a pixel in metres; `jammed` lists the wheels on either side of an intruding edge.
   draw(ctx, colors, pixel, moment, jammed) {
     const each = (bodies, draw) => bodies.forEach((body) => {
       ctx.save();
@@ -45,7 +45,7 @@ class Carrier {
     const travel = this.circuit && moment.value(this.circuit.travel);
     if (this.circuit) this.circuit.drawMarks(ctx, colors, pixel, travel, this.within[0].reach);
     each(this.hulls, ({ kind, path }) => {
-      // What shoes slide on is no more than a hint behind them.
+      // What shoes slide on is drawn faintly behind them.
       const isHint = kind === "guide";
       ctx.strokeStyle = isHint ? colors.chassis : colors.track;
       ctx.lineWidth = (isHint ? 1 : 2) * pixel;
@@ -53,11 +53,11 @@ class Carrier {
     });
     if (this.circuit) this.circuit.drawGrousers(ctx, colors, travel);
     each(this.wheels, (wheel) => {
-      // Without an envelope the wheels are in a chain: the edge is between its shoes.
+      // A carrier without an envelope has a chain: the edge is between shoes, not between wheels.
       const isJammed = this.envelope && jammed.includes(wheel.body);
       wheel.drawRound(ctx, isJammed ? colors.intrusion : colors.track, colors.trackFill, pixel);
     });
-    // So wide that a thin plate is seen from afar.
+    // Stroked as well, so that a thin plate stays visible from afar.
     each(this.shoes, ({ path }) => fillAndStroke(ctx, path, colors.track, colors.track, 0.8 * pixel));
     each(this.shoes, ({ pin, pin_radius: radius }) => {
       ctx.fillStyle = colors.halo;
@@ -67,7 +67,7 @@ class Carrier {
     });
   }
 
-  // From axle to axle.
+  // The line between the two axles.
   drawBar(ctx, colors, pixel) {
     ctx.strokeStyle = colors.chassis;
     ctx.lineWidth = 1.3 * pixel;
@@ -78,21 +78,21 @@ class Carrier {
   }
 }
 
-// Wheels within a belt are drawn smaller, so that the belt is seen.
+// Wheels inside a belt are drawn smaller, so that the belt stays visible.
 const WITHIN = 0.8;
 
 class Body {
   constructor(data, outlines) {
     Object.assign(this, data);
     this.path = new Path2D();
-    this.reach = 0; // [m] of what is farthest from the middle
+    this.reach = 0; // [m] distance of its farthest point from its origin
     for (const index of data.outlines) {
       this.path.addPath(outlines[index].path);
       this.reach = Math.max(this.reach, outlines[index].reach);
     }
   }
 
-  // The spoke shows how far it has turned.
+  // The spoke shows how far the wheel has turned.
   drawRound(ctx, color, fill, pixel) {
     fillAndStroke(ctx, this.path, fill, color, 1.4 * pixel);
     ctx.fillStyle = color;
@@ -106,7 +106,7 @@ class Body {
   }
 }
 
-// What a belt carries along: at any way along it there is a pose.
+// The path of a belt: the pose of anything on it as a function of the distance along it.
 class Circuit {
   constructor(data, outlines) {
     Object.assign(this, data);
@@ -115,7 +115,7 @@ class Circuit {
     this.marks = 6 * Math.max(2, Math.min(12, Math.round(data.length / data.pitch / 6)));
   }
 
-  // The last pose is the first, a turn on.
+  // The last pose is the first one after a full turn.
   pose(way) {
     const { ways, length } = this;
     const there = way - length * Math.floor(way / length);
@@ -130,7 +130,7 @@ class Circuit {
     return { x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle) };
   }
 
-  // Inwards of the belt, every sixth longer.
+  // Marks on the inside of the belt; every sixth is longer.
   drawMarks(ctx, colors, pixel, travel, radius) {
     for (let i = 0; i < this.marks; i++) {
       const isLong = i % 6 === 0;

@@ -1,6 +1,6 @@
-// What was recorded: frames, contacts and events, and the state at an instant between two frames.
+// The recorded run: frames, contacts and events, and the state at an instant between two frames.
 
-// Little-endian as Python wrote it, and as every machine that shows pages reads it.
+// Little-endian, as Python wrote it; every machine that shows the page is little-endian, too.
 function unpacked(column) {
   const bytes = Uint8Array.from(atob(column.data), (letter) => letter.charCodeAt(0));
   if (column.bits === 32) return new Float32Array(bytes.buffer);
@@ -8,7 +8,7 @@ function unpacked(column) {
   return Float64Array.from(counts, (count) => column.start + column.step * count);
 }
 
-// A closed line of points, one after the other.
+// A path through points, closed unless told otherwise.
 function outlineOf(points, close = true) {
   const path = new Path2D();
   for (let i = 0; i < points.length; i += 2) path.lineTo(points[i], points[i + 1]);
@@ -16,7 +16,7 @@ function outlineOf(points, close = true) {
   return path;
 }
 
-// [m] Distance of the farthest of some points.
+// [m] Distance of the farthest of the points from the origin.
 function reachOf(points) {
   let reach = 0;
   for (let i = 0; i < points.length; i += 2) {
@@ -46,7 +46,7 @@ class Recording {
     this.end = this.time[this.count - 1];
   }
 
-  // The frame at or after an instant: its contacts are means over the interval that ends with it.
+  // The frame at or after an instant; its contacts are means over the interval that ends with it.
   frameAfter(time) {
     let low = 0;
     let high = this.count - 1;
@@ -64,19 +64,19 @@ class Recording {
     return earlier ? after - 1 : after;
   }
 
-  // The pose at an instant, linear between frames.
+  // The pose at an instant, interpolated linearly between frames.
   at(time) {
     const frame = this.frameAfter(time);
     const before = Math.max(frame - 1, 0);
     const span = this.time[frame] - this.time[before];
     const share = span > 0 ? Math.min(1, Math.max(0, (time - this.time[before]) / span)) : 1;
     const mixed = (values) => values[before] + share * (values[frame] - values[before]);
-    // What does not change is a number.
+    // A quantity that does not change is stored as a plain number.
     const value = (entry) => (entry.column === undefined ? entry : mixed(this.columns[entry.column]));
     return {
       time, frame, value,
       x: mixed(this.x), y: mixed(this.y), angle: mixed(this.angle), speed: mixed(this.speed),
-      // Of a carrier in the chassis frame, or of a body in that of its carrier.
+      // The pose of a carrier in the chassis frame, or of a body in the frame of its carrier.
       pose: ({ x, y, angle }) => ({ x: value(x), y: value(y), angle: value(angle) }),
     };
   }
@@ -86,7 +86,7 @@ class Recording {
     for (let i = this.firstContact[frame]; i < this.firstContact[frame + 1]; i++) {
       const nx = Math.cos(c.normal[i]);
       const ny = Math.sin(c.normal[i]);
-      // Friction and surface speed count along the normal turned by -90 degrees.
+      // Friction and surface speed are positive along the normal turned by -90 degrees.
       yield {
         x: c.x[i], y: c.y[i], nx, ny,
         fx: c.normal_force[i] * nx + c.friction_force[i] * ny,

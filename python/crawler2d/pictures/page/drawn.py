@@ -1,4 +1,4 @@
-"""What a page draws of a robot: outlines once, poses at every frame, as short as they can be."""
+"""The robot as the page gets it: each outline once, and the poses at every frame, packed."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ if TYPE_CHECKING:
 __all__ = ["drawn"]
 
 _SHAPE = 5e-6
-"""[m] Resolution of outlines, ..."""
+"""[m] Resolution of outlines."""
 _PLACE = 5e-5
-"""... of places on the chassis or a flipper: 16 bits do for a robot of three metres, ..."""
+"""[m] Resolution of positions on the chassis or a flipper; 16 bits suffice up to three metres."""
 _RIM = 1e-4
-"""... and of the way of what is farthest from the middle of a body that turns."""
+"""[m] Resolution of a rotation, as the movement of a body's farthest point."""
 _TURN = 1e-3
-"""[rad] Of angles along a belt."""
+"""[rad] Resolution of angles along a belt."""
 
 
 def drawn(run: Record, scene: Scene, kept: NDArray[np.int64]) -> dict[str, Any]:
-    """Collect the carriers of tracks, and all that is drawn on each, at some samples of a run.
+    """Collect the carriers of tracks, and all that is drawn on each, at selected samples of a run.
 
     Returns
     -------
     dict
-        `carriers`: the chassis first, each with its bodies, in its own frame; `columns`: what of
-        their poses changes, and is there `{"column": index}` in place of a number; `outlines`:
-        those of the bodies, there by their indices; `mass_center`: [m] in the chassis frame.
+        `carriers`: the chassis first, each with its bodies, in its own frame; `columns`: values
+        of poses that change, referred to as `{"column": index}`; `outlines`: those of the bodies,
+        referred to by index; `mass_center`: [m] in the chassis frame.
     """
     return _Drawing(run, scene, kept).whole()
 
 
 class _Drawing:
-    """A robot at some samples; what several bodies share is in it once."""
+    """A robot at selected samples; what several bodies share is stored once."""
 
     def __init__(self, run: Record, scene: Scene, kept: NDArray[np.int64]) -> None:
         self.robot, self.criteria = run.scenario.robot, run.scenario.criteria
@@ -76,7 +76,7 @@ class _Drawing:
         }
 
     def _bodies(self, carrier: Carrier) -> list[dict[str, Any]]:
-        """Collect all but the grousers of a belt; the pieces of a shoe are one body."""
+        """Collect all bodies but the grousers of a belt; the pieces of a shoe are one body."""
         bodies: list[dict[str, Any]] = []
         shoes: dict[int, dict[str, Any]] = {}
         riders = set() if carrier.circuit is None else set(carrier.circuit.grousers.tolist())
@@ -97,7 +97,7 @@ class _Drawing:
             }
             if kinds[row] == BodyKind.SHOE:
                 shoes[shoe] = body
-                # Plates reach from pin to pin, and are as thick inwards of these as outwards.
+                # A plate reaches from pin to pin and is as thick inwards of the pins as outwards.
                 x, y = corners.min(axis=0).tolist()
                 body |= {"pin": x, "pin_radius": -0.5 * y}
             bodies.append(body)
@@ -119,7 +119,7 @@ class _Drawing:
         }
 
     def _belts(self, carrier: Carrier) -> dict[str, Any]:
-        """Collect the taut belts round the wheels of a carrier; nothing gets inside others."""
+        """Collect the envelopes of a carrier; a closed track has none: nothing gets inside."""
         if carrier.closed:
             return {"envelope": None, "inner": None, "root": None}
         depth = max(self.criteria.intrusion_depth, SLIVER)
@@ -131,7 +131,7 @@ class _Drawing:
         }
 
     def _pose(self, poses: NDArray[np.float64], carrier: Carrier, reach: float) -> dict[str, Any]:
-        """[m, m, rad] Of a body that reaches so far [m], over what carries it."""
+        """[m, m, rad] Poses of a body with this reach [m], relative to what carries it."""
         x, y, angle = relative(poses, carrier.poses)[self.kept].T
         turn = _RIM / reach if reach > 0.0 else np.inf
         return {
@@ -145,7 +145,7 @@ class _Drawing:
 
 
 class _Once:
-    """Arrays that are sent once, however often they occur."""
+    """Arrays that are sent only once, however often they occur."""
 
     def __init__(self) -> None:
         self.items: list[dict[str, Any]] = []
@@ -159,7 +159,7 @@ class _Once:
         return index
 
     def number(self, values: NDArray[np.float64], resolution: float) -> float | dict[str, int]:
-        """Take what does not change for a number."""
+        """Replace a column that does not change by a number."""
         if np.ptp(values) <= resolution:
             return float(values[0])
         return {"column": self.index(values, resolution)}

@@ -1,4 +1,4 @@
-// The ground under one track: its surface, its corners, and what of it is inside something.
+// The ground under one track: its surface, its corners, and the pieces of it inside an envelope.
 
 class Lane {
   constructor(data) {
@@ -10,7 +10,7 @@ class Lane {
     }));
   }
 
-  // The ground down to a height [m] or a metre below its lowest point.
+  // The ground as an area, down to a height [m] or to a metre below its lowest point.
   soil(floor) {
     const { profile } = this;
     const path = new Path2D(this.surface);
@@ -22,7 +22,7 @@ class Lane {
     return path;
   }
 
-  // [m] From where to where the surface is inside, along x, about a corner that is; `depth` tells.
+  // [m] Range of x over which the surface about a corner is inside; `depth` gives the depth of a point.
   piece(corner, depth) {
     const at = (i) => ({ x: this.profile[2 * i], y: this.profile[2 * i + 1] });
     const last = this.profile.length / 2 - 1;

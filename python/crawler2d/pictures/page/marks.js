@@ -1,12 +1,12 @@
-// What both pictures are marked with, in pixels: arrows, diamonds, labels, and round numbers.
+// Marks of both pictures, in pixels: arrows, diamonds, labels, and round numbers.
 
-// [px] Length of the arrow of a usual large force and speed, and of the longest that is drawn.
+// [px] Arrow lengths of a typical large force and slip velocity; arrows are clipped at LONGEST times that.
 const FORCE_LENGTH = 110;
 const SPEED_LENGTH = 42;
 const LONGEST = 1.6;
 const FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, Arial, sans-serif";
 
-// The round number at or below: 1, 2 or 5 times a power of ten.
+// The largest of 1, 2 or 5 times a power of ten that is not above the value.
 function nice(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   const first = value / power;
@@ -27,7 +27,7 @@ function diamond(ctx, x, y, size, fill, stroke) {
   ctx.stroke();
 }
 
-// One that is too long is cut, and has two heads. y of a vector points up.
+// An arrow that is too long is clipped and gets a double head. The y component points up.
 function arrow(ctx, x, y, vx, vy, usual, color, halo) {
   const full = Math.hypot(vx, vy);
   if (!(full > 0.02 * usual)) return;

@@ -1,4 +1,4 @@
-"""A run in a notebook: its page in a frame, or its figures."""
+"""A run in a notebook: its page in a frame, or else its metrics."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 __all__ = ["embedded"]
 
-# [px] Header, picture, controls and strip; the figures below are scrolled to.
+# [px] Fits header, picture, controls and time strip; the metrics below need scrolling.
 _FRAME_HEIGHT = 820
 
 
 def embedded(run: Record) -> str:
-    """Show a run in a notebook: the page in a frame, or its figures; never an exception.
+    """Show a run in a notebook: the page in a frame, or else its metrics; never raises.
 
     Returns
     -------
@@ -27,9 +27,9 @@ def embedded(run: Record) -> str:
     """
     try:
         page = replay_page(run)
-    except Exception:  # what a notebook shows must not fail, whatever the run holds
+    except Exception:  # the display of a run must never fail
         return _summary(run)
-    # Scripts alone: the page can reach neither the notebook nor the network.
+    # Only scripts are allowed: the page can reach neither the notebook nor the network.
     return (
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
         f'title="{escaped(heading(run))}" '

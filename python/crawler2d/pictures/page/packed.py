@@ -1,4 +1,4 @@
-"""Arrays as short text: base64 of counts of steps where these are fine enough, else of float32."""
+"""Arrays as short text: base64 of 8 or 16 bit integers if fine enough, else of float32."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ __all__ = ["packed"]
 
 
 def packed(values: ArrayLike, resolution: float) -> dict[str, Any]:
-    """Pack numbers for the page, rows one after the other; `unpacked` of data.js is the way back.
+    """Pack numbers for the page, flattened row by row; `unpacked` in data.js reverses it.
 
     Parameters
     ----------
     values : array_like
-        Numbers; non-finite ones survive.
+        Numbers; non-finite ones are kept.
     resolution : float
-        Widest step that the page may show, in the unit of the values.
+        Largest quantization step that the page may show, in the unit of the values.
 
     Returns
     -------
     dict
-        `bits` of a number and `data`; `start` and `step` where the numbers are counts of steps.
+        `bits` per number and `data`; also `start` and `step` if the numbers are integer multiples.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def packed(values: ArrayLike, resolution: float) -> dict[str, Any]:
     numbers = np.asarray(values, dtype=np.float64).ravel()
     low, high = (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 0.0)
     for bits in (8, 16):
-        step = (high - low) / (2**bits - 1)  # not finite where a number is not
+        step = (high - low) / (2**bits - 1)  # not finite if any number is not
         if step <= resolution:
             counts = np.rint((numbers - low) / step) if step > 0.0 else np.zeros(numbers.size)
             data = _text(counts.astype(f"<u{bits // 8}"))

@@ -1,4 +1,4 @@
-// Mouse and fingers on the side view: drag, wheel, pinch, double click.
+// Mouse and touch on the side view: drag, wheel, pinch, double click.
 
 function watchPointer(canvas, camera, changed, embedded) {
   const fingers = new Map();
@@ -34,7 +34,7 @@ function watchPointer(canvas, camera, changed, embedded) {
     changed();
   });
   canvas.addEventListener("wheel", (event) => {
-    // Inside another page the wheel scrolls that page, until the picture is clicked.
+    // In a page embedded in another one the wheel scrolls the outer page until the picture is clicked.
     if (embedded && document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     const lines = event.deltaMode === 1 ? 16 : 1;

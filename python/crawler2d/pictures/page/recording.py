@@ -1,4 +1,4 @@
-"""From a run to what its page draws: plain data, compact and fit for JSON."""
+"""From a run to the data that its page draws: plain, compact and ready for JSON."""
 
 from __future__ import annotations
 
@@ -20,31 +20,32 @@ if TYPE_CHECKING:
 __all__ = ["MOST_FRAMES", "recording"]
 
 MOST_FRAMES = 3000
-"""Samples that a page holds at most, give or take the last; longer runs are thinned."""
+"""Largest number of samples in a page, give or take the last one; longer runs are thinned."""
 
-# Finer than a pixel at any sensible zoom, wide enough for 16 bits in a usual run.
+# Finer than a pixel at any sensible zoom, coarse enough for 16 bits in a typical run.
 _LENGTH, _ANGLE, _TIME = 1e-5, 1e-4, 1e-4
 _SPEED = 1e-4
-# The same for arrows, as a share of the usual size, which is drawn some 100 pixels long.
+# The same for arrows, as a share of the typical size, which is drawn about 100 pixels long.
 _ARROW = 1e-2
-# Impacts last one sample; arrows as long as theirs would leave all others unreadable.
+# Percentile that sets the scale of arrows: an impact lasts one sample, and at its scale all
+# other arrows would be unreadable.
 _USUAL = 98.0
 
 
 def recording(run: Record, time: float | None = None) -> dict[str, Any]:
-    """Collect what the page of a run draws.
+    """Collect the data that the page of a run draws.
 
     Parameters
     ----------
     run : Run
         A run with history.
     time : float, optional
-        [s] Instant to open at; None takes the end where the run stopped, else the beginning.
+        [s] Instant to open at; None takes the end if the run ended in a stop, else the start.
 
     Returns
     -------
     dict
-        Plain data without non-finite numbers; arrays as of `packed`.
+        Plain data without non-finite numbers; arrays in the form of `packed`.
     """
     count = run.time.size
     every = max(1, math.ceil(count / MOST_FRAMES))
@@ -79,7 +80,7 @@ def _frames(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
 
 
 def _contacts(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
-    """Contacts of the kept samples, as many a frame as `counts` says."""
+    """Collect the contacts of the kept samples; `counts` holds how many each frame has."""
     table = run.contacts
     frames = np.searchsorted(run.time, table["time"])
     rows = np.flatnonzero(np.isin(frames, kept))
@@ -121,7 +122,7 @@ def _events(run: Record, scene: Scene) -> list[dict[str, Any]]:
 
 
 def _ground(scene: Scene) -> dict[str, Any]:
-    """Lanes from the farthest from the viewer, with their edges."""
+    """Collect the lanes with their edges, starting with the one farthest from the viewer."""
     return {
         "lanes": [_lane(*lane, scene.edges) for lane in scene.lanes],
         "goal": _number(scene.goal),
@@ -130,7 +131,7 @@ def _ground(scene: Scene) -> dict[str, Any]:
 
 def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dict[str, Any]:
     on_lane = edges["lane"] == lane
-    # Rounded edges are marked where they are on the ground, not where they would be sharp.
+    # A rounded edge is marked on the ground, not where the sharp corner would be.
     corners = [
         int(np.hypot(profile[:, 0] - x, profile[:, 1] - y).argmin())
         for x, y in zip(edges["x"][on_lane], edges["y"][on_lane], strict=True)
@@ -143,7 +144,7 @@ def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dic
 
 
 def _length(robot: Robot) -> float:
-    """[m] Of what is seen at once: the track with one flipper stretched out."""
+    """[m] Length of robot to fit into the view: the track with one flipper stretched out."""
     outline, flippers = robot.outline, robot.flippers
     beyond = 0.0 if flippers is None else flippers.length + flippers.tip_radius
     radius = max(outline.front_radius, outline.rear_radius)
@@ -152,5 +153,5 @@ def _length(robot: Robot) -> float:
 
 
 def _number(value: float) -> float | None:
-    """Take a number as JSON has it: the others are none."""
+    """Return None for non-finite numbers, which JSON does not have."""
     return float(value) if math.isfinite(value) else None

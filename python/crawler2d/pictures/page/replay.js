@@ -1,4 +1,4 @@
-// The page comes alive: time runs, controls and keys, and everything is drawn when it has changed.
+// The page at work: time, controls and keys; redraws whenever something changes.
 
 const data = JSON.parse(document.getElementById("recording").textContent);
 const recording = new Recording(data);
@@ -10,7 +10,7 @@ const embedded = window.self !== window.top;
 const state = { time: recording.time[data.first], playing: false, drawn: 0, queued: false };
 let colors = readColors();
 
-// As the style names them, in camel case.
+// The colours of the style sheet, their names in camel case.
 function readColors() {
   const style = getComputedStyle(document.documentElement);
   const names = [
@@ -61,13 +61,13 @@ function play(on) {
   if (on) {
     if (state.time >= recording.end) state.time = recording.begin;
     state.drawn = performance.now();
-  } else state.time = recording.time[recording.nearestFrame(state.time)]; // a true sample
+  } else state.time = recording.time[recording.nearestFrame(state.time)]; // snap to a recorded sample
   element("play").setAttribute("aria-label", on ? "pause" : "play");
   element("play-shape").setAttribute("d", on ? "M3 2.5h3.6v11H3zM9.4 2.5H13v11H9.4z" : "M4 2.5v11l9-5.5z");
   changed();
 }
 
-// Goes to a frame and stays there.
+// Goes to a frame and pauses there.
 function seek(frame) {
   state.time = recording.time[Math.max(0, Math.min(recording.count - 1, frame))];
   if (state.playing) play(false);
@@ -97,7 +97,7 @@ function fit() {
   changed();
 }
 
-// An arrow of a round number, as long as those in the picture.
+// Draws an arrow of a round number in the legend, at the scale of the picture.
 function showScale(name, scale, unit) {
   const value = nice(75 / scale);
   element(`${name}-rule`).style.width = `${value * scale}px`;

@@ -1,4 +1,4 @@
-"""From a run to one HTML page that needs nothing else: no network, no other file."""
+"""From a run to one self-contained HTML page: no network, no other file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["replay_page"]
 
-# One script, in the order in which its parts use each other.
+# Joined into one script; each part uses only those before it.
 _SCRIPTS = (
     "data.js",
     "camera.js",
@@ -33,7 +33,7 @@ _SCRIPTS = (
     "replay.js",
 )
 
-# As \u escapes they mean the same in JSON, and nothing in HTML.
+# Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
 _MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 
 
@@ -46,7 +46,7 @@ def replay_page(run: Record, time: float | None = None) -> str:
     subject, _, ending = title.rpartition(": ")
     outcome, *mechanism = verdicts(run)
     why = sentence(run)
-    # One pass: what a robot's name holds is text, even where it looks like a placeholder.
+    # One pass, so that a robot's name stays text even if it looks like a placeholder.
     return Template(_read("page.html")).substitute(
         title=escaped(title),
         subject=escaped(subject),
@@ -72,14 +72,14 @@ def _read(name: str) -> str:
 
 
 def _hash(text: str) -> str:
-    """Name the only script, or style, that the page's policy lets run."""
+    """Name the one script, or style, that the page's security policy allows."""
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
 def _thinned(every: int, samples: int) -> str:
     if every == 1:
         return ""
-    text = f"A long run: one sample in {every} of its {samples} is shown."
+    text = f"Long run: 1 in {every} samples shown, {samples} in all."
     return f'<p class="thinned">{text}</p>'
 
 

@@ -1,4 +1,4 @@
-// The robot in metres: what carries tracks, each where it is, and the centre of mass.
+// The robot in metres: its carriers, each in its pose, and the centre of mass.
 
 class Robot {
   constructor(data) {
@@ -10,7 +10,7 @@ class Robot {
     this.length = data.length;
   }
 
-  // The carriers with where their frames are.
+  // The carriers with the poses of their frames in the world.
   placed(moment) {
     return this.carriers.map((carrier, k) => {
       const { x, y, angle } = moment.pose(carrier);
@@ -19,7 +19,7 @@ class Robot {
     });
   }
 
-  // `pixel` is the length of one; `jammed` are the wheels that an edge is between.
+  // `pixel` is the size of a pixel in metres; `jammed` lists the wheels on either side of an intruding edge.
   draw(ctx, colors, pixel, moment, jammed) {
     for (const { carrier, ...frame } of this.placed(moment)) {
       ctx.save();
@@ -49,7 +49,7 @@ class Robot {
   }
 }
 
-// From the frame of the world to that of a carrier, and back; so from there to that of a body.
+// From the frame of the world to that of a carrier and back; likewise from a carrier to a body.
 function place(ctx, frame) {
   ctx.translate(frame.x, frame.y);
   ctx.rotate(frame.angle);

@@ -1,4 +1,4 @@
-// The side view: ground, goal, path, robot, what is inside its track, and what the ground does to it.
+// The side view: ground, goal, path, robot, intrusions, and contact forces.
 
 class Scene {
   constructor(canvas, data, recording) {
@@ -15,7 +15,7 @@ class Scene {
       (i % 2 ? recording.y : recording.x)[i >> 1]), false);
   }
 
-  // Whether this run has something to draw.
+  // Whether this run has anything of the kind to draw.
   has(what) {
     if (what === "envelope") return this.robot.carriers.some((carrier) => carrier.envelope);
     const { normal_force: normal, friction_force: friction, surface_speed: speed } =
@@ -36,7 +36,7 @@ class Scene {
     const { camera, robot } = this;
     camera.look(moment);
     const pixel = 1 / camera.scale;
-    ctx.save(); // the next picture begins with no style of this one
+    ctx.save(); // keeps styles from leaking into the next frame
     ctx.lineJoin = "round";
     ctx.setTransform(1, 0, 0, 1, 0, 0);
     ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -68,7 +68,7 @@ class Scene {
     ctx.restore();
   }
 
-  // The far lane, if there are two, shows through behind the near one.
+  // Of two lanes the far one shows through behind the near one.
   drawGround(ctx, colors, pixel, floor) {
     for (const lane of this.lanes) {
       const near = lane === this.lanes.at(-1);
@@ -99,7 +99,7 @@ class Scene {
       ctx.stroke(root.path);
     }
     ctx.setLineDash([]);
-    // Clips are kept from one transform to the next: the soil is cut by the belt.
+    // The clip outlives the change of transform, so only soil inside the belt is filled.
     ctx.clip(inner.path);
     unplace(ctx, placed);
     for (const lane of this.lanes) {
@@ -121,7 +121,7 @@ class Scene {
     ctx.restore();
   }
 
-  // `belted` are the carriers whose belts are shown, `jams` the intrusions of the moment.
+  // `belted` lists the carriers whose belts are shown, `jams` the current intrusions.
   drawEdges(ctx, colors, belted, jams) {
     let deepest = null;
     for (const edge of this.lanes.flatMap((lane) => lane.edges)) {
@@ -138,7 +138,7 @@ class Scene {
     const millimetres = (1e3 * deepest.depth).toFixed(1);
     const where = jam && jam.bodies.length === 2 && jam.bodies[0] !== jam.bodies[1]
       ? `between wheels ${Math.min(...jam.bodies)} and ${Math.max(...jam.bodies)}` : "";
-    const below = deepest.y + deepest.depth * this.camera.scale + 26; // clear of what is filled
+    const below = deepest.y + deepest.depth * this.camera.scale + 26; // below the filled area
     [`${millimetres} mm inside`, where].forEach((text, line) => {
       const y = below + 15 * line;
       label(ctx, text, deepest.x + 14, y, colors.intrusion, colors.halo, this.camera.width);
@@ -149,7 +149,7 @@ class Scene {
     for (const c of this.recording.contactsOf(moment.frame)) {
       const [x, y] = this.camera.screen(c.x, c.y);
       if (this.layers.speeds) {
-        // Below the ground line, where it hides nothing.
+        // Drawn below the ground line, where it hides nothing.
         const s = this.speedScale;
         arrow(ctx, x - 8 * c.nx, y + 8 * c.ny, c.vx * s, c.vy * s, SPEED_LENGTH, colors.speed, colors.ground);
       }
@@ -172,7 +172,7 @@ class Scene {
     ctx.lineTo(x, this.camera.height);
     ctx.stroke();
     ctx.setLineDash([]);
-    label(ctx, "goal for the rear end", x + 6, 44, colors.goal, colors.halo, this.camera.width);
+    label(ctx, "goal (rear end)", x + 6, 44, colors.goal, colors.halo, this.camera.width);
   }
 
   drawGrid(ctx, colors) {
@@ -218,7 +218,7 @@ class Scene {
   }
 }
 
-// [m] How deep a point is inside the envelope of a carrier, 0 where it is not; it is convex.
+// [m] Depth of a point inside the envelope of a carrier, which is convex; 0 outside.
 function depthIn({ carrier, ...frame }, point) {
   const { envelope, inner, reach } = carrier;
   const away = [point.x - frame.x, point.y - frame.y];
@@ -227,7 +227,7 @@ function depthIn({ carrier, ...frame }, point) {
   return clearance(inner.points, x, y) > 0 ? clearance(envelope.points, x, y) : 0;
 }
 
-// [m] Least distance inside the sides of a convex line that runs counter-clockwise; < 0 outside.
+// [m] Distance of a point from the nearest side of a convex counter-clockwise polygon; < 0 outside.
 function clearance(points, x, y) {
   let least = Infinity;
   for (let i = 0; i < points.length; i += 2) {

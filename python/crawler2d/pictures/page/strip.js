@@ -1,4 +1,4 @@
-// Chassis angle and track speed over time, with stops and intrusions, and where the replay is.
+// Chassis angle and track speed over time, with stops, intrusions and the current time.
 
 const GUTTER = 78;
 const EVENTS_HEIGHT = 16;
@@ -17,7 +17,7 @@ class Strip {
       for (const [values] of row.lines) {
         for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
       }
-      high = Math.max(high, low + row.least); // noise stays small
+      high = Math.max(high, low + row.least); // keeps noise small
       const margin = 0.12 * (high - low);
       Object.assign(row, { low, high, bottom: low - margin, top: high + margin });
     }
@@ -66,7 +66,7 @@ class Strip {
     this.rows.forEach((row, i) => this.drawRow(ctx, row, 6 + i * (rowHeight + gap), rowHeight, colors));
     if (recording.events.some((e) => e.kind === "intrusion")) {
       ctx.fillStyle = colors.quiet;
-      ctx.fillText("edge inside", 8, bottom + 13);
+      ctx.fillText("intrusion", 8, bottom + 13);
     }
     this.drawTimes(ctx, colors);
     const x = this.pixel(now);

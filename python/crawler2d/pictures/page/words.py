@@ -1,4 +1,4 @@
-"""What a page says of a run in words and figures."""
+"""The words and metrics that a page shows of a run."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ if TYPE_CHECKING:
 
 __all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdicts"]
 
-# metric, what a reader calls it, units a metric unit, unit, digits after the point
+# metric, label, factor from the metric's unit, unit shown, decimals
 _FIGURES = (
     ("time", "simulated time", 1.0, "s", 2),
     ("time_to_clear", "cleared after", 1.0, "s", 2),
     ("distance", "distance", 1.0, "m", 3),
-    ("track_distance", "track has run", 1.0, "m", 3),
+    ("track_distance", "track travel", 1.0, "m", 3),
     ("max_angle", "largest angle, nose up", math.degrees(1.0), "°", 1),
     ("min_angle", "largest angle, nose down", -math.degrees(1.0), "°", 1),
-    ("drive_work", "work of the motors", 1.0, "J", 1),
-    ("stopped_time", "spent in stops", 1.0, "s", 2),
-    ("intrusion_depth", "edge inside the track at the end", 1e3, "mm", 1),
-    ("intrusion_force", "force on that edge", 1.0, "N", 0),
+    ("drive_work", "motor work", 1.0, "J", 1),
+    ("stopped_time", "time in stops", 1.0, "s", 2),
+    ("intrusion_depth", "intrusion depth at the end", 1e3, "mm", 1),
+    ("intrusion_force", "intrusion force at the end", 1.0, "N", 0),
 )
-# Shown only where it happened.
+# Shown only if not zero.
 _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
 
 
 def escaped(text: str) -> str:
-    """Make any text harmless in HTML, and fit for UTF-8."""
+    """Make any text harmless in HTML and valid in UTF-8."""
     return html.escape(text.encode("utf-8", "replace").decode())
 
 
@@ -39,7 +39,7 @@ def heading(run: Record) -> str:
     """Say what ran and how it ended; see `Run.title`."""
     try:
         return run.title
-    except Exception:  # a scenario that was refused may hold anything
+    except Exception:  # a rejected scenario may hold anything
         return "run"
 
 
@@ -51,13 +51,13 @@ def sentence(run: Record) -> str:
 
 
 def verdicts(run: Record) -> list[str]:
-    """Name outcome and mechanism, in that order, as far as they are known."""
+    """Name outcome and mechanism, in that order, as far as known."""
     known = [run.outcome, run.mechanism]
     return [str(value).replace("_", " ") for value in known if value is not None]
 
 
 def figures(run: Record) -> list[tuple[str, str]]:
-    """Choose the figures that a reader asks for first: name, and value with unit."""
+    """Choose the metrics of most interest: label, and value with unit."""
     chosen = []
     for name, label, scale, unit, digits in _FIGURES:
         value = run.metrics.get(name, 0.0)
@@ -69,5 +69,5 @@ def figures(run: Record) -> list[tuple[str, str]]:
 
 
 def all_figures(run: Record) -> list[tuple[str, str]]:
-    """Every metric by its own name, in its own unit."""
+    """List every metric by its own name, in its own unit."""
     return [(name, f"{value:.6g} {METRICS.get(name, '')}") for name, value in run.metrics.items()]

@@ -1,8 +1,8 @@
-//! Contacts of the convex hull of discs with a lane, a belt's or a polygon's: exact, and as good when
-//! the ground reaches deep inside.
+//! Contacts of a convex hull of discs, such as a belt or a polygon, with a lane: exact, however deep the
+//! ground reaches inside.
 //!
-//! A hull meets the ground in two ways only: an arc, or a corner, bears on a face, or a corner of the
-//! ground on the hull.
+//! A hull meets the ground in two ways only: an arc or a corner of the hull bears on a face, or a corner
+//! of the ground bears on the hull.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -17,13 +17,13 @@ use super::overlap::{self, Tip};
 use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
 use crate::robot::{Part, Shape};
 
-/// [m] Ground that is deeper inside did not get there by sinking in.
+/// [m] Ground deeper inside than this did not get there by sinking in.
 pub(super) const SHALLOW: f64 = 1e-3;
-/// [rad] On a face that is parallel to a run but for this, both ends of the run bear: an arc reaches
-/// less than 0.1 mm out of the hull where it goes on by as much.
+/// [rad] If a face is parallel to a run within this angle, both ends of the run bear: extended by this
+/// angle, an arc reaches less than 0.1 mm out of the hull.
 const NEARLY: f64 = 0.05;
 
-/// A part that is the hull of discs, or of points.
+/// A part that is the hull of discs or of points.
 pub(super) struct HullContact {
     part: usize,
     hull: Envelope,
@@ -33,16 +33,16 @@ pub(super) struct HullContact {
 /// An arc of the hull, or a corner.
 struct Arc {
     disc: Disc,
-    /// Its outward directions, ...
+    /// Its outward directions.
     sector: Sector,
-    /// ... and those within `NEARLY` of one.
+    /// These and all directions within `NEARLY` of one.
     nearly: Sector,
-    /// Outward normals of the runs that meet it, counter-clockwise.
+    /// Outward normals of the two runs that it joins, counter-clockwise.
     runs: [Vector; 2],
 }
 
 impl Arc {
-    /// The same as a sharp corner.
+    /// The arc as a sharp corner.
     fn tip(&self, pose: Pose) -> Tip {
         Tip {
             place: pose.transform_point(self.disc.center),
@@ -52,7 +52,7 @@ impl Arc {
 }
 
 impl HullContact {
-    /// That of a part of discs or points.
+    /// The hull of a part made of discs or points.
     pub(super) fn new(index: usize, part: &Part) -> Self {
         let discs: Vec<Disc> = match &part.shape {
             Shape::Polygon { corners } => corners.iter().map(|c| Disc::point(*c)).collect(),
@@ -92,11 +92,11 @@ impl HullContact {
         if lane.top(&region) < low.y {
             return;
         }
-        // What comes so fast that it is seen from far away may be as deep in the middle of a step.
+        // A part that is fast enough to be found from far away may be this deep in the middle of a step.
         let reach = (prediction, SHALLOW.max(prediction));
         for arc in &self.arcs {
             lane.touches_of_disc(center(arc), arc.disc.radius, reach, |touch| {
-                // Behind a face lies the ground, but beyond thin ground the open again.
+                // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real = touch.distance >= -SHALLOW
                     || lane.holds(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
@@ -111,8 +111,8 @@ impl HullContact {
         self.find_corners(lane, &region, pose, prediction, contacts);
     }
 
-    /// Corners of the ground on the hull; where the hull's normal lies outside the corner's cone, a
-    /// face is nearer.
+    /// Adds the contacts of corners of the ground on the hull; where the hull's normal lies outside a
+    /// corner's cone, a face is nearer.
     fn find_corners(
         &self,
         lane: &Lane,
@@ -135,7 +135,7 @@ impl HullContact {
         }
     }
 
-    /// How a corner of the ground bears on the hull.
+    /// How a corner of the ground bears on the hull, if it does.
     fn corner_in_hull(
         &self,
         i: usize,
@@ -161,8 +161,8 @@ impl HullContact {
         Some(corner.touch(i, normal, -depth))
     }
 
-    /// Depth and normal of the run that a corner of the ground has come through where the nearest is
-    /// none that it faces, unless the hull is less deep in a face beside.
+    /// Depth and normal of the run through which a corner of the ground has entered, if the corner does
+    /// not face the nearest run; none if the hull is less deep below a face next to the corner.
     fn way_out(&self, corner: &Corner, place: Vector, pose: Pose) -> Option<(f64, Vector)> {
         let of_run = |arc: &Arc| {
             let [outward, _] = arc.runs;
@@ -185,14 +185,14 @@ impl HullContact {
             .map(of_run)
             .filter(|(_, normal)| corner.faces(*normal));
         let (inside, normal) = met.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        // Where two sharp corners have crossed, it lies beside the hull, by less than that.
+        // Where two sharp corners overlap, the ground corner lies outside the hull, by less than that.
         let is_met = 0.0 < inside && inside < limit && -self.hull.depth(place) < inside;
         is_met.then_some((inside + corner.radius, normal))
     }
 
-    /// The outward normal where the hull lies nearest to a place, which is `depth` [m] inside.
+    /// The outward normal where the hull is nearest to a place that is `depth` [m] inside.
     fn outward_at(&self, place: Vector, depth: f64) -> Vector {
-        // Close to an arc's end its run is as near but for rounding, but faces another way.
+        // Near the end of an arc its run is equally near within rounding, but has another normal.
         let of_arc = |arc: &Arc| {
             let spoke = place - arc.disc.center;
             let is_nearest = arc.disc.radius - spoke.length() <= depth && arc.sector.holds(spoke);

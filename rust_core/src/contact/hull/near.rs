@@ -1,4 +1,4 @@
-//! Which stretches of finely cut ground may come near a hull.
+//! Which stretches of finely divided ground may bear on a hull.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -7,7 +7,7 @@ use super::{Arc, HullContact};
 use crate::geometry::{Pose, Vector};
 
 impl HullContact {
-    /// [m] From where to where the run behind an arc reaches along x.
+    /// [m] Range of x of the run that follows an arc.
     fn run_behind(&self, i: usize, pose: Pose) -> [f64; 2] {
         let outward = self.arcs[i].runs[0];
         let x = |arc: &Arc| {
@@ -18,14 +18,14 @@ impl HullContact {
         [a.min(b), a.max(b)]
     }
 
-    /// [m] From where to where its lowest run does.
+    /// [m] Range of x of the lowest run.
     pub(super) fn lowest_run(&self, pose: Pose) -> [f64; 2] {
         let fall = |i: &usize| (pose.rotation * self.arcs[*i].runs[0]).y;
         let lowest = (0..self.arcs.len()).min_by(|a, b| fall(a).total_cmp(&fall(b)));
         self.run_behind(lowest.unwrap_or_default(), pose)
     }
 
-    /// Whether a corner in a stretch of the ground may bear.
+    /// Whether a corner in a stretch of the ground may bear on the hull.
     pub(super) fn may_bear(&self, stretch: &Stretch, pose: Pose, prediction: f64) -> bool {
         let room = self.room_above(stretch, pose);
         let is_faced = |i: usize| {
@@ -37,8 +37,8 @@ impl HullContact {
         room < prediction && (room < 0.0 || (0..self.arcs.len()).any(is_faced))
     }
 
-    /// [m] How far at least the ground below a roof is away: by how much it lies beyond some tangent of the
-    /// hull from below.
+    /// [m] Lower bound of the distance to the ground below a roof: how far the roof lies beyond a tangent
+    /// of the hull's underside.
     fn room_above(&self, stretch: &Stretch, pose: Pose) -> f64 {
         let beyond = |arc: &Arc, center: Vector, outward: Vector| {
             let gap = |end: &Vector| (*end - center).dot(outward) - arc.disc.radius;

@@ -1,4 +1,4 @@
-//! Ranges of directions, without an angle in the step.
+//! Ranges of directions, tested without computing angles during a step.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -8,14 +8,14 @@ use crate::geometry::{Vector, cross, direction};
 
 /// A range of directions.
 pub(super) struct Sector {
-    /// The first and the last, counter-clockwise.
+    /// The first and the last direction, counter-clockwise.
     ends: [Vector; 2],
-    /// Whether it is more than a half turn.
+    /// Whether it spans more than half a turn.
     is_wide: bool,
 }
 
 impl Sector {
-    /// From an angle [rad] by another, counter-clockwise.
+    /// The range that starts at an angle [rad] and sweeps another, counter-clockwise.
     pub(super) fn new(from: f64, sweep: f64) -> Self {
         let sweep = sweep.min(TAU);
         Self {
@@ -24,7 +24,7 @@ impl Sector {
         }
     }
 
-    /// Whether a direction is one of them, its ends among them.
+    /// Whether a direction lies in the range, ends included.
     pub(super) fn holds(&self, d: Vector) -> bool {
         let [first, last] = self.ends;
         if self.is_wide {

@@ -1,11 +1,11 @@
-//! Intrusions against a judge that shares no code with them: support functions and slices.
+//! Intrusions against a judge that shares no code with them: it uses support functions and slices.
 //!
-//! The ground below a profile is a heap of vertical slices and the envelope is convex, so a piece of
-//! the ground inside it is a range of x over which the profile lies above the envelope's lower side.
-//! The depth of a point is the least room to any tangent of the envelope; the tangents that can be
-//! the nearest are those that touch two discs and those square to the way from a disc's centre.
+//! The ground below a profile is a stack of vertical slices and the envelope is convex, so a piece of the
+//! ground inside it is a range of x over which the profile lies above the lower side of the envelope. The
+//! depth of a point is its smallest distance to any tangent of the envelope; the only candidates are
+//! tangents that touch two discs and those perpendicular to the line from a disc's centre.
 
-#![allow(clippy::print_stdout)] // a figure is part of what a test tells
+#![allow(clippy::print_stdout)] // the printed counts say what was judged
 
 mod judge;
 
@@ -152,12 +152,12 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
         .expect("a ground")
         .lanes
         .remove(0);
-    // The post stands in the middle between the rear and the middle wheel.
+    // The post stands halfway between the rear and the middle wheel.
     let pose = Pose::from_translation(Vector::new(0.103, 0.081));
     let found = envelope.intrusions(&profile, pose);
     assert_eq!(found.len(), 1);
     let post = &found[0];
-    // The belt runs a millimetre above the ground.
+    // The belt is offset by a millimetre above the ground.
     assert!((post.depth - 0.029).abs() < 1e-12 && (post.root_depth - 0.029).abs() < 1e-12);
     assert!((post.area - 0.02 * 0.029).abs() < 1e-12, "{}", post.area);
     assert_eq!(
@@ -166,20 +166,20 @@ fn post_in_a_slot_counts_by_its_height_and_thickness() {
     );
 }
 
-/// A pose of one model above one ground, with the judges of both its belts.
+/// A model in a pose above a ground, with the judges of both its belts.
 struct Case<'a> {
     name: String,
     profile: &'a Profile,
     tips: Judge,
     roots: Judge,
-    /// Deepest places of both.
+    /// Deepest places of both judges.
     middles: [(f64, Vector); 2],
-    /// [m] What a few slices are wide.
+    /// [m] Width of a few slices.
     narrow: f64,
 }
 
 impl Case<'_> {
-    /// Too close to call: pieces or gaps of a few slices, or a mere touch.
+    /// Too close to call: pieces or gaps a few slices wide, or a mere touch.
     fn is_unclear(&self, found: &[Intrusion], expected: &[Range]) -> bool {
         let extents: Vec<(f64, f64)> = found.iter().map(|i| extent(i, self.profile)).collect();
         let ranges: Vec<(f64, f64)> = expected.iter().map(|r| (r.left, r.right)).collect();
@@ -190,7 +190,7 @@ impl Case<'_> {
         !is_wide(&extents) || !is_wide(&ranges) || found.iter().any(|i| i.depth < 1e-5)
     }
 
-    /// Depth and place of the deepest point of a piece, and whether it is the envelope's own deepest.
+    /// Depth and place of the deepest point of a piece, and whether it is the deepest of the whole envelope.
     fn deepest(&self, judge: &Judge, middle: (f64, Vector), range: &Range) -> (f64, Vector, bool) {
         let inside = |x: f64| (range.left - self.narrow..=range.right + self.narrow).contains(&x);
         let on_profile = self
@@ -225,12 +225,12 @@ impl Case<'_> {
         edges
     }
 
-    /// Whether the bodies of a piece could be judged.
+    /// Checks a piece; whether its bodies could be judged.
     fn check(&self, intrusion: &Intrusion, range: &Range) -> bool {
         let context = format!("{}: {intrusion:?}", self.name);
         let inside = range.left - self.narrow..=range.right + self.narrow;
         assert!(inside.contains(&intrusion.x), "{context}");
-        // A slice is half in and half out at either end of a piece.
+        // The slices at both ends of a piece are only partly inside.
         let off = (intrusion.area - range.area).abs();
         assert!(
             off < 3e-3 * range.area + 8e-5,
@@ -282,7 +282,7 @@ fn every_piece_is_found_with_its_depth_and_its_bodies() {
         let model = &models[number % models.len()];
         let ground = Ground::new(&terrain(number % 6, &mut draw), 0.2).expect("a ground");
         let x = draw.between(-0.3, 0.5);
-        // From buried to clear, most of them astride what stands below.
+        // From buried to clear, most of them straddling an obstacle.
         let y = ground.lanes[0].height_under_disc(x, 0.1) + draw.between(-0.08, 0.02);
         let angle = Rotation::new(draw.between(-0.7, 0.7));
         let pose = Pose::from_parts(Vector::new(x, y), angle);

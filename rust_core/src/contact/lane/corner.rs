@@ -1,4 +1,4 @@
-//! Where two faces of the ground meet: an arc, of radius 0 where the corner is sharp.
+//! Corners of the ground, where two faces meet: an arc, of radius 0 if the corner is sharp.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -16,20 +16,20 @@ pub(crate) struct Corner {
     pub center: Vector,
     /// [m] Radius of its arc.
     pub radius: f64,
-    /// Normals of the faces before and behind it, from which and to which the arc turns clockwise.
+    /// Normals of the faces before and behind it; the arc turns clockwise from the first to the second.
     pub normals: [Vector; 2],
-    /// Whether it stands out, so that something can bear on it.
+    /// Whether it is convex, so that something can bear on it.
     pub stands_out: bool,
-    /// Edge that it is.
+    /// Its edge id.
     pub edge: i32,
-    /// First facet of its arc, or the facet that begins at it.
+    /// First facet of its arc, or the facet that begins at a sharp corner.
     pub(super) facet: usize,
-    /// Facets that its arc is drawn with.
+    /// Number of facets of its arc.
     pub(super) facets: usize,
 }
 
 impl Corner {
-    /// Whether the ground has a normal in that direction at the corner, but for rounding.
+    /// Whether a direction is a normal of the ground at the corner, within rounding.
     pub(crate) fn faces(&self, direction: Vector) -> bool {
         let [before, behind] = self.normals;
         cross(direction, before) >= -ROUNDING
@@ -48,7 +48,7 @@ impl Corner {
         self.facet + ((share * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
     }
 
-    /// Something bears on it, along a normal of its own.
+    /// A touch on the corner along one of its normals.
     pub(crate) fn touch(&self, corner: usize, normal: Vector, distance: f64) -> Touch {
         Touch {
             place: self.center + normal * self.radius,
@@ -61,7 +61,7 @@ impl Corner {
     }
 }
 
-/// The corners of a profile, its two ends among them; the points of an arc are one corner.
+/// The corners of a profile, both ends included; the points of one arc are one corner.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
     let points = &profile.points;
     let last = points.len() - 1;
@@ -73,7 +73,7 @@ pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
             .ok()
             .map(|e| &profile.edges[e])
             .filter(|e| e.radius > 0.0);
-        // An arc that adjoins the last one shares its end.
+        // An arc adjacent to the last one shares its end point.
         let shares_point = rounded.is_some_and(|e| {
             let on_arc = |p: Vector| ((p - e.center).length() - e.radius).abs() < SHARED;
             i > 0 && edge != profile.edge_of_point[i - 1] && on_arc(points[i - 1])
@@ -88,7 +88,7 @@ pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
                 let normal = |p: Vector| (p - e.center) / e.radius;
                 (e.center, [normal(points[first]), normal(points[i])])
             }
-            // The ends of the ground have one normal only.
+            // Each end of the ground has one normal only.
             None => (
                 points[i],
                 [

@@ -1,9 +1,9 @@
-//! Finding the ground near a place in a time that does not grow with the length of the lane, nor, for
-//! ground cut into many pieces, with their number.
+//! An index of the ground: finds what is near a place in a time that does not grow with the length of
+//! the lane or, for finely divided ground, with the number of its pieces.
 //!
-//! A table of x leads to the pieces under a place. Where these are many, a hierarchy over them knows
-//! how high each stretch reaches and which way it faces: a piece of flat ground bears what is right
-//! above it, whatever is near.
+//! A table over x leads to the pieces under a place. If there are many, a hierarchy above them knows how
+//! high each stretch reaches and which way it faces, so that on flat ground only the pieces right below
+//! a part are visited.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -15,39 +15,39 @@ use super::touch::{Face, ROUNDING};
 use crate::geometry::{Vector, cross};
 use crate::terrain::Profile;
 
-/// Pieces of a stretch of the lowest level.
+/// Pieces per stretch of the lowest level.
 const BLOCK: usize = 8;
-/// Fewer pieces are looked at one by one.
+/// Up to this many pieces are visited one by one.
 const FEW: usize = 2 * BLOCK;
-/// Largest number of cells in the table of x.
+/// Largest number of cells in the table over x.
 const MOST_CELLS: usize = 1 << 18;
 
-/// A piece is a face with the corner before it.
+/// The index. A piece is a face with the corner before it.
 pub(super) struct Index {
-    /// [m] Where each piece begins.
+    /// [m] x at which each piece begins.
     begins: Vec<f64>,
-    /// Pieces that begin before each cell of the table.
+    /// Number of pieces that begin before each cell of the table.
     cells: Vec<u32>,
     cells_per_meter: f64,
-    /// [m] How high each piece reaches.
+    /// [m] Highest point of each piece.
     tops: Vec<f64>,
-    /// Stretches of `BLOCK` pieces, then of twice as many, and so on to one of all.
+    /// Stretches of `BLOCK` pieces, then of twice as many, and so on up to one of all pieces.
     levels: Vec<Vec<Stretch>>,
-    /// [m] Of the corners' arcs.
+    /// [m] Largest radius of the corners' arcs.
     largest_radius: f64,
 }
 
-/// A span of pieces.
+/// A range of pieces.
 #[derive(Clone, Debug)]
 pub(crate) struct Region(Range<usize>);
 
 impl Region {
-    /// The one between two corners.
+    /// The region between two corners.
     pub(super) fn between(first: usize, last: usize) -> Self {
         Self(first..last)
     }
 
-    /// Whether its pieces are too many to be looked at one by one.
+    /// Whether it has too many pieces to visit one by one.
     pub(crate) fn is_long(&self) -> bool {
         self.0.len() > FEW
     }
@@ -57,13 +57,13 @@ impl Region {
         self.0.clone()
     }
 
-    /// The corners of the region, both ends among them.
+    /// The corners of the region, both ends included.
     pub(crate) fn corners(&self) -> RangeInclusive<usize> {
         self.0.start..=self.0.end
     }
 }
 
-/// What is known of a stretch of the ground.
+/// Bounds of a stretch of the ground.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch {
     low: Vector,
@@ -71,19 +71,19 @@ pub(crate) struct Stretch {
     /// The normals that point farthest to the right and to the left.
     normals: [Vector; 2],
     pub roof: Roof,
-    /// Whether any of its corners stands out.
+    /// Whether any of its corners is convex.
     pub stands_out: bool,
 }
 
 impl Stretch {
-    /// Both, without a roof.
+    /// The bounds of two stretches, without a roof.
     fn join(self, other: Self) -> Self {
         let [right, left] = self.normals;
         let [other_right, other_left] = other.normals;
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
-            // No normal points down, so that their x orders them.
+            // No normal points down, so they can be ordered by x.
             normals: [
                 if right.x < other_right.x {
                     other_right
@@ -110,8 +110,8 @@ impl Stretch {
             return false;
         }
         let [right, left] = self.normals;
-        // Bounds of the cross products of the stretch's last normals and the way from it to the
-        // centre: that way, or its opposite in penetration, must lie between them.
+        // Bounds of the cross products of the stretch's outermost normals with the vector from the stretch to
+        // the centre: that vector, or its opposite in penetration, must lie between the normals.
         let bounds = |n: Vector| {
             let (a, b) = (n.x * self.low.y, n.x * self.high.y);
             let here = cross(n, center);
@@ -126,12 +126,12 @@ impl Stretch {
         above || (below && center.y <= self.high.y)
     }
 
-    /// Whether any of it lies within `margin` of what two x bound.
+    /// Whether any of it lies within `margin` of a range of x.
     pub(crate) fn reaches(&self, [low, high]: [f64; 2], margin: f64) -> bool {
         self.low.x - margin <= high && low <= self.high.x + margin
     }
 
-    /// Whether the stretch may have a normal.
+    /// Whether the stretch may have this normal.
     pub(crate) fn may_have(&self, normal: Vector) -> bool {
         let [right, left] = self.normals;
         cross(right, normal) >= -ROUNDING && cross(normal, left) >= -ROUNDING
@@ -162,12 +162,12 @@ impl Index {
         }
     }
 
-    /// [m] Of the corners' arcs.
+    /// [m] Largest radius of the corners' arcs.
     pub(super) fn largest_radius(&self) -> f64 {
         self.largest_radius
     }
 
-    /// The pieces that a range of x touches.
+    /// The pieces that overlap a range of x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         let first = self.count_before(low).saturating_sub(1);
         let mut end = self.count_before(high);
@@ -177,18 +177,18 @@ impl Index {
         Region(first..end.max(first + 1))
     }
 
-    /// A region's corners left of two x, between them and right of them; neighbours share a corner.
+    /// A region's corners left of a range of x, in it and right of it; neighbouring regions share a corner.
     pub(super) fn split(&self, region: &Region, low: f64, high: f64) -> [Region; 3] {
         let Range { start, end } = region.0;
         let [a, b] = [low, high].map(|x| self.count_before(x).clamp(start, end));
         [start..a, a..b.max(a), b.max(a)..end].map(Region)
     }
 
-    /// Pieces that begin before x.
+    /// Number of pieces that begin before x.
     fn count_before(&self, x: f64) -> usize {
         let cell = ((x - self.begins[0]) * self.cells_per_meter).max(0.0) as usize;
         let last = self.cells.len() - 1;
-        // A cell further on either side: the table's own rounding may be off by one.
+        // One cell more on either side: rounding in the table may be off by one.
         let from = self.cells[cell.saturating_sub(1).min(last)] as usize;
         let to = match self.cells.get(cell.saturating_add(2)) {
             Some(to) => *to as usize,
@@ -197,7 +197,7 @@ impl Index {
         from + self.begins[from..to].partition_point(|begin| *begin < x)
     }
 
-    /// [m] A height that nothing of a region rises above.
+    /// [m] An upper bound of the height of a region.
     pub(super) fn top(&self, region: &Region) -> f64 {
         if !region.is_long() {
             let tops = self.tops[region.0.clone()].iter();
@@ -208,13 +208,13 @@ impl Index {
         tops.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether any of a few stretches that cover a region matters.
+    /// Whether `matters` holds for any of a few stretches that cover a region.
     pub(super) fn any(&self, region: &Region, matters: impl FnMut(&Stretch) -> bool) -> bool {
         let (level, stretches) = self.cover(region);
         self.levels[level][stretches].iter().any(matters)
     }
 
-    /// The level at which a few stretches cover a region, and these.
+    /// The level at which a few stretches cover a region, and those stretches.
     fn cover(&self, region: &Region) -> (usize, RangeInclusive<usize>) {
         let Range { start, end } = region.0;
         let blocks = (end - start) / BLOCK;
@@ -223,8 +223,8 @@ impl Index {
         (level, start / size..=(end - 1) / size)
     }
 
-    /// Calls `piece` with every piece of the stretches that may matter, and whether it has a face:
-    /// the last corner of a region has none.
+    /// Calls `piece` with every piece of the stretches that may matter, and with whether it has a face: the
+    /// last corner of a region has none.
     pub(super) fn visit(
         &self,
         region: &Region,
@@ -247,7 +247,7 @@ impl Index {
         }
     }
 
-    /// Calls `block` with the pieces of each lowest stretch of a region that may matter.
+    /// Calls `block` with the pieces of each lowest-level stretch of a region that may matter.
     fn descend(
         &self,
         region: &Region,
@@ -293,13 +293,13 @@ fn pieces(profile: &Profile, faces: &[Face], corners: &[Corner]) -> Vec<Stretch>
             roof: [*point; 2],
             stands_out: corner.stands_out || next.stands_out,
         };
-        // The closing corner is visited with the piece before it.
+        // The closing corner is visited together with the piece before it.
         let normals = corner.normals.into_iter().chain(next.normals);
         let facing = |normal| Stretch {
             normals: [normal; 2],
             ..place(&face.begin)
         };
-        // The points of an arc need not hold its top.
+        // The points of an arc need not include its top.
         let peak = corner.center + Vector::Y * corner.radius;
         let has_peak = corner.normals[0].x < 0.0 && corner.normals[1].x > 0.0;
         let peak = has_peak.then(|| place(&peak));

@@ -1,7 +1,7 @@
-//! One lane of the ground as contacts see it: straight faces, and the corners between them.
+//! One lane of the ground as contacts see it: straight faces and the corners between them.
 //!
-//! A sharp corner is a rounded one of radius 0, so that everything bears either on a face or on the
-//! disc of a corner, and rounded edges are true arcs.
+//! A sharp corner is a rounded one of radius 0, so a part bears either on a face or on the disc of a
+//! corner, and rounded edges are true arcs.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
@@ -24,12 +24,12 @@ pub(super) use index::{Region, Stretch};
 use touch::Face;
 pub(super) use touch::{On, ROUNDING, Touch};
 
-/// Corners at either end of finely cut ground among which one that bears is looked for.
+/// Corners at either end of finely divided ground that are searched for one that bears.
 const NEAR_END: usize = 16;
 /// [m] A contact this close to the end of a face touches the edge there.
 const AT_CORNER: f64 = 1e-7;
 
-/// Faces and corners from left to right: face i lies between the corners i and i + 1.
+/// Faces and corners from left to right; face i lies between corners i and i + 1.
 pub(crate) struct Lane {
     faces: Vec<Face>,
     corners: Vec<Corner>,
@@ -76,28 +76,28 @@ impl Lane {
         &self.corners[corner]
     }
 
-    /// That part of a region's corners which lies between two x, and those on either side.
+    /// A region's corners left of a range of x, in it and right of it.
     pub(super) fn split(&self, region: &Region, [low, high]: [f64; 2]) -> [Region; 3] {
         self.index.split(region, low, high)
     }
 
-    /// The ground between two x.
+    /// The ground in a range of x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         self.index.region(low, high)
     }
 
-    /// [m] A height that nothing of a region rises above.
+    /// [m] An upper bound of the height of a region.
     pub(super) fn top(&self, region: &Region) -> f64 {
         self.index.top(region)
     }
 
-    /// Whether a corner of a region may stand out.
+    /// Whether a region may have a convex corner.
     pub(super) fn may_stand_out(&self, region: &Region) -> bool {
         region.is_long() || region.corners().any(|i| self.corners[i].stands_out)
     }
 
-    /// Everything that a disc bears on with a gap below `prediction`: a corner of a part is a disc of
-    /// no size. Ground above the centre by more than `depth` [m] did not get there by sinking in.
+    /// Finds everything that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
+    /// radius 0. Ground more than `depth` [m] above the centre did not get there by sinking in.
     pub(super) fn touches_of_disc(
         &self,
         center: Vector,
@@ -108,7 +108,7 @@ impl Lane {
         let reach = radius + prediction;
         let mut region = self.region(center.x - reach, center.x + reach);
         if region.is_long() {
-            // Where all of the ground lies below the centre, only a part of it is near.
+            // If all of the ground lies below the centre, only part of the region is near.
             let room = (center.y - self.top(&region)).max(0.0);
             if room > reach {
                 return;
@@ -134,8 +134,8 @@ impl Lane {
         );
     }
 
-    /// Whether a point is in the ground below an inner corner, past the ends of both its faces and by
-    /// less than their lengths: it is behind both.
+    /// Whether a point is in the ground below a concave corner, past the ends of both its faces and by less
+    /// than their lengths: it is then behind both.
     fn is_under(&self, i: usize, point: Vector) -> bool {
         if i == 0 || i == self.faces.len() {
             return false;
@@ -164,7 +164,7 @@ impl Lane {
         })
     }
 
-    /// The foot of a disc's centre on a face.
+    /// The touch of a disc on a face, if the foot of its centre lies on the face.
     fn face_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
         let face = &self.faces[i];
         let spoke = center - face.begin;
@@ -191,7 +191,7 @@ impl Lane {
         })
     }
 
-    /// A corner in whose cone the centre of a disc lies.
+    /// The touch of a disc on a corner, if its centre lies in the corner's cone.
     fn corner_under_disc(&self, i: usize, center: Vector, radius: f64) -> Option<Touch> {
         let corner = &self.corners[i];
         if !corner.stands_out {
@@ -204,8 +204,8 @@ impl Lane {
             .then(|| corner.touch(i, normal, far - radius - corner.radius))
     }
 
-    /// Every corner that bears on a straight run of a part, counter-clockwise from `begin` to `end`, with
-    /// the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
+    /// Finds every corner that bears on a straight run of a part, from `begin` to `end` counter-clockwise and
+    /// with the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
     pub(super) fn touches_of_run(
         &self,
         (begin, end): (Vector, Vector),
@@ -213,14 +213,14 @@ impl Lane {
         (prediction, depth): (f64, f64),
         mut found: impl FnMut(Touch),
     ) {
-        // The ground has no overhangs: no normal of it points down.
+        // The ground has no overhangs, so none of its normals points down.
         if outward.y > ROUNDING {
             return;
         }
         let along = left_of(outward);
         let length = (end - begin).dot(along);
         let (low, high) = (begin.x.min(end.x), begin.x.max(end.x));
-        // An arc's centre lies off its corner by its radius at most.
+        // The centre of an arc is off its corner by at most its radius.
         let margin = prediction + self.index.largest_radius();
         let region = self.region(low - margin, high + margin);
         self.visit_corners_below_run(
@@ -241,7 +241,7 @@ impl Lane {
         );
     }
 
-    /// Calls `meet` with the corners of a region that may matter.
+    /// Calls `meet` with the convex corners of a region that may matter.
     pub(super) fn visit_corners(
         &self,
         region: &Region,
@@ -252,8 +252,8 @@ impl Lane {
         self.index.visit(region, matters, |i, _| meet(i));
     }
 
-    /// The same below a straight run of a part: `meet` returns how the corner bears on it, if it does. Of
-    /// finely cut ground only what rises above the chord of two such corners near its ends matters.
+    /// The same below a straight run of a part; `meet` returns the touch of a corner on it, if there is one.
+    /// On finely divided ground, find one touch near each end; only corners above the chord between them matter.
     pub(super) fn visit_corners_below_run(
         &self,
         region: &Region,

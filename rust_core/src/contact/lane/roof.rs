@@ -1,16 +1,16 @@
-//! Lines above finely cut ground. What lies between two corners that bear on one straight run of a part,
-//! and no higher than the line through both, does not bear.
+//! Roofs and chords: lines above finely divided ground. A corner that lies between two others bearing on
+//! the same straight run of a part, and no higher than the line through both, does not bear.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use super::{Corner, Touch};
 use crate::geometry::{Vector, left_of};
 
-/// [m] Ground that rises above a chord by less bears no more than the chord's ends: a thousandth of the
-/// deepest overlap there should ever be.
+/// [m] Ground that rises above a chord by less than this bears no more than the ends of the chord: it is a
+/// thousandth of the deepest overlap that should ever occur.
 const SAME_FACE: f64 = 1e-6;
 
-/// Both ends of a line that no corner of a stretch of ground rises above, about parallel to it.
+/// Both ends of a line above all corners of a stretch of ground, roughly parallel to the stretch.
 pub(super) type Roof = [Vector; 2];
 
 /// The roof of a few neighbouring corners.
@@ -38,7 +38,7 @@ pub(super) struct Chord {
 }
 
 impl Chord {
-    /// From left to right, if both bear on the same run.
+    /// The chord from left to right, if both touches are on the same run.
     pub(super) fn new(first: &Touch, last: &Touch) -> Option<Self> {
         let [a, b] = [first.place, last.place];
         let is_one_run = first.normal.dot(last.normal) > 1.0 - 1e-12;
@@ -48,18 +48,18 @@ impl Chord {
         })
     }
 
-    /// Whether a point lies between its ends and no higher.
+    /// Whether a point lies between the ends of the chord and no higher than it.
     fn hides(&self, point: Vector) -> bool {
         let [a, b] = self.ends;
         a.x <= point.x && point.x <= b.x && (point - a).dot(self.up) < SAME_FACE
     }
 
-    /// Whether a corner does.
+    /// Whether that holds for a corner.
     pub(super) fn hides_corner(&self, corner: &Corner) -> bool {
         self.hides(corner.center + self.up * corner.radius)
     }
 
-    /// Whether all below a roof does.
+    /// Whether it holds for everything below a roof.
     pub(super) fn hides_all(&self, roof: &Roof) -> bool {
         roof.iter().all(|end| self.hides(*end))
     }

@@ -1,14 +1,14 @@
-//! The index against looking at every piece.
+//! The index against visiting every piece.
 
-#![allow(clippy::print_stdout)] // a figure is part of what a test tells
+#![allow(clippy::print_stdout)] // the printed counts say what was judged
 
 use std::cell::Cell;
 
 use super::*;
 use crate::draw::Draw;
 
-/// Half a metre of ground: flat, or jittered by this [m] and with upright faces; its edges rounded if
-/// they have room.
+/// Half a metre of ground: flat, or with upright faces and jitter of this size [m]; edges are rounded where
+/// there is room.
 fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profile, Lane) {
     let pitch = 0.5 / points as f64;
     let mut x = 0.0;
@@ -26,7 +26,7 @@ fn lane(points: usize, jitter: f64, edge_radius: f64, draw: &mut Draw) -> (Profi
     (profile, lane)
 }
 
-/// What can be told of a touch bit by bit.
+/// A touch in a form that can be compared bit by bit.
 fn key(touch: &Touch) -> (String, [u64; 5]) {
     let numbers = [
         touch.place.x,
@@ -43,7 +43,7 @@ fn sorted(mut touches: Vec<Touch>) -> Vec<(String, [u64; 5])> {
     touches.iter().map(key).collect()
 }
 
-/// Everything that a disc bears on, by looking at every piece.
+/// Everything that a disc bears on, found by visiting every piece.
 fn touches_one_by_one(
     lane: &Lane,
     center: Vector,
@@ -81,7 +81,7 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
                 let mut touches = Vec::new();
                 lane.touches_of_disc(center, radius, reach, |t| touches.push(t));
                 let slow = touches_one_by_one(&lane, center, radius, reach);
-                // A face that lies farther away has not been sunk into.
+                // A face farther away than this was not sunk into.
                 let reaches = |t: &Touch| match t.on {
                     On::Corner(_) => true,
                     On::Face(i) => {
@@ -109,7 +109,7 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
 #[test]
 fn nothing_rises_above_the_top_of_a_region() {
     let mut draw = Draw(20_270_120);
-    // An arc's points need not hold its top.
+    // The points of an arc need not include its top.
     for edge_radius in [0.0, 1e-3, 5e-3] {
         for _ in 0..1000 {
             let left = draw.between(0.05, 0.2);

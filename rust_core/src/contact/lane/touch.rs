@@ -1,13 +1,13 @@
-//! A face of a lane, and where something touches it or a corner.
+//! Faces of a lane, and touches: where something bears on a face or a corner.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use crate::contact::Contact;
 use crate::geometry::Vector;
 
-/// Sine of the angle by which rounding may turn a normal out of the cone of a corner.
+/// Sine of the angle by which rounding may turn a normal out of a corner's cone.
 pub(in crate::contact) const ROUNDING: f64 = 1e-9;
-/// A straight piece of the ground; the solid lies on its right.
+/// A straight piece of the ground; the solid is on its right.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     /// [m] Its left end.
@@ -16,18 +16,18 @@ pub(super) struct Face {
     pub along: Vector,
     /// Unit vector out of the ground.
     pub normal: Vector,
-    /// [m] Length; 0 between two arcs that adjoin.
+    /// [m] Length; 0 between two adjacent arcs.
     pub length: f64,
     /// Facet of the profile.
     pub facet: usize,
-    /// Edges at both ends.
+    /// Edge ids at both ends.
     pub edges: [i32; 2],
 }
 
-/// Where something bears on the ground, or nearly.
+/// Where something bears on the ground, or nearly does.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct Touch {
-    /// [m] The place on the ground.
+    /// [m] The point on the ground.
     pub place: Vector,
     /// Unit vector out of the ground.
     pub normal: Vector,
@@ -35,13 +35,13 @@ pub(in crate::contact) struct Touch {
     pub distance: f64,
     /// Facet of the profile.
     pub facet: usize,
-    /// Edge that is touched, or -1 on a face.
+    /// Id of the edge that is touched, or -1 on a face.
     pub edge: i32,
-    /// The face or the corner.
+    /// The face or corner.
     pub on: On,
 }
 
-/// What of the ground a touch is on.
+/// The feature of the ground that is touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::contact) enum On {
     Face(usize),
@@ -49,7 +49,7 @@ pub(in crate::contact) enum On {
 }
 
 impl Touch {
-    /// The same as a contact of a part.
+    /// The touch as a contact of a part.
     pub(in crate::contact) fn contact(&self, part: usize) -> Contact {
         let point = self.place + self.normal * (0.5 * self.distance);
         Contact {

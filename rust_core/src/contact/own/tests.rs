@@ -1,7 +1,7 @@
-//! The contacts against a judge that shares no code with them: every line and arc of a part against
-//! every one of the ground.
+//! The contacts against a judge that shares no code with them: it tries every line and arc of a part
+//! against every one of the ground.
 
-#![allow(clippy::print_stdout)] // a figure is part of what a test tells
+#![allow(clippy::print_stdout)] // the printed counts say what was judged
 
 mod curve;
 mod grounds;

@@ -1,4 +1,4 @@
-//! Contacts of shoes as the solver sees them: with the ground, and with what they run on.
+//! Contacts of shoes as the solver sees them: with the ground, and with the guide, wheels and teeth.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,8 +14,8 @@ use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
 
 impl Direction {
-    /// That of a contact of a shoe: `arm` leads there from the shoe's centre, and the track moves along
-    /// `travel`.
+    /// A direction at a contact of a shoe: `arm` leads from the shoe's centre to the contact, and the track
+    /// moves along `travel`.
     fn on_shoe(unit: Vector, arm: Vector, travel: Vector, model: &Model) -> Self {
         Self {
             unit,
@@ -28,7 +28,7 @@ impl Direction {
 }
 
 impl Row {
-    /// The row of a shoe's contact that was found at half a step's `time` [s] from now.
+    /// The row of a shoe's contact with the ground, found half a step (`time` [s]) from now.
     pub(in crate::dynamics) fn of_shoe(
         contact: &Contact,
         last: Option<LoadedContact>,

@@ -1,4 +1,4 @@
-//! A chain of shoes on guide or wheels of the chassis: pins, places where shoes rest on them, drive.
+//! A chain of shoes that runs on a guide or wheels: its pins, rests and drive.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -25,8 +25,8 @@ use crate::robot::{ChainOfShoes, Tensioner};
 
 pub(super) use rest::Stand;
 
-/// Stiffness of the stop of an idler in units of its tensioner's: harder ones hold, but a chain that an obstacle
-/// tightens meets them with blows of kilonewtons.
+/// Stiffness of an idler's stop in units of its tensioner's. Harder stops work, but a chain that is tightened
+/// by an obstacle hits them with kilonewtons.
 const STOP_STIFFNESS: f64 = 100.0;
 
 /// One closed chain.
@@ -37,33 +37,33 @@ pub(super) struct Chain {
     system: ChainSystem,
     /// Unit vectors along the shoes in this piece.
     alongs: Vec<Vector>,
-    /// Frames of the shoes, and these in that of the chassis, when their rests were last looked for.
+    /// Poses of the shoes, in the world and in the chassis frame, when rests were last searched for.
     places: Vec<[Pose; 2]>,
-    /// What the shoes' rests did last, shoe by shoe.
+    /// The last forces and grips of the rests, shoe by shoe.
     memory: Vec<RestMemory>,
-    /// Velocities as they are without constraints, and as they come out of a solve.
+    /// Velocities of the shoes without constraints; `solved` holds those of the last solve.
     pub free: Vec<Twist>,
     pub solved: Vec<Twist>,
-    /// [m/s] The same of the idler, ...
+    /// [m/s] Rate of the idler in the last solve.
     pub idler_rate: f64,
-    /// ... and [rad/s] of the sprocket.
+    /// [rad/s] Spin of the sprocket in the last solve.
     pub spin: f64,
     free_spin: f64,
-    /// What holds the idler in this piece.
+    /// The spring and damper of the idler in this piece.
     idler: Damper,
-    /// Whether a shoe was too far off the guide to come back when they were last looked at.
+    /// Whether a shoe was too far off the guide to come back when last checked.
     pub is_off: bool,
 }
 
-/// What a rest's next solve starts from.
+/// Initial guess for the next solve of a rest.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct RestMemory {
-    /// [N]
+    /// [N] Normal force.
     pub force: f64,
     pub grip: Grip,
 }
 
-/// What a step hands to the next.
+/// What a step passes on to the next.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ChainImpulses {
     pins: Vec<Pin>,
@@ -100,7 +100,7 @@ impl Chain {
         }
     }
 
-    /// Whether a step of this chain can have left them.
+    /// Whether a step of this chain can have left these impulses.
     pub(super) fn fits(&self, impulses: &ChainImpulses) -> bool {
         let ChainImpulses { pins, pull, memory } = impulses;
         let counts = pins.len() == self.pins.len() && memory.len() == self.memory.len();
@@ -116,7 +116,7 @@ impl Chain {
         self.memory = impulses.memory;
     }
 
-    /// Brings pins and drive to where the shoes are, the pins to close their gaps in `h` [s].
+    /// Moves pins and drive to the current shoes; the pins are to close their gaps in `h` [s].
     pub(super) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let (pitch, masses) = (self.rule.path.pitch, self.masses());
@@ -139,7 +139,7 @@ impl Chain {
         self.free_spin = state.drives[self.rule.number].spin;
     }
 
-    /// Spring and damper of the idler when it is so far out [m], for `h` [s]; at its stop they are hard.
+    /// Spring and damper of the idler at a travel [m], for `h` [s]; its stops are stiff.
     fn tensioner(&self, travel: f64, h: f64) -> Damper {
         let Tensioner {
             pre_tension,
@@ -157,17 +157,17 @@ impl Chain {
         Damper::new(h * force, h * (damping + h * (stiffness + hard)))
     }
 
-    /// What a rest did last.
+    /// The last force and grip of a rest.
     pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
         self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.place]
     }
 
-    /// Forgets what all of them did.
+    /// Clears the memory of all rests.
     pub(super) fn forget_rests(&mut self) {
         self.memory.fill(RestMemory::default());
     }
 
-    /// Keeps what a rest did.
+    /// Stores the force and grip of a rest.
     pub(super) fn remember_rest(&mut self, shoe: usize, row: &Row) {
         let place = shoe * of_a_shoe(&self.rule) + row.place;
         self.memory[place] = RestMemory {
@@ -180,8 +180,8 @@ impl Chain {
         (self.rule.shoe_mass, self.rule.shoe_inertia)
     }
 
-    /// The system of shoes, pins and drive; the drive gives `given` [N s] if it does not hold the speed
-    /// `set_point` [m/s].
+    /// Assembles the system of shoes, pins and drive; the drive gives the impulse `given` [N s] if it does not
+    /// hold the speed `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
         self.system.start(&self.pins, self.idler);
         let damper = self.pull.damper().shifted(self.pull.aim(set_point));
@@ -213,7 +213,7 @@ impl Chain {
         self.system.add(shoe, rows, damper);
     }
 
-    /// Adds a rest of a shoe on the guide.
+    /// Adds a rest of a shoe on the guide or a wheel.
     pub(super) fn add_rest(
         &mut self,
         shoe: usize,
@@ -225,7 +225,7 @@ impl Chain {
         self.system.add_between(shoe, on_shoe, back, damper);
     }
 
-    /// Adds a pin of a shoe at a tooth of the sprocket.
+    /// Adds a rest of a pin on a tooth of the sprocket.
     pub(super) fn add_tooth(
         &mut self,
         shoe: usize,
@@ -241,12 +241,12 @@ impl Chain {
         self.system.eliminate(chassis)
     }
 
-    /// Finds the shoes' velocities from that of the chassis.
+    /// Finds the velocities of the shoes from that of the chassis.
     pub(super) fn solve(&mut self, chassis: [f64; 3]) {
         [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
-    /// Takes the impulses that belong to the velocities; how far these are from what they should be [m/s].
+    /// Updates the impulses to match the velocities; returns the largest error of a velocity [m/s].
     pub(super) fn follow_velocities(
         &mut self,
         state: &State,
@@ -267,7 +267,7 @@ impl Chain {
         off
     }
 
-    /// [m/s] What the drive is ahead of its aim.
+    /// [m/s] How much faster the drive is than it aims to be.
     pub(super) fn ahead(&self, state: &State, set_point: f64) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let spin = state.drives[self.rule.number].spin;
@@ -275,7 +275,7 @@ impl Chain {
         speed - self.pull.aim(set_point)
     }
 
-    /// [m/s] Speed of the chain: its length for every turn of its shoes over the chassis.
+    /// [m/s] Speed of the chain: one chain length per turn of its shoes relative to the chassis.
     pub(super) fn speed(&self, state: &State) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let turns = shoes
@@ -284,8 +284,8 @@ impl Chain {
         turns.sum::<f64>() * self.rule.path.pitch / std::f64::consts::TAU
     }
 
-    /// Keeps count of what the chain is behind its sprocket, or behind the set-point, as long as the motor
-    /// holds that.
+    /// Integrates how far the chain lags behind its sprocket or, while the motor holds the set-point, behind
+    /// that.
     pub(super) fn count(&mut self, state: &State, set_point: f64, holds: bool, h: f64) {
         let speed = match self.pull.lever {
             Some(lever) => lever * (state.angular_velocity - state.drives[self.rule.number].spin),
@@ -300,7 +300,7 @@ impl Chain {
         self.rule.sprocket.is_some()
     }
 
-    /// [m] By how much chain and sprocket have run differently far.
+    /// [m] Difference in travel between chain and sprocket.
     pub(super) fn sprocket_slip(&self) -> f64 {
         if self.has_sprocket() {
             self.pull.impulses.behind.abs()
@@ -309,13 +309,13 @@ impl Chain {
         }
     }
 
-    /// [1/kg] Of the sprocket at a lever [m].
+    /// [1/kg] Admittance of the sprocket at a lever [m].
     pub(super) fn admittance(&self, lever: f64) -> f64 {
         let sprocket = self.rule.sprocket.as_ref();
         sprocket.map_or(0.0, |sprocket| lever * lever / sprocket.inertia)
     }
 
-    /// The slope of the potential of shoes, pins and drive along the change `solved`, a share of it further on.
+    /// The slope of the potential of shoes, pins and drive along the change `solved`, at a share of it.
     pub(super) fn slope(
         &self,
         state: &State,
@@ -351,7 +351,7 @@ impl Chain {
         self.pull.has_hold()
     }
 
-    /// [N s] What the drive gives in this piece.
+    /// [N s] Impulse of the drive in this piece.
     pub(super) fn drive_impulse(&self) -> f64 {
         self.pull.impulses.impulse
     }
@@ -367,7 +367,7 @@ impl Chain {
         self.pull.impulses.center = self.pull.impulses.impulse;
     }
 
-    /// Starts a piece from the forces of the last one, in its time [s].
+    /// Starts a piece of `h` [s] from the forces of the last one.
     pub(super) fn guess(&mut self, h: f64) {
         for pin in &mut self.pins {
             pin.guess(h);
@@ -376,7 +376,7 @@ impl Chain {
         pull.impulse = pull.force * h;
     }
 
-    /// Keeps the forces of a piece of `h` [s].
+    /// Stores the forces of a piece of `h` [s].
     pub(super) fn remember(&mut self, h: f64) {
         for pin in &mut self.pins {
             pin.remember(h);

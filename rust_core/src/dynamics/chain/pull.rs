@@ -1,9 +1,9 @@
-//! The drive of a chain: it turns the sprocket against the chassis, and teeth do the rest.
+//! The drive of a chain: a motor turns the sprocket against the chassis, and its teeth pull the chain.
 //!
-//! On a guide it is a sprocket without teeth: forces along the shoes of the driving arc, and back on the
-//! chassis. What it holds then is the rate at which the shoes of the arc go round, and
-//! what it limits is the torque. Both are given at the radius at which a whole turn moves the chain by as
-//! many pitches as a turn has shoes, so that the mean speed of the chain is the set-point.
+//! On a guide the sprocket has no teeth: the drive acts with forces along the shoes on the driving arc, and
+//! with the reaction on the chassis. It then holds the rate at which these shoes go round, up to its torque
+//! limit. Both refer to the radius at which a full turn moves the chain by as many pitches as there are shoes
+//! to a turn, so that the mean speed of the chain is the set-point.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -14,35 +14,35 @@ use crate::dynamics::state::{Shoe, State, Twist};
 use crate::geometry::{Vector, cross, direction, left_of, plausible};
 use crate::robot::ChainOfShoes;
 
-/// Compliance of its damper, in units of its admittance.
+/// Compliance of the drive's damper, in units of its admittance.
 const DAMPING: f64 = 1e-8;
 
-/// [1/s] Rate at which the drive makes up for what the chain is behind: a real sprocket counts its shoes,
-/// whatever their polygon does to its speed.
+/// [1/s] Rate at which the drive makes up for lag of the chain: a real sprocket keeps count of the shoes,
+/// however the polygon effect changes their speed.
 const CATCHING_UP: f64 = 5.0;
 
 /// The drive of one chain.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pull {
-    /// The shoes of the arc of a guide.
+    /// The shoes on the driving arc of a guide.
     pub shoes: Vec<Grasp>,
     /// [m] The radius at which a sprocket pulls, if there is one.
     pub lever: Option<f64>,
     pub impulses: PullImpulses,
-    /// [kg]
+    /// [kg] Impulse per speed.
     stiffness: f64,
 }
 
-/// The part of it that lasts.
+/// The part of the drive that is kept from piece to piece.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct PullImpulses {
-    /// [N s] In this piece, at the chain; ...
+    /// [N s] Impulse on the chain in this piece.
     pub impulse: f64,
-    /// ... what a direct solve starts from, ...
+    /// [N s] Impulse about which a direct solve damps it.
     pub center: f64,
-    /// ... and [N] what the next piece starts from.
+    /// [N] Force from which the next piece starts.
     pub force: f64,
-    /// [m] What the chain is behind the set-point, or behind its sprocket.
+    /// [m] How far the chain lags behind the set-point or behind its sprocket.
     pub behind: f64,
 }
 
@@ -62,8 +62,8 @@ pub(super) struct Grasp {
 }
 
 impl Pull {
-    /// Takes hold of the shoes that are round the driving end `axle` now, which point along `alongs`; of a
-    /// chain that has come off there may be none.
+    /// Selects the shoes on the arc round the driving end `axle`; they point along `alongs`. A chain that has
+    /// come off may have none there.
     pub(super) fn follow(
         &mut self,
         chain: &ChainOfShoes,
@@ -81,11 +81,11 @@ impl Pull {
         let forwards = direction(state.angle);
         let (mut torque, mut squares) = (0.0, 0.0);
         for (i, (shoe, along)) in shoes.iter().zip(alongs).enumerate() {
-            // Shoes count the more, the farther round the end they face: none begins or ends at once.
+            // A smooth weight, so that no shoe joins or leaves the arc abruptly.
             let share = (-left_of(*along).dot(forwards)).max(0.0).powi(2);
             if share > 0.0 {
                 let along = along * share;
-                // The torque counts: a shoe farther out is faster, and pulls the less for it.
+                // Torque counts: a shoe farther out is faster, so the force on it is smaller.
                 torque += cross(along, shoe.center - axle);
                 squares += share * share;
                 let back = cross(shoe.center - state.center, along);
@@ -114,7 +114,7 @@ impl Pull {
         self.lever.is_some() || !self.shoes.is_empty()
     }
 
-    /// [m/s] Speed that the drive aims at.
+    /// [m/s] Speed that the drive aims for.
     pub(super) fn aim(&self, set_point: f64) -> f64 {
         match self.lever {
             Some(_) => set_point,
@@ -126,7 +126,7 @@ impl Pull {
         Damper::new(self.impulses.center, self.stiffness)
     }
 
-    /// [m/s] Speed of the chain on a guide, or that which the spin of its sprocket stands for.
+    /// [m/s] Speed of the chain on a guide, or the speed given by the spin of the sprocket.
     pub(super) fn speed(&self, chassis: Twist, spin: f64, shoe: impl Fn(usize) -> Twist) -> f64 {
         if let Some(lever) = self.lever {
             return lever * (chassis.turn - spin);
@@ -186,7 +186,7 @@ mod tests {
             idlers: Vec::new(),
         };
         let mut pull = Pull::default();
-        // Upwards behind the axle is round the end; downwards faces forwards.
+        // A shoe that points up behind the axle is on the arc; one that points down is on the front side.
         for (angle, holds) in [(1.6, true), (-1.6, false)] {
             let shoes = [shoe(angle)];
             let along = [shoes[0].along()];

@@ -1,20 +1,20 @@
-//! A place where a shoe of a chain bears on what it runs on.
+//! A rest: a place where a shoe of a chain bears on the guide, a wheel or a tooth.
 //!
 //! The equations: docs/physics.md, "Chains".
 
 use crate::geometry::{Pose, Vector};
 use crate::robot::ChainOfShoes;
 
-/// A place where a shoe bears on the guide, on a wheel or on a tooth, or nearly.
+/// A place where a shoe bears on the guide, on a wheel or on a tooth, or nearly does.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dynamics) struct Rest {
-    /// Index in the chain, and which of its rests.
+    /// Index of the shoe in the chain, and of the rest on the shoe.
     pub shoe: usize,
     pub place: usize,
     pub point: Vector,
-    /// From there to the shoe.
+    /// Unit normal towards the shoe.
     pub normal: Vector,
-    /// [m]
+    /// [m] Gap.
     pub gap: f64,
     pub on: Bearing,
 }
@@ -22,24 +22,24 @@ pub(in crate::dynamics) struct Rest {
 /// What a shoe bears on.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dynamics) enum Bearing {
-    /// The guide or a wheel, and how it moves over the chassis with the idler, for each metre of its slide.
+    /// The guide or a wheel, with its motion relative to the chassis per metre of idler travel.
     Chassis(Vector),
-    /// A tooth of the sprocket, and where the axle of that is.
+    /// A tooth of the sprocket, with the position of the sprocket's axle.
     Tooth(Vector),
 }
 
-/// Where chassis, idler and sprocket are when rests are looked for.
+/// The pose of chassis, idler and sprocket in which rests are searched for.
 #[derive(Clone, Copy)]
 pub(in crate::dynamics) struct Stand {
     pub chassis: Pose,
-    /// [m] How far the idler is out, ...
+    /// [m] Travel of the idler.
     pub travel: f64,
-    /// ... and what the sprocket has moved the chain by.
+    /// [m] Travel of the chain by the sprocket.
     pub run: f64,
 }
 
-/// Places at which a shoe can rest: on either end of a guide and with its front pin on it; or on each wheel,
-/// with its front pin on each wheel, and between two teeth.
+/// Number of possible rests of a shoe: on both ends of a guide, and with its front pin on the guide; or on
+/// each wheel, with its front pin on each wheel, and on two teeth.
 pub(super) fn of_a_shoe(rule: &ChainOfShoes) -> usize {
     match rule.sprocket {
         None => 3,

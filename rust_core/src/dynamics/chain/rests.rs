@@ -1,4 +1,4 @@
-//! Where the shoes of a chain bear on what they run on: the guide, or wheels and teeth.
+//! The search for rests: where the shoes of a chain bear on the guide, or on wheels and teeth.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -6,11 +6,11 @@ use super::Chain;
 use super::rest::{Bearing, Rest, Stand};
 use crate::geometry::{Disc, Pose, Vector};
 
-/// Pitches by which a chain that has jumped off its guide hangs off it at least.
+/// Number of pitches off the guide from which a chain counts as having jumped off.
 const FAR_OFF: f64 = 2.0;
 
 impl Chain {
-    /// Calls `found` for every place within `reach` [m] at which a shoe could rest.
+    /// Calls `found` for every place within `reach` [m] where a shoe could rest.
     pub(in crate::dynamics) fn rests(
         &mut self,
         stand: Stand,
@@ -31,7 +31,7 @@ impl Chain {
         };
     }
 
-    /// Those on a guide; whether a shoe is too far off it to come back.
+    /// Finds the rests on a guide; returns whether a shoe is too far off it to come back.
     fn rests_on_guide(
         &self,
         stand: Stand,
@@ -67,7 +67,7 @@ impl Chain {
         is_off
     }
 
-    /// A rest of a plate's inner face on a disc that slides with the idler.
+    /// Finds the rest of a plate's inner face on a disc, which may slide with the idler.
     pub(super) fn rest_on_disc(
         &self,
         (shoe, place): (usize, usize),

@@ -1,8 +1,8 @@
-//! The linear system of a chain of shoes, eliminated into that of the chassis.
+//! The linear system of a chain of shoes, reduced by elimination to the system of the chassis.
 //!
-//! Each shoe has three rows and meets its two neighbours and the chassis only, so the elimination goes
-//! once round the chain. The last shoe closes it: like the chassis, the drive and the idler it is carried
-//! along as a border.
+//! Each shoe has three rows and is coupled only to its two neighbours and the chassis, so the elimination goes
+//! once round the chain. The last shoe closes the loop; like the chassis, the drive and the idler, it is part
+//! of a border that is carried along.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -13,18 +13,18 @@ use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 use crate::geometry::Vector;
 
-/// Rows and columns of the border: three of the closing shoe, three of the chassis, ...
+/// Rows and columns of the border: three for the closing shoe, three for the chassis, ...
 const CLOSING: usize = 0;
 const CHASSIS: usize = 3;
 const TURN: usize = 5;
-/// ... one of the drive, its force or the spin of its sprocket, and one of the idler; then the right-hand side.
+/// ... one for the drive (its force or the spin of its sprocket), one for the idler; then the right-hand side.
 const DRIVE: usize = 6;
 const IDLER: usize = 7;
 const BORDER: usize = 8;
 const RIGHT: usize = 8;
 const WIDTH: usize = 9;
 
-/// What besides chassis and shoe takes part in a contact.
+/// A body that takes part in a contact besides chassis and shoe.
 #[derive(Clone, Copy)]
 pub(super) enum Beside {
     Idler,
@@ -32,7 +32,7 @@ pub(super) enum Beside {
 }
 
 impl Beside {
-    /// Rows of the border that it takes: three of the chassis and its own.
+    /// Its rows of the border: three of the chassis and its own.
     fn places(self) -> [usize; 4] {
         let own = match self {
             Beside::Idler => IDLER,
@@ -42,11 +42,11 @@ impl Beside {
     }
 }
 
-/// What of the system belongs to one shoe.
+/// The part of the system that belongs to one shoe.
 #[derive(Clone, Copy, Default)]
 struct Entry {
     own: Matrix3<f64>,
-    /// Its rows in the columns of the next shoe; those of the next in its own are the transpose.
+    /// Its rows in the columns of the next shoe; the transpose holds the next shoe's rows in its columns.
     next: Matrix3<f64>,
     /// Its rows in the columns of the border, and the right-hand side.
     beside: SMatrix<f64, 3, WIDTH>,
@@ -57,9 +57,9 @@ struct Entry {
 /// The system of one chain.
 pub(super) struct ChainSystem {
     shoes: Vec<Entry>,
-    /// The shoes as they are in this piece without anything but their pins.
+    /// The shoes in this piece with their pins only.
     bare: Vec<Entry>,
-    /// Columns of the next shoe and of the border once those of a shoe itself are eliminated.
+    /// Columns of the next shoe and of the border after the shoe's own have been eliminated.
     solved: Vec<(Matrix3<f64>, SMatrix<f64, 3, WIDTH>)>,
     border: SMatrix<f64, BORDER, WIDTH>,
 }
@@ -74,8 +74,8 @@ impl ChainSystem {
         }
     }
 
-    /// Takes shoes of a mass and inertia that have such velocities without constraints, and how stiffly their
-    /// pins hold.
+    /// Sets up shoes of a mass and inertia with their velocities without constraints, and the stiffness of their
+    /// pins.
     pub(super) fn link(&mut self, (mass, inertia): (f64, f64), free: &[Twist], pins: &[Pin]) {
         let masses = Vector3::new(mass, mass, inertia);
         for (bare, twist) in self.bare.iter_mut().zip(free) {
@@ -110,7 +110,7 @@ impl ChainSystem {
         self.border[(IDLER, RIGHT)] = idler.at(0.0);
     }
 
-    /// Adds a constraint on one shoe: the impulse of a damper along `action` acts along `force`.
+    /// Adds a constraint on one shoe; `rows` holds the directions of the speed and of the impulse.
     pub(super) fn add(&mut self, shoe: usize, rows: [[f64; 3]; 2], damper: Damper) {
         let entry = &mut self.shoes[shoe];
         let [force, action] = rows.map(Vector3::from);
@@ -119,8 +119,8 @@ impl ChainSystem {
         right += force * damper.at(0.0);
     }
 
-    /// The same of a constraint that acts on chassis and idler or sprocket, too; these are the first three and
-    /// the last of `back`.
+    /// Adds a constraint between a shoe and the chassis with idler or sprocket; `back` holds three entries for the
+    /// chassis and one for the other.
     pub(super) fn add_between(
         &mut self,
         shoe: usize,
@@ -145,7 +145,7 @@ impl ChainSystem {
         }
     }
 
-    /// Joins a shoe to the drive: how the drive's speed counts its velocity, and that of the chassis.
+    /// Couples a shoe to the drive: how its velocity, and that of the chassis, enter the drive's speed.
     pub(super) fn add_drive(&mut self, shoe: usize, on_shoe: [f64; 3], on_chassis: [f64; 3]) {
         let entry = &mut self.shoes[shoe];
         for i in 0..3 {
@@ -156,20 +156,20 @@ impl ChainSystem {
         }
     }
 
-    /// The damper of the drive.
+    /// Sets the damper of the drive.
     pub(super) fn set_drive(&mut self, damper: Damper) {
         self.border[(DRIVE, DRIVE)] = -1.0 / damper.stiffness;
         self.border[(DRIVE, RIGHT)] = damper.at(0.0) / damper.stiffness;
     }
 
-    /// Gives the drive a sprocket of an inertia [kg m^2] and a spin [rad/s] that it would have by itself.
+    /// Adds a sprocket to the drive: its inertia [kg m^2] and its spin [rad/s] without constraints.
     pub(super) fn add_sprocket(&mut self, inertia: f64, spin: f64) {
         self.border[(DRIVE, DRIVE)] = inertia;
         self.border[(DRIVE, RIGHT)] = inertia * spin;
     }
 
-    /// Turns chassis and sprocket against each other with a damper at a lever [m]; its speed is that of the
-    /// chassis over the sprocket.
+    /// Adds a damper at a lever [m] that turns chassis and sprocket against each other; its speed is that of the
+    /// chassis relative to the sprocket.
     pub(super) fn turn_sprocket(&mut self, lever: f64, damper: Damper) {
         let levers = [(TURN, lever), (DRIVE, -lever)];
         for (row, of_row) in levers {
@@ -180,7 +180,7 @@ impl ChainSystem {
         }
     }
 
-    /// A constant impulse on a shoe and on the chassis.
+    /// Adds a constant impulse on a shoe and on the chassis.
     pub(super) fn push(
         &mut self,
         shoe: usize,
@@ -194,15 +194,15 @@ impl ChainSystem {
         }
     }
 
-    /// Leaves only the chassis: adds what the chain does to its rows. None if the constraints contradict
-    /// each other.
+    /// Reduces the system to the chassis, adding the chain's part to the chassis' rows. None if the constraints
+    /// contradict each other.
     pub(super) fn eliminate(&mut self, chassis: &mut [[f64; 4]; 3]) -> Option<()> {
         let last = self.shoes.len() - 1;
         let closing = self.shoes[last];
         let mut before = closing.next.transpose();
         for k in 0..last {
             let mut entry = self.shoes[k];
-            // The closing shoe is the one before the first, and the one behind the last but one.
+            // The closing shoe is both before the first and after the last but one.
             if k + 1 == last {
                 before += std::mem::take(&mut entry.next);
             }
@@ -234,7 +234,7 @@ impl ChainSystem {
         Some(())
     }
 
-    /// Brings the closing shoe, the drive and the idler into terms of the chassis.
+    /// Expresses the closing shoe, the drive and the idler in terms of the chassis.
     fn solve_border(&mut self) -> Option<()> {
         for pivot in [0, 1, 2, IDLER, DRIVE] {
             let by = self.border[(pivot, pivot)];
@@ -250,7 +250,7 @@ impl ChainSystem {
         Some(())
     }
 
-    /// The velocities of the shoes with those of the chassis; returns those of idler and sprocket.
+    /// Computes the velocities of the shoes from that of the chassis; returns those of idler and sprocket.
     pub(super) fn follow(&self, chassis: [f64; 3], shoes: &mut [Twist]) -> [f64; 2] {
         let mut known = SVector::<f64, WIDTH>::zeros();
         known.fixed_rows_mut::<3>(CHASSIS).copy_from_slice(&chassis);

@@ -1,4 +1,4 @@
-//! Where a chain bears on wheels: the drum of the sprocket, its teeth, idler, road wheels, rollers.
+//! Where a chain rests on wheels: the sprocket's drum and teeth, idler, road wheels and return rollers.
 //!
 //! The equations: docs/physics.md, "Chains".
 
@@ -7,7 +7,7 @@ use super::rest::{Bearing, Rest, Stand};
 use crate::geometry::{Disc, Rotation, Vector};
 
 impl Chain {
-    /// Rests of plates and pins on wheels, and of pins on the teeth.
+    /// Finds the rests of plates and pins on wheels, and of pins on teeth.
     pub(super) fn rests_on_wheels(
         &self,
         stand: Stand,
@@ -32,7 +32,7 @@ impl Chain {
         }
     }
 
-    /// A rest of the edge between two plates on a wheel, where that meets neither face.
+    /// Finds the rest of the edge between two plates on a wheel that touches neither plate's face.
     fn rest_of_pin(
         &self,
         (shoe, wheel): (usize, usize),
@@ -68,7 +68,7 @@ impl Chain {
         );
     }
 
-    /// Rests of the front pin of a shoe on the tooth behind it and on the one ahead.
+    /// Finds the rests of a shoe's front pin on the teeth behind and ahead of it.
     fn rest_on_teeth(
         &self,
         shoe: usize,
@@ -106,13 +106,13 @@ impl Chain {
         }
     }
 
-    /// The front pin of a shoe in the frame of the chassis.
+    /// [m] The front pin of a shoe in the chassis frame.
     fn pin(&self, shoe: usize) -> Vector {
         let [_, place] = self.places[shoe];
         place.transform_point(Vector::new(0.5 * self.rule.path.pitch, 0.0))
     }
 
-    /// Whether it no longer goes round sprocket and idler: what is left behind one of them is no loop.
+    /// Whether the chain is off: it no longer forms a loop round both sprocket and idler.
     pub(super) fn is_off_wheels(&self, stand: Stand) -> bool {
         let [rear, front] = self.rule.ends.map(|end| end.center);
         let goes_round = |center: Vector, outwards: f64| {

@@ -1,4 +1,4 @@
-//! Arms in free flight, and on a chassis that is too heavy to feel them.
+//! Arms in free flight, and on a chassis so heavy that they do not move it.
 
 use approx::assert_relative_eq;
 
@@ -40,7 +40,7 @@ fn advance(dynamics: &mut Dynamics, state: &mut State, time: f64) {
     }
 }
 
-/// Momentum [kg m/s], moment of momentum about the origin [kg m^2/s] and kinetic energy [J].
+/// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and kinetic energy [J].
 fn sums(dynamics: &mut Dynamics, state: &State) -> (Vector, f64, f64) {
     dynamics.place_flippers(state, 0.0);
     let m = &dynamics.model;
@@ -89,7 +89,7 @@ fn arms_that_swing_in_the_air_keep_momentum_and_energy_to_second_order() {
         losses.push(lost);
         assert!(lost.iter().all(|share| *share < 1e-5), "{lost:?}");
     }
-    // With half the step a quarter is left.
+    // Half the step leaves a quarter of the error.
     for (coarse, fine) in losses[0].iter().zip(losses[1]) {
         assert!(fine < 0.3 * coarse || *coarse < 1e-9, "{losses:?}");
     }
@@ -103,7 +103,7 @@ fn a_free_arm_of_a_heavy_robot_is_a_pendulum() {
     scenario.robot.moment_of_inertia = 1e6;
     scenario.robot.center_of_mass = [0.0, 0.0];
     let (mut dynamics, mut state) = built(&scenario);
-    // It falls freely with its pivot unless something holds it up.
+    // The pivot falls freely unless something holds the robot up.
     dynamics.outer_force = Vector::new(0.0, dynamics.model.mass * scenario.gravity);
     let (down, amplitude) = (-0.5 * std::f64::consts::PI, 0.2);
     state.flippers[0].angle = down + amplitude;
@@ -146,7 +146,7 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     }
     assert!(state.angle < -0.01, "{} rad", state.angle);
     let (momentum, moment, _) = sums(&mut dynamics, &state);
-    // The rate jumps within a step, and what it takes inwards is not known to better than one.
+    // The rate jumps within a step, so the centripetal effect is known to within one step only.
     let arm = &dynamics.flippers[0].rule;
     let in_a_step = arm.mass * arm.arm.length() * 2.0 * 2.0 * 1e-3;
     assert!(momentum.length() < in_a_step, "{momentum}");

@@ -1,4 +1,4 @@
-//! Contacts that a part of a robot makes from step to step, and the numbers that they get.
+//! Contacts that one part makes from step to step, and the numbers that they get.
 
 use super::*;
 use crate::draw::Draw;
@@ -6,7 +6,7 @@ use crate::dynamics::tests::{engineer, setup};
 use crate::geometry::{Vector, direction};
 use crate::terrain::Ground;
 
-/// [s]
+/// [s] Length of a step.
 const STEP: f64 = 0.001;
 
 /// A contact of a part with level ground at x [m].
@@ -24,7 +24,7 @@ fn at(part: usize, x: f64) -> Contact {
     }
 }
 
-/// Steps of a robot, each with contacts that a test makes.
+/// A robot's steps, with contacts made up by a test.
 #[derive(Default)]
 struct Steps {
     identity: Identity,
@@ -32,7 +32,7 @@ struct Steps {
 }
 
 impl Steps {
-    /// A step with these contacts, in order of part and x; their numbers.
+    /// Takes a step with these contacts, sorted by part and x; returns their numbers.
     fn step(&mut self, contacts: &[Contact]) -> Vec<u64> {
         let mut contacts = contacts.to_vec();
         self.identity.recognise(&self.last, &mut contacts, STEP);
@@ -40,7 +40,7 @@ impl Steps {
         contacts.iter().map(|contact| contact.number).collect()
     }
 
-    /// Steps without contacts for a time [s].
+    /// Takes steps without contacts for a time [s].
     fn lift(&mut self, time: f64) {
         for _ in 0..(time / STEP).round() as u32 {
             self.step(&[]);
@@ -65,7 +65,7 @@ fn a_contact_that_rattles_gets_its_number_back() {
     for _ in 0..5 {
         steps.lift(0.99);
         assert_eq!(steps.step(&[at(0, 0.1004)]), [2]);
-        // The other one has opened longer than it is remembered; a place beside it would be another.
+        // The second one was open longer than contacts are remembered; a place beside it would be another contact.
         steps.lift(0.02);
         assert_eq!(steps.step(&[at(0, 0.1004)]), [2]);
     }
@@ -89,14 +89,14 @@ fn a_contact_comes_back_to_its_place_and_its_part_alone() {
         normal: direction(angle),
         ..at(1, 0.0)
     };
-    // Normals are of one contact up to acos(0.9), 25.8 degrees.
+    // Normals belong to one contact up to acos(0.9), 25.8 degrees.
     assert!(back(turned(65_f64.to_radians())));
     assert!(!back(turned(64_f64.to_radians())));
 }
 
 #[test]
 fn teeth_of_a_wheel_that_spins_on_the_spot_are_two_contacts() {
-    // Each is on the ground for 24 mm of its way, and the next comes down 16 mm behind it.
+    // Each tooth stays on the ground for 24 mm, and the next comes down 16 mm behind it.
     let mut steps = Steps::default();
     let mut seen = Vec::new();
     for i in 0..2000_u32 {
@@ -108,7 +108,7 @@ fn teeth_of_a_wheel_that_spins_on_the_spot_are_two_contacts() {
     }
     seen.sort_unstable();
     seen.dedup();
-    // The first step finds one that is half over, which none comes down at.
+    // The first step finds a tooth that is half-way already.
     assert_eq!(seen, [1, 2, 3]);
 }
 
@@ -156,7 +156,7 @@ fn of_two_contacts_that_move_on_each_keeps_its_own_number() {
         let x = f64::from(i) * 3e-4;
         assert_eq!(steps.step(&[at(0, x), at(0, x + 0.001)]), [1, 2]);
     }
-    // They become one, that of the nearer, and two again.
+    // They merge into one with the number of the nearer, and separate again.
     assert_eq!(steps.step(&[at(0, 0.0308)]), [2]);
     let mut both = steps.step(&[at(0, 0.0301), at(0, 0.0309)]);
     both.sort_unstable();
@@ -185,7 +185,7 @@ fn contacts_that_open_by_the_thousand_are_not_all_remembered() {
         steps.step(&[at(0, f64::from(i)), at(0, f64::from(i) + 0.5)]);
     }
     assert_eq!(steps.identity.lost.len(), MOST_LOST);
-    // Those of long ago are gone first.
+    // The oldest are forgotten first.
     assert_eq!(steps.step(&[at(0, 990.0)]), [1981]);
     assert_eq!(steps.step(&[at(0, 800.0)]), [2001]);
 }

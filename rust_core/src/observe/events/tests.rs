@@ -1,4 +1,4 @@
-//! Intrusions followed from look to look.
+//! Intrusions tracked from check to check.
 
 use super::*;
 use crate::contact::TrackEnvelope;
@@ -7,7 +7,7 @@ use crate::robot::{Model, Mount};
 use crate::scenario::Scenario;
 use crate::terrain::Ground;
 
-/// An intrusion between bodies 1 and 2 with these edges, the first the deepest.
+/// An intrusion between bodies 1 and 2 with these edges, the deepest first.
 fn intrusion(edges: &[i32], depth: f64) -> Intrusion {
     let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
     let scenario = Scenario::from_json(text).expect("the shared scenario is valid");
@@ -16,7 +16,7 @@ fn intrusion(edges: &[i32], depth: f64) -> Intrusion {
     let track = (0, Mount::Chassis);
     let margin = scenario.criteria.intrusion_depth;
     let envelope = TrackEnvelope::new(&model.parts, track, margin);
-    // Astride the face of the step.
+    // Straddling the face of the step.
     let pose = Pose::from_translation(Vector::new(0.0, 0.1));
     let mut intrusion = envelope.intrusions(&ground.lanes[0], pose).remove(0);
     (intrusion.edges, intrusion.edge) = (edges.to_vec(), edges[0]);
@@ -246,7 +246,7 @@ fn what_is_followed_with_one_thing_spoilt_does_not_fit() {
     type Spoil = fn(&mut IntrusionWatch);
 
     let lanes = lanes();
-    // One is over and one goes on.
+    // One is over and one is going on.
     let followed = || {
         let mut watch = IntrusionWatch::default();
         for (time, edge) in [(1.0, 0), (2.0, 1)] {

@@ -1,5 +1,5 @@
-//! Synthetic readings: what a monitor makes of them, and when it ends a run.
-#![allow(clippy::float_cmp)] // lengths and times here are exact in binary, or told again unchanged
+//! A monitor with synthetic readings: what it observes, and when it ends a run.
+#![allow(clippy::float_cmp)] // lengths and times here are exact in binary, or repeated unchanged
 
 mod ends;
 mod fits;
@@ -14,13 +14,13 @@ use crate::dynamics::Grip;
 use crate::geometry::Vector;
 use crate::scenario::Terrain;
 
-/// [s] Time between two readings, a tenth of that between two looks.
+/// [s] Time between two readings, a tenth of that between two checks.
 const STEP: f64 = 0.001;
-/// [m] Half the distance of the end axles.
+/// [m] Half the distance between the end axles.
 const HALF: f64 = 0.25;
 /// [m] Radius at both ends.
 const RADIUS: f64 = 0.0625;
-/// [m] Where the ground ends on either side.
+/// [m] Distance at which the ground ends on either side.
 const END: f64 = 4.0;
 
 /// The Engineer on a belt, with end axles 0.5 m apart, on level ground.
@@ -34,7 +34,7 @@ fn scenario() -> Scenario {
     scenario
 }
 
-/// Ground through points, with its goal 1 m behind the origin.
+/// Ground through these points, with its goal 1 m behind the origin.
 fn ground(points: &[[f64; 2]]) -> Terrain {
     Terrain::Points {
         points: points.to_vec(),
@@ -44,7 +44,7 @@ fn ground(points: &[[f64; 2]]) -> Terrain {
     }
 }
 
-/// A contact of the first part of a robot with a facet of its ground.
+/// A contact of the first part of a robot with a facet of the ground.
 fn on_facet(facet: usize, normal_force: f64) -> LoadedContact {
     LoadedContact {
         contact: Contact {
@@ -66,7 +66,7 @@ fn on_facet(facet: usize, normal_force: f64) -> LoadedContact {
     }
 }
 
-/// A robot that is wherever a test puts it, and its monitor.
+/// A robot placed by the tests, and its monitor.
 struct Watched {
     monitor: Monitor,
     now: Reading,
@@ -108,7 +108,7 @@ impl Watched {
         Self::new(&scenario)
     }
 
-    /// One step later, where it is.
+    /// Takes one step without motion.
     fn step(&mut self) {
         self.steps += 1;
         self.now.time = f64::from(self.steps) * STEP;
@@ -118,7 +118,7 @@ impl Watched {
             .observe(&self.now, self.command, &self.loaded, drives, &self.running);
     }
 
-    /// Moves at a velocity [m/s] and a rate [rad/s] until a time [s].
+    /// Moves at a velocity [m/s] and an angular velocity [rad/s] until a time [s].
     fn goes_until(&mut self, time: f64, velocity: [f64; 2], rate: f64) {
         self.now.velocity = Vector::from(velocity);
         self.now.angular_velocity = rate;
@@ -133,7 +133,7 @@ impl Watched {
         self.goes_until(time, [0.0, 0.0], 0.0);
     }
 
-    /// One step later, in a pose; how the run has ended by then.
+    /// Takes one step in a pose; returns the outcome by then.
     fn put(&mut self, x: f64, y: f64, angle: f64) -> Option<Outcome> {
         self.now.position = Vector::new(x, y);
         self.now.chassis_angle = angle;
@@ -149,7 +149,7 @@ impl Watched {
 #[test]
 fn path_length_counts_backwards_when_the_robot_goes_backwards_along_its_axis() {
     let mut robot = Watched::with(|_| {});
-    // Nose up by 60 degrees; straight up is forwards by the sine, and forwards by the cosine.
+    // Nose up by 60 degrees: motion along the axis is sin 60 of motion upwards and cos 60 of motion forwards.
     robot.now.chassis_angle = std::f64::consts::FRAC_PI_3;
     robot.goes_until(0.5, [0.4, 0.0], 0.0);
     assert_relative_eq!(robot.seen().path_length, 0.1, max_relative = 1e-12);
@@ -216,7 +216,7 @@ fn chains_are_remembered_at_their_worst() {
 #[test]
 fn shaking_is_looked_at_every_ten_milliseconds() {
     let mut robot = Watched::with(|_| {});
-    // Up and down within a look leaves no acceleration between two looks.
+    // Moving up and down between two checks leaves no acceleration from check to check.
     for i in 0..1000 {
         robot.now.velocity.y = if i % 2 == 0 { -0.1 } else { 0.1 };
         robot.now.velocity.y *= if i == 0 { -1.0 } else { 1.0 };

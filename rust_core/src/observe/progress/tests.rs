@@ -1,21 +1,21 @@
-//! Windows over synthetic ways.
-#![allow(clippy::float_cmp)] // ways and times here are exact in binary
+//! Stop windows over synthetic motion.
+#![allow(clippy::float_cmp)] // distances and times here are exact in binary
 
 use super::*;
 use crate::geometry::Vector;
 
-/// Looks in a window, with a second between two.
+/// Checks in a window, one second apart.
 const SPAN: usize = 8;
 const LEAST: f64 = 0.25;
-/// [m] Distance of the end axles.
+/// [m] Distance between the end axles.
 const LENGTH: f64 = 0.5;
 
-/// A robot that is told to go 1 m in every second, looked at after each.
+/// A robot commanded to go 1 m per second, checked every second.
 struct Way {
     progress: Progress,
     time: f64,
     command: f64,
-    /// [m/s] Of the drivetrain.
+    /// [m/s] Set-point of the drivetrain.
     set_point: f64,
 }
 
@@ -29,7 +29,7 @@ impl Way {
         }
     }
 
-    /// The next look finds it at x [m], turned by an angle [rad]; the beginning of a stop that has ended.
+    /// Checks it at x [m], turned by an angle [rad]; returns the beginning of a stop that has ended.
     fn turned(&mut self, x: f64, angle: f64) -> Option<f64> {
         self.time += 1.0;
         let now = Reading {
@@ -52,7 +52,7 @@ impl Way {
         self.turned(x, 0.0)
     }
 
-    /// So many looks on the way from one place to another, that at `to` included.
+    /// Makes this number of checks between two places, the one at `to` included.
     fn goes(&mut self, from: f64, to: f64, looks: usize) {
         for i in 1..=looks {
             self.at(from + (to - from) * i as f64 / looks as f64);
@@ -83,7 +83,7 @@ fn a_stop_begins_a_window_before_it_is_seen() {
 fn a_robot_that_comes_to_rest_has_stopped_when_a_window_holds_too_little() {
     let mut way = Way::new(1.0);
     way.goes(2.0, 22.0, 20);
-    // Seven looks later the window still holds one metre of eight, two before that a quarter.
+    // Seven checks later the window still holds one metre of eight; two checks earlier, a quarter.
     way.stands(22.0, SPAN - 2);
     assert_eq!(way.progress.share, LEAST);
     assert_eq!(way.progress.stop_since, None);
@@ -118,7 +118,7 @@ fn the_share_is_that_of_the_commanded_way_in_either_direction() {
 fn way_that_is_made_twice_counts_once() {
     let mut way = Way::new(1.0);
     way.goes(0.0, 10.0, 10);
-    // Thrown back by 5 m, it makes its way anew.
+    // Thrown back by 5 m, it covers that distance again.
     way.goes(5.0, 10.0, SPAN);
     assert_eq!(way.progress.share, 0.0);
     assert!(way.progress.stop_since.is_some());
@@ -217,7 +217,7 @@ fn a_pause_begins_anew_in_either_direction() {
 #[test]
 fn it_falters_after_half_a_window_without_way() {
     let mut way = Way::new(1.0);
-    // The metre between the first two looks is a quarter of half a window.
+    // The metre between the first two checks is a quarter of half a window.
     way.at(3.0);
     way.stands(4.0, SPAN / 2);
     assert!(!way.progress.falters());
@@ -241,7 +241,7 @@ fn a_stop_falters_even_if_a_little_way_is_made_in_the_end() {
     let mut way = Way::new(1.0);
     way.stands(3.0, SPAN);
     way.at(4.0);
-    // A quarter of what was commanded in half a window, an eighth in the whole.
+    // A quarter of the distance commanded in half a window, an eighth of that in the whole.
     assert!(way.progress.stop_since.is_some());
     assert!(way.progress.falters());
 }
@@ -250,7 +250,7 @@ fn a_stop_falters_even_if_a_little_way_is_made_in_the_end() {
 fn progress_with_one_thing_spoilt_does_not_fit() {
     type Spoil = fn(&mut Progress);
 
-    // No lane is needed for a stop without an edge.
+    // A stop without an edge needs no lane.
     let fits = |progress: &Progress| progress.fits(1, &[]);
     let genuine = || {
         let mut way = Way::new(1.0);
@@ -266,7 +266,7 @@ fn progress_with_one_thing_spoilt_does_not_fit() {
         ("direction that is no number", |p| p.direction = f64::NAN),
         ("advance then", |p| p.history[2].advance = f64::NAN),
         ("angle then", |p| p.history[2].angle = f64::NAN),
-        // Their sum is no number.
+        // Each is finite, but their sum is not a number.
         ("advance and angle then", |p| {
             (p.history[2].advance, p.history[2].angle) = (f64::INFINITY, f64::NEG_INFINITY);
         }),

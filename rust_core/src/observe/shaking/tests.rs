@@ -1,4 +1,4 @@
-//! Means of synthetic looks, by hand.
+//! Means of synthetic checks, computed by hand.
 #![allow(clippy::float_cmp)] // nothing is exactly 0
 
 use approx::assert_relative_eq;
@@ -31,7 +31,7 @@ fn a_run_without_a_span_of_time_does_not_shake() {
 fn longer_spans_count_for_more() {
     let mut shaking = Shaking::default();
     shaking.look(&reading(3.0, 1.0, 7.0));
-    // Half a second at 2 m/s^2, then one and a half at -4 m/s^2; the rates are those of the spans' ends.
+    // Half a second at 2 m/s^2, then one and a half at -4 m/s^2; rates are those at the end of each span.
     shaking.look(&reading(3.5, 2.0, 3.0));
     shaking.look(&reading(5.0, -4.0, -2.0));
     let mean = |first: f64, then: f64| (first * first * 0.25 + then * then * 0.75).sqrt();

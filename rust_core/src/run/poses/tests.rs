@@ -1,4 +1,4 @@
-//! Poses of a trace are those at which the contacts of that instant are found.
+//! Poses from a trace are those at which the contacts of that instant are found.
 
 use super::*;
 use crate::geometry::{Envelope, Rotation};
@@ -8,7 +8,7 @@ use crate::run::trace::Recorder;
 use crate::run::{Checked, Record, Simulation};
 use crate::scenario::{Gait, GearWheel, Hold, LineOfWheels, Scenario, Terrain, Track, Wheel};
 
-/// Robots with all kinds of bodies, before a step and with a step under one track alone.
+/// Robots with all kinds of bodies, in front of a step, or of a step under one track only.
 fn scenarios() -> Vec<(String, Scenario)> {
     let texts = [
         include_str!("../../../../tests/scenarios/engineer_belt_step.json"),
@@ -65,7 +65,7 @@ fn read(text: &str) -> Scenario {
     Scenario::from_json(text).expect("the shared scenario is valid")
 }
 
-/// A simulation after so many steps, and the trace of that instant.
+/// A simulation after a number of steps, and the trace of that instant.
 fn after(scenario: &Scenario, steps: usize) -> (Simulation, Trace) {
     let mut simulation = Simulation::new(&Checked::new(scenario).expect("it is valid"));
     for _ in 0..steps {
@@ -99,7 +99,7 @@ fn bodies_are_where_the_contacts_have_their_parts() {
                     unreachable!("three numbers a body");
                 };
                 if part.kind.is_in_chain() && part.kind != BodyKind::Guide {
-                    // The ground meets it as a disc in the frame of the chassis.
+                    // For contacts it is a disc in the frame of the chassis.
                     let Shape::Hull { discs, .. } = &part.shape else {
                         unreachable!("wheels in a chain are hulls");
                     };

@@ -36,7 +36,7 @@ impl Simulation {
     /// Tries a closed belt with the same envelope, force and friction in this pose.
     ///
     /// # Errors
-    /// [`Error::Simulation`] if the state became non-finite, [`Error::Interrupted`] once `cancel` is asked.
+    /// [`Error::Simulation`] if the state has become non-finite, [`Error::Interrupted`] once `cancel` is requested.
     pub fn counterfactual(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
         self.try_belt(self.with_closed_belt()?, cancel)
     }

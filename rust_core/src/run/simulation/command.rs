@@ -1,4 +1,4 @@
-//! What is commanded: by the schedule, by a gait, or by hand.
+//! Commands: from the schedule, from a gait, or by hand.
 
 use super::Simulation;
 use super::drive;
@@ -112,7 +112,7 @@ impl Simulation {
         self.dynamics.outer_force.x
     }
 
-    /// Pushes at the centre of mass with a force [N] along x, from now on.
+    /// Sets the push at the centre of mass to a force [N] along x, from now on.
     ///
     /// # Errors
     /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N.

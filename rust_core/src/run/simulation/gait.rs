@@ -13,7 +13,7 @@ pub(crate) struct Sight {
     pub chassis_angle: f64,
     /// [rad] The same at the end of the next step, if it keeps turning at the same rate.
     pub angle_ahead: f64,
-    /// The flippers at the front and at the rear bear on something beyond their roots.
+    /// Whether the front and the rear flippers bear on something beyond their roots.
     pub touches: [bool; 2],
 }
 
@@ -33,7 +33,7 @@ enum Phase {
     /// The front flippers reach up and forward.
     #[default]
     Reach,
-    /// They have met something and sweep down on it.
+    /// They have touched something and sweep down on it.
     Sweep,
     /// The chassis is raised: the rear flippers lift it from behind.
     Lift,

@@ -29,7 +29,7 @@ struct Image {
     rest: Vec<u8>,
 }
 
-/// All that changes from step to step.
+/// Everything that changes from step to step.
 #[derive(Serialize, Deserialize)]
 struct Moment {
     scenario: String,
@@ -77,7 +77,7 @@ impl Simulation {
     pub fn from_snapshot(snapshot: &[u8]) -> Result<Self, Error> {
         let Some(body) = snapshot.strip_prefix(MAGIC) else {
             return Err(refused(
-                "bytes without its head",
+                "bytes without its header",
                 "must be a snapshot of crawler2d",
             ));
         };
@@ -116,7 +116,7 @@ impl Simulation {
 impl Simulation {
     /// Whether the simulation can have reached a moment, because a snapshot may come from a stranger.
     fn fits(&self, moment: &Moment) -> bool {
-        /// Steps of more than a day.
+        /// Number of steps in more than a day.
         const MOST_STEPS: u64 = 1 << 40;
         /// [m] Largest distance beyond the ground and above it; a falling robot may be anywhere below.
         const FAR: f64 = 1e6;

@@ -6,15 +6,15 @@ use crate::robot::ChainOfShoes;
 
 /// A body of the robot at an instant.
 struct Body {
-    /// [kg]
+    /// [kg] Mass.
     mass: f64,
-    /// [kg m^2] About its centre of mass.
+    /// [kg m^2] Moment of inertia about its centre of mass.
     inertia: f64,
-    /// [m]
+    /// [m] Centre of mass.
     center: Vector,
-    /// [m/s]
+    /// [m/s] Velocity of the centre of mass.
     velocity: Vector,
-    /// [rad/s]
+    /// [rad/s] Angular velocity.
     turn: f64,
 }
 
@@ -27,7 +27,7 @@ impl Simulation {
         moment / mass
     }
 
-    /// [kg m^2] Moment of inertia about it, drives included.
+    /// [kg m^2] Moment of inertia about the centre of mass, drives included.
     pub fn moment_of_inertia(&self) -> f64 {
         let center = self.center_of_mass();
         let about = |body: &Body| (body.center - center).length_squared();

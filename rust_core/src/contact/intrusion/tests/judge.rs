@@ -3,13 +3,13 @@
 use crate::geometry::{Disc, Rotation, Vector};
 use crate::terrain::Profile;
 
-/// Slices of a pose: pieces and gaps narrower than a few of them are not judged.
+/// Slices per pose; pieces and gaps narrower than a few of them are not judged.
 pub(super) const SLICES: usize = 800;
 
-/// The envelope of discs in world coordinates, by its support function.
+/// The envelope of discs in world coordinates, as its support function.
 pub(super) struct Judge {
     pub(super) discs: Vec<Disc>,
-    /// Directions of the tangents that touch two discs, with the support there.
+    /// Directions of the tangents that touch two discs, with their support values.
     tangents: Vec<(Vector, f64)>,
 }
 
@@ -45,7 +45,7 @@ impl Judge {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Depth of a point with the normal of the nearest tangent, and the least room of other tangents.
+    /// Depth of a point, the normal of the nearest tangent, and the distance to the next nearest.
     pub(super) fn depth(&self, point: Vector) -> (f64, Vector, f64) {
         let from_centers = self.discs.iter().filter_map(|d| {
             let normal = (point - d.center).try_normalize()?;
@@ -85,7 +85,7 @@ impl Judge {
             .expect("three places")
     }
 
-    /// The deepest place of all, by nested thirds.
+    /// The deepest place of all, by nested ternary search.
     pub(super) fn deepest(&self) -> (f64, Vector) {
         let (left, right) = (-self.support(-Vector::X), self.support(Vector::X));
         let (bottom, top) = (-self.support(-Vector::Y), self.support(Vector::Y));
@@ -102,14 +102,14 @@ impl Judge {
         along(0.5 * (low + high))
     }
 
-    /// Bodies that bound a point: the nearest along the tangent that reach out as far as it lies deep.
+    /// Bodies that bound a point: on either side the nearest one that reaches out as far as the tangent.
     pub(super) fn bodies(&self, point: Vector) -> Option<[usize; 2]> {
         let (depth, normal, second) = self.depth(point);
         let along = Vector::new(normal.y, -normal.x); // clockwise
         let own = |d: &Disc| depth + point.dot(normal) - d.center.dot(normal) - d.radius;
         let touching = self.discs.iter().filter(|d| own(d) < 1e-10).count();
         if second - depth < 1e-7 {
-            return None; // two sides are as near
+            return None; // two sides are equally near
         }
         let place = |d: &Disc| (d.center - point).dot(along);
         if touching == 1 {
@@ -148,7 +148,7 @@ pub(super) struct Range {
     pub area: f64,
 }
 
-/// Lower and upper side above x, by the nearest of many tangents.
+/// Lower and upper side of the envelope at x, from many tangents.
 fn sides(x: f64, tangents: &[(Vector, f64)]) -> (f64, f64) {
     let mut sides = (f64::NEG_INFINITY, f64::INFINITY);
     for (normal, support) in tangents {
@@ -164,7 +164,7 @@ fn sides(x: f64, tangents: &[(Vector, f64)]) -> (f64, f64) {
 
 /// Ranges of x over which the profile lies above the lower side, each with its area.
 pub(super) fn ranges(judge: &Judge, profile: &Profile) -> Vec<Range> {
-    // Without the straight runs' own tangents the runs would bulge.
+    // Without the tangents of the straight runs, the runs would bulge.
     let runs = judge.tangents.iter().map(|(normal, _)| *normal);
     let tangents: Vec<(Vector, f64)> = (0..240)
         .map(|i| Rotation::new((f64::from(i) + 0.25) * std::f64::consts::TAU / 240.0) * Vector::X)

@@ -1,4 +1,4 @@
-//! Lines and arcs, and what is nearest between two of them.
+//! Lines and arcs, and the nearest points between two of them.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use crate::geometry::{Vector, cross, left_of};
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Curve {
     Line([Vector; 2]),
-    /// Counter-clockwise from the angle `from` [rad].
+    /// Counter-clockwise, starting at the angle `from` [rad].
     Arc {
         center: Vector,
         radius: f64,
@@ -17,7 +17,7 @@ pub(super) enum Curve {
     },
 }
 
-/// A box round a feature.
+/// A bounding box of a feature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub low: Vector,
@@ -32,7 +32,7 @@ impl Extent {
         }
     }
 
-    /// [m] No point of one is nearer to the other.
+    /// [m] Lower bound of the distance between the contents of two boxes.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         let apart = (self.low - other.high).max(other.low - self.high);
         apart.max(Vector::ZERO).length()
@@ -66,7 +66,7 @@ impl Curve {
         }
     }
 
-    /// Whether an arc has this outward direction.
+    /// Whether an outward direction belongs to an arc.
     pub(super) fn points(&self, outward: Vector) -> bool {
         match *self {
             Self::Line(_) => false,
@@ -76,7 +76,7 @@ impl Curve {
         }
     }
 
-    /// The point of it that is nearest to another.
+    /// The point of the curve nearest to another point.
     pub(super) fn nearest(&self, point: Vector) -> Vector {
         match *self {
             Self::Line([a, b]) => {
@@ -98,8 +98,8 @@ impl Curve {
         }
     }
 
-    /// Points of both that are nearest to each other, if they do not cross: a nearest point of one is
-    /// at an end of either, or square to an arc.
+    /// The nearest points of two curves that do not cross: a nearest point is at an end of one of them, or
+    /// perpendicular to an arc.
     pub(super) fn approach(&self, other: &Self) -> [Vector; 2] {
         let mut best = [Vector::INFINITY, Vector::NEG_INFINITY];
         let mut consider = |pair: [Vector; 2]| {
@@ -128,7 +128,7 @@ impl Curve {
         best
     }
 
-    /// Where they cross.
+    /// The points where two curves cross.
     pub(super) fn crossings(&self, other: &Self) -> Vec<Vector> {
         match (*self, *other) {
             (Self::Line([a, b]), Self::Line([c, d])) => {

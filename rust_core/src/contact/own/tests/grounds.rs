@@ -1,11 +1,11 @@
-//! Random ground: as the profile that the contacts get, and as lines and arcs of the test's own.
+//! Random ground: the profile that the contacts get, and the test's own lines and arcs.
 
 use super::curve::{Curve, Extent};
 use crate::draw::Draw;
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::Profile;
 
-/// [m] Level ground on both sides of what is of interest.
+/// [m] Level ground on both sides of the obstacle.
 const RUN_OUT: f64 = 1.0;
 
 pub(super) struct Ground {
@@ -31,7 +31,7 @@ impl Ground {
             if let Some(ground) = Self::new(&corners, radius) {
                 return ground;
             }
-            // Until it fits the faces.
+            // Halve the radius until it fits the faces.
             radius = if radius > 1e-4 { 0.5 * radius } else { 0.0 };
         }
     }
@@ -94,7 +94,7 @@ fn corners(kind: usize, draw: &mut Draw) -> Vec<Vector> {
         5 => vec![[0.0, 0.0], [height / draw.between(0.1, 1.5), height]],
         6 => block(-height, draw.size(10e-3, 0.3)),
         7 => block(height, draw.between(0.05, 0.5)),
-        // Anything, upright faces among it.
+        // Any shape, including upright faces.
         8 => {
             let mut x = 0.0;
             (0..12)
@@ -136,7 +136,7 @@ fn corners(kind: usize, draw: &mut Draw) -> Vec<Vector> {
                 .collect()
         }
     };
-    // Spikes without thickness are no ground.
+    // A spike without thickness is not ground.
     points.dedup_by(|b, a| a[0] == b[0] && a[1] == b[1]);
     let mut kept: Vec<[f64; 2]> = Vec::new();
     for p in points {
@@ -150,7 +150,7 @@ fn corners(kind: usize, draw: &mut Draw) -> Vec<Vector> {
     let mut all = vec![[first[0] - RUN_OUT, first[1]]];
     all.extend(kept);
     all.push([last[0] + RUN_OUT, last[1]]);
-    // A slope as a whole.
+    // The whole ground on a slope.
     let slope = if draw.chance(0.2) {
         draw.between(-0.3, 0.3)
     } else {
@@ -166,7 +166,7 @@ fn block(height: f64, length: f64) -> Vec<[f64; 2]> {
     vec![[0.0, 0.0], [0.0, height], [length, height], [length, 0.0]]
 }
 
-/// Lines and arcs; the arc of a corner touches both of its lines.
+/// Lines and arcs; the arc of a corner is tangent to both of its lines.
 fn curves(corners: &[Vector], radius: f64) -> Vec<Curve> {
     let mut curves = Vec::new();
     let mut begin = corners[0];

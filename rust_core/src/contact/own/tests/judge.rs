@@ -1,4 +1,4 @@
-//! The judge: every feature of a part against every one of the ground.
+//! The judge: every feature of a part against every feature of the ground.
 
 use super::curve::{Curve, Extent};
 use super::grounds::Ground;
@@ -9,16 +9,16 @@ pub(super) struct Judge<'a> {
     pub part: Vec<Curve>,
     pub ground: &'a Ground,
     extents: Vec<Extent>,
-    /// Features of the ground that are near the part.
+    /// Features of the ground near the part.
     near: Vec<usize>,
 }
 
-/// Two features near each other.
+/// Two features close to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Approach {
     pub of_part: usize,
     pub of_ground: usize,
-    /// [m] The points that are nearest to each other.
+    /// [m] The two nearest points.
     pub ends: [Vector; 2],
 }
 
@@ -27,14 +27,14 @@ impl Approach {
         (self.ends[0] - self.ends[1]).length()
     }
 
-    /// From the ground to the part.
+    /// The direction from the ground to the part.
     pub(super) fn normal(&self) -> Vector {
         (self.ends[0] - self.ends[1]).normalize()
     }
 }
 
 impl<'a> Judge<'a> {
-    /// Sees what is within `sight` [m].
+    /// A judge that considers ground within `sight` [m].
     pub(super) fn new(part: Vec<Curve>, ground: &'a Ground, sight: f64) -> Self {
         let extents: Vec<Extent> = part.iter().map(Curve::extent).collect();
         let whole = extents.iter().copied().reduce(Extent::join).unwrap();
@@ -48,7 +48,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Calls `pair` with every two features of which the boxes are no farther apart than it says.
+    /// Calls `pair` with every two features whose boxes are within a limit; `pair` returns the next limit.
     fn pairs(&self, mut limit: f64, mut pair: impl FnMut(usize, usize) -> f64) {
         for &j in &self.near {
             for i in 0..self.part.len() {
@@ -67,7 +67,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The nearest of all, within `limit` [m].
+    /// The nearest approach of all, within `limit` [m].
     pub(super) fn nearest(&self, limit: f64) -> Option<Approach> {
         let mut best: Option<Approach> = None;
         self.pairs(limit, |i, j| {
@@ -80,7 +80,7 @@ impl<'a> Judge<'a> {
         best.filter(|b| b.distance() <= limit)
     }
 
-    /// Every place within `limit` where the two are nearer than close by.
+    /// Every local minimum of the distance within `limit`.
     pub(super) fn approaches(&self, limit: f64) -> Vec<Approach> {
         let mut found = Vec::new();
         self.pairs(limit, |i, j| {
@@ -93,7 +93,7 @@ impl<'a> Judge<'a> {
         found
     }
 
-    /// Whether neither neighbour of either feature is nearer, beyond what rounding leaves open.
+    /// Whether neither neighbour of either feature is nearer, within rounding.
     fn is_least(&self, approach: &Approach) -> bool {
         let [p, q] = approach.ends;
         let distance = approach.distance();
@@ -111,7 +111,7 @@ impl<'a> Judge<'a> {
             && of_ground.all(|j| is_farther(p, q, &curves[j]))
     }
 
-    /// Whether nothing lies between its ends: neither has come through its own solid.
+    /// Whether nothing lies between its ends: neither point is inside the other solid.
     fn is_open(&self, approach: &Approach) -> bool {
         let [p, q] = approach.ends;
         let inner = Curve::Line([p + (q - p) * 1e-6, q + (p - q) * 1e-6]);
@@ -127,7 +127,7 @@ impl<'a> Judge<'a> {
         !of_part.any(|(c, e)| crossed(c, e)) && !of_ground.any(|(c, e)| crossed(c, e))
     }
 
-    /// Every place where the outline crosses the ground: features of both, and where.
+    /// Every crossing of the outline with the ground: both features, and the point.
     pub(super) fn crossings(&self) -> Vec<(usize, usize, Vector)> {
         let mut found = Vec::new();
         self.pairs(0.0, |i, j| {

@@ -1,10 +1,10 @@
-//! Parts that move by small steps.
+//! Parts that move in small steps.
 
 use super::scene::{Scene, cases};
 use crate::draw::Draw;
 use crate::geometry::Vector;
 
-/// [m] Deeper overlaps may be left by another way from step to step.
+/// [m] The way out of a deeper overlap may change from step to step.
 const SHALLOW: f64 = 5e-5;
 
 #[test]
@@ -20,7 +20,7 @@ fn the_smallest_distance_follows_the_motion_without_a_jump() {
         scene.approach(1e-3);
         let ahead = if draw.chance(0.5) { 1e-5 } else { -1e-5 };
         let spin = draw.between(-1e-4, 1e-4);
-        // Nothing is a jump from the first.
+        // The first distance counts as no jump.
         let (mut before, mut bound) = (0.0, f64::INFINITY);
         for step in 0..STEPS {
             let contacts = scene.contacts(PREDICTION);
@@ -29,12 +29,12 @@ fn the_smallest_distance_follows_the_motion_without_a_jump() {
             let is_jump = (now - before).abs() > bound + 1e-9;
             assert!(!is_jump, "{before} to {now} {contacts:?} {}", scene.tell());
             judged += 1;
-            // Driven into something upright.
+            // Driven into an upright face.
             if now < -SHALLOW {
                 ended += 1;
                 break;
             }
-            // Along the ground, up and down between a gap and an overlap.
+            // Along the ground, alternating between a gap and an overlap.
             let height = 1e-4 * (0.01 * step as f64).sin() + 0.7e-4;
             let way = Vector::new(ahead, (height - now).clamp(-1e-5, 1e-5));
             scene.turn(spin);

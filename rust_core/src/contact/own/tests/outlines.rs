@@ -1,4 +1,4 @@
-//! Random parts: as the contacts get them, and as lines and arcs of the test's own.
+//! Random parts: the shapes that the contacts get, and the test's own lines and arcs.
 
 use std::f64::consts::TAU;
 
@@ -9,9 +9,9 @@ use crate::robot::{BodyKind, Mount, Part, Shape};
 
 pub(super) struct Outline {
     pub part: Part,
-    /// [m] Farthest point from the centre of the part.
+    /// [m] Distance of the farthest point from the centre of the part.
     pub reach: f64,
-    /// [m] Thickness of a grouser, or of all of it.
+    /// [m] Thickness of a grouser, or of the whole part.
     pub thinnest: f64,
     /// Counter-clockwise, in the chassis frame.
     curves: Vec<Curve>,
@@ -73,7 +73,7 @@ impl Outline {
         }
     }
 
-    /// Its features in the world.
+    /// The curves in world coordinates.
     pub(super) fn at(&self, pose: Pose, drive: f64) -> Vec<Curve> {
         let turn = match &self.part.shape {
             Shape::Gear { gear, .. } => -drive / gear.radius,
@@ -109,7 +109,7 @@ fn disc(center: Vector, radius: f64) -> Vec<Curve> {
     }]
 }
 
-/// Two discs and what lies between them.
+/// Two discs and their outer tangents.
 fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f64) {
     let way = Rotation::new(draw.between(0.0, TAU)) * Vector::X;
     let (r1, r2) = (
@@ -117,7 +117,7 @@ fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f
         reach * draw.between(0.2, 0.45),
     );
     let (c1, c2) = (middle - way * (reach - r1), middle + way * (reach - r2));
-    // Outward directions of the tangents lie at this angle from the way.
+    // The outward directions of the tangents are at this angle to the line between the centres.
     let half = ((r1 - r2) / (c2 - c1).length()).acos();
     let heading = way.y.atan2(way.x);
     let at = |c: Vector, r: f64, angle: f64| c + Vector::new(angle.cos(), angle.sin()) * r;
@@ -151,7 +151,7 @@ fn capsule(middle: Vector, reach: f64, draw: &mut Draw) -> (Shape, Vec<Curve>, f
 
 fn gear(radius: f64, draw: &mut Draw) -> Gear {
     let grousers = 6 + draw.below(43) as u32;
-    // Higher than what they sink in.
+    // Grousers are higher than anything sinks in.
     let root_radius = radius - draw.between(1.1e-3_f64.max(0.05 * radius), 0.3 * radius);
     let room = 2.0 * root_radius * (0.5 * TAU / f64::from(grousers)).sin();
     let base_thickness = room * draw.between(0.15, 0.8);

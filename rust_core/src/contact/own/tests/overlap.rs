@@ -1,4 +1,4 @@
-//! Parts that have sunk into the ground.
+//! Parts that overlap the ground.
 
 use super::super::OwnContact;
 use super::curve::Curve;
@@ -10,30 +10,30 @@ use crate::draw::Draw;
 use crate::geometry::{Pose, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 
-/// [m] What both may differ by.
+/// [m] Tolerance of the comparison.
 const SAME: f64 = 1e-9;
 
-/// One overlap: how deep [m], and the normal out of the ground.
+/// One overlap: its depth [m], and the normal out of the ground.
 #[derive(Debug)]
 struct Overlap {
     depth: f64,
     normal: Vector,
 }
 
-/// What is beyond a line, seen from the other solid.
+/// The part of one solid that lies beyond a line of the other.
 struct Beyond<'a> {
     /// [m] The line that is crossed twice.
     line: [Vector; 2],
-    /// Out of the solid that it belongs to.
+    /// Outward normal of the solid with the line.
     outward: Vector,
-    /// Features of the same solid but for the line.
+    /// The other features of the same solid.
     others: Vec<&'a Curve>,
-    /// Features of the other solid from one crossing to the other.
+    /// Features of the other solid from one crossing to the next.
     inside: Vec<Curve>,
 }
 
 impl Beyond<'_> {
-    /// Depth and whether nothing else is near.
+    /// The depth, if no other feature is near.
     fn depth(&self) -> Option<f64> {
         let [a, b] = self.line;
         let below = |p: Vector| (a - p).dot(self.outward);
@@ -75,7 +75,7 @@ impl Beyond<'_> {
     }
 }
 
-/// The one overlap of a part with the ground, if it is one of two features.
+/// The only overlap of a part with the ground, if it is one of just two features.
 fn only_overlap(judge: &Judge) -> Option<Overlap> {
     let crossings = judge.crossings();
     let [(i, j, _), (k, l, _)] = crossings[..] else {
@@ -135,7 +135,7 @@ fn only_overlap(judge: &Judge) -> Option<Overlap> {
     if i == k
         && let Curve::Arc { center, radius, .. } = judge.part[i]
     {
-        // The foot of the centre.
+        // The feet of the perpendiculars from the centre.
         let feet = ground.iter().map(|c| c.nearest(center));
         let near = |p: &Vector| (*p - center).length();
         let foot = feet.min_by(|p, q| near(p).total_cmp(&near(q)))?;
@@ -160,11 +160,11 @@ fn no_penetration_is_missed_and_that_of_two_features_has_its_depth_and_normal() 
     let mut judged = 0;
     for number in 0..count {
         let mut scene = Scene::random(number, &mut draw);
-        // Less than what would come out on the other side.
+        // Less than would come out on the other side.
         let depth = draw.size(1e-8, 1e-3_f64.min(0.5 * scene.outline.thinnest));
         scene.approach(-depth);
         let judge = scene.judge(depth);
-        // Two needles may have passed each other.
+        // Two thin tips may have passed each other.
         if judge.is_clear() {
             continue;
         }
@@ -186,7 +186,7 @@ fn no_penetration_is_missed_and_that_of_two_features_has_its_depth_and_normal() 
     assert!(judged > count / 2);
 }
 
-/// The shortest way that leaves no contact with a penetration, if there is one.
+/// The shortest displacement that leaves no contact in penetration, if there is one.
 fn way_out(contacts: &[Contact], slack: f64) -> Option<Vector> {
     let room = |c: &Contact| slack - c.distance;
     let of_one = contacts.iter().map(|c| c.normal * room(c));
@@ -227,10 +227,10 @@ fn a_part_leaves_the_ground_along_its_contacts() {
         let before = scene.tell();
         let least = 1e-8 + scene.untold();
         let mut is_free = true;
-        // Once more where the face beside is deeper than the one that it was in.
+        // A second time, in case the adjacent face is deeper than the one it was in.
         for _ in 0..2 {
             let contacts = scene.contacts(PREDICTION);
-            // None where it is wedged, and on a long way there is more in it.
+            // There is none where it is wedged; and on a long way out it may meet more ground.
             let way = way_out(&contacts, least).filter(|w| w.length() < PREDICTION);
             is_free &= way.is_some();
             scene.push(way.unwrap_or_default());

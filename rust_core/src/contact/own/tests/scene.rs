@@ -12,7 +12,7 @@ use crate::draw::Draw;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::Running;
 
-/// More cases where time allows.
+/// Number of cases: `few` by default, `many` where time allows.
 pub(super) fn cases(few: usize, many: usize) -> usize {
     if std::env::var_os("CRAWLER2D_SOAK").is_some() {
         many
@@ -27,25 +27,25 @@ pub(super) struct Scene {
     pub outline: Outline,
     pub contact: OwnContact,
     pub pose: Pose,
-    /// [m] How far the drive has run.
+    /// [m] Travel of the drive.
     pub drive: f64,
 }
 
 impl Scene {
-    /// The part does not touch the ground, but is near some of it.
+    /// A part that does not touch the ground, but is near some of it.
     pub(super) fn random(number: usize, draw: &mut Draw) -> Self {
         let name = format!("scene {number} of {:#x}", draw.0);
         let ground = Ground::random(draw.below(grounds::KINDS), draw);
         let outline = Outline::random(draw.below(outlines::KINDS), draw);
         let contact = OwnContact::new(from_ref(&outline.part), from_ref(&ground.profile));
-        // On a random feature but for the ends, or on the flat beside it.
+        // On a random feature other than the end ones, or on the flat beside it.
         let feature = ground.curves[draw.below(ground.curves.len())];
         let [a, b] = feature.ends();
         let mut place = a + (b - a) * draw.between(0.0, 1.0);
         place.x = place.x.clamp(ground.curves[0].ends()[1].x - 0.1, {
             ground.curves[ground.curves.len() - 1].ends()[0].x + 0.1
         });
-        // Level, too.
+        // Sometimes level.
         let turn = if draw.chance(0.1) {
             0.0
         } else {
@@ -72,21 +72,20 @@ impl Scene {
         self.pose.translation += way;
     }
 
-    /// Turns the part about its own centre [rad].
+    /// Turns the part about its own centre by an angle [rad].
     pub(super) fn turn(&mut self, angle: f64) {
         let center = self.pose.transform_point(self.outline.center);
         self.pose.rotation = Rotation::new(angle) * self.pose.rotation;
         self.push(center - self.pose.transform_point(self.outline.center));
     }
 
-    /// Sees what is within `sight` [m].
+    /// A judge that considers ground within `sight` [m].
     pub(super) fn judge(&self, sight: f64) -> Judge<'_> {
         Judge::new(self.outline.at(self.pose, self.drive), &self.ground, sight)
     }
 
-    /// Brings the part along the way of nearest approach to this gap [m] at most; negative in
-    /// [m] How far ground may rise above the chord of two contacts and be none: rounding, or a micrometre
-    /// where it is finely cut.
+    /// [m] How far ground may rise above the chord of two contacts without being reported: rounding, or a
+    /// micrometre where it is finely divided.
     pub(super) fn untold(&self) -> f64 {
         if self.ground.curves.len() > 16 {
             1e-6
@@ -95,6 +94,7 @@ impl Scene {
         }
     }
 
+    /// Moves the part along its nearest approach until its gap is at most this [m]; negative for a
     /// penetration.
     pub(super) fn approach(&mut self, gap: f64) -> Approach {
         let nearest = self.judge(1.0).nearest(f64::INFINITY).unwrap();
@@ -113,7 +113,7 @@ impl Scene {
         contacts
     }
 
-    /// Everything that it takes to repeat it.
+    /// Everything needed to reproduce the scene.
     pub(super) fn tell(&self) -> String {
         let points = &self.ground.profile.points;
         let at = self.pose.transform_point(self.outline.center).x;

@@ -11,16 +11,15 @@ use crate::geometry::{Pose, Vector, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
-/// [m] What both may differ by.
+/// [m] Tolerance of the comparison.
 const SAME: f64 = 1e-9;
 
-/// Whether the place is a contact, or between two others of the same direction and no nearer than
+/// Whether the place is a contact, or lies between two others with the same normal and is no nearer than
 /// these.
 fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
-    // Where the gap is no more than rounding, so is its direction; contacts count as parallel up to
-    // 1.4e-6 rad.
+    // If the gap is mere rounding, so is its direction; contacts count as parallel up to 1.4e-6 rad.
     let alike = |c: &&Contact| distance < 1e-6 || (c.normal - approach.normal()).length() < 3e-6;
     let alike: Vec<&Contact> = contacts.iter().filter(alike).collect();
     let is_it =
@@ -49,7 +48,7 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         let mut scene = Scene::random(number, &mut draw);
         let gap = draw.size(1e-6, 20e-3);
         scene.approach(gap);
-        // Often only just enough, and sometimes too little.
+        // Often only just enough, sometimes too little.
         let just = draw.chance(0.3);
         let ahead = if just {
             draw.size(2e-9, 1e-6)

@@ -1,9 +1,9 @@
-//! What a monitor can have seen, and what not.
+//! Which observations a monitor can have made, and which not.
 
 use super::stops::astride;
 use super::*;
 
-/// [s] When the robots here are looked at.
+/// [s] Time of the check of a snapshot.
 const TIME: f64 = 1.0;
 
 /// The robot and the ground of [`astride`].
@@ -61,7 +61,7 @@ fn what_was_seen_with_one_thing_spoilt_does_not_fit() {
             r.monitor.seen.intrusions.look(TIME, endless);
         }),
         ("signals", |r| {
-            // A facet that the ground does not have.
+            // A facet that this ground does not have.
             let contact = on_facet(99, 10.0);
             let signals = &mut r.monitor.seen.signals;
             signals.add(&r.now, &[contact], std::iter::empty(), 1.0);

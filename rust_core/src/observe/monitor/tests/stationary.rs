@@ -3,10 +3,10 @@
 use super::*;
 use crate::scenario::{Ends, Flippers, Gait, GearWheel, Hold, LineOfWheels, Track, Wheel};
 
-/// [s] A window, and three of them.
+/// [s] Length of a stop window, and of three.
 const WINDOW: f64 = 0.5;
 const THREE: f64 = 1.5;
-/// [m] What a stationary pose may change by.
+/// [m] How much a stationary pose may change.
 const TOLERANCE: f64 = 0.0625;
 
 fn robot(change: impl Fn(&mut Scenario)) -> Watched {
@@ -18,8 +18,8 @@ fn robot(change: impl Fn(&mut Scenario)) -> Watched {
     })
 }
 
-/// When the run of a robot that stands from the beginning is over, if within four windows: it stands for a
-/// while, is changed, and stands on.
+/// When the run of a robot is over that stands still from the beginning, if that is within four windows: it
+/// stands for a while, is changed, and stands still again.
 fn over_at(mut robot: Watched, change: impl Fn(&mut Watched)) -> Option<f64> {
     for (time, changes) in [(0.7, true), (4.0 * WINDOW, false)] {
         while robot.now.time < time {
@@ -50,7 +50,7 @@ fn a_robot_that_stands_for_three_windows_stays() {
 
 #[test]
 fn a_move_within_the_tolerance_is_none_and_one_beyond_it_begins_anew() {
-    // The robot has a slope, so that its angle is not 0 either.
+    // The robot is on a slope, so that its angle is not 0 either.
     let turned = || {
         let mut robot = robot(|_| {});
         robot.now.chassis_angle = 0.5;

@@ -1,12 +1,12 @@
-//! Stops: when they begin and end, what their events hold, and what is remembered for a diagnosis.
+//! Stops: when they begin and end, what their events hold, and what is kept for a diagnosis.
 
 use super::*;
 use crate::observe::EventKind;
 
-/// [s] A stop is told to a look, and to how far a step of the robot itself counts.
+/// [s] Resolution of stop times: one check, and one step of the robot.
 const ABOUT: f64 = 0.011;
 
-/// A step up at the origin, with its edge inside the belt of a robot that stands astride of it.
+/// A robot that straddles a step up at the origin, with the edge inside its belt.
 pub(super) fn astride() -> Watched {
     let mut robot = Watched::with(|scenario| {
         let points = [[-END, 0.0], [0.0, 0.0], [0.0, 0.125], [END, 0.125]];
@@ -16,7 +16,7 @@ pub(super) fn astride() -> Watched {
     robot
 }
 
-/// Its belt bears on the top with a force [N].
+/// Its belt bears on the top of the step with a force [N].
 fn on_top(force: f64) -> LoadedContact {
     let mut contact = on_facet(2, force);
     contact.contact.point = Vector::new(0.05, 0.125);
@@ -33,7 +33,7 @@ fn a_stop_begins_when_the_robot_came_to_rest() {
     assert_eq!(robot.monitor.stop_since(), None);
     robot.stands_until(4.0);
     let since = robot.monitor.stop_since().expect("it stands");
-    // The last twentieth of the window's way is no progress.
+    // Up to a twentieth of a window's distance does not count as progress.
     assert!((since - 1.95).abs() < ABOUT, "{since} s");
     assert!(robot.monitor.progress() < 1e-9);
     let events = robot.monitor.events(4.0);
@@ -63,7 +63,7 @@ fn the_longest_of_several_stops_counts() {
     let longest = lengths.fold(0.0, f64::max);
     assert_eq!(stops.len(), 3);
     assert_eq!(robot.monitor.time_to_free(), longest);
-    // At half the speed that is commanded, a tenth of a window on either side is no progress.
+    // At half the commanded speed, a tenth of a window on either side is without progress.
     assert!((longest - 3.2).abs() < 2.0 * ABOUT, "{longest} s");
 }
 
@@ -109,7 +109,7 @@ fn a_slow_robot_is_given_the_time_of_its_grousers_pitches() {
 
 #[test]
 fn a_nose_that_rises_fast_enough_is_no_stop() {
-    // A twentieth of 0.4 m/s at the distance of the end axles is 0.04 rad/s.
+    // A twentieth of 0.4 m/s over the distance of the end axles is 0.04 rad/s.
     let has_stopped = |rate: f64| {
         let mut robot = Watched::with(|_| {});
         robot.goes_until(3.0, [0.0, 0.0], rate);
@@ -146,7 +146,7 @@ fn an_edge_inside_the_track_is_an_event_with_the_force_on_it() {
     let kinds: Vec<EventKind> = events.iter().map(|event| event.kind).collect();
     assert_eq!(kinds, [EventKind::Intrusion]);
     let inside = robot.monitor.intrusion().expect("the edge is inside");
-    // The belt runs 62.5 mm below the axles, which are as high as the top.
+    // The belt runs 62.5 mm below the axles, which are as high as the top of the step.
     assert_relative_eq!(inside.depth, RADIUS, max_relative = 1e-9);
     assert_relative_eq!(inside.force, 100.0, max_relative = 1e-9);
     assert_eq!((inside.edge, events[0].end), (1, 0.5));
@@ -179,7 +179,7 @@ fn events_are_in_the_order_of_their_start() {
     let expected = [EventKind::Stop, EventKind::Intrusion, EventKind::Stop];
     assert_eq!(kinds, expected, "{events:?}");
     assert!(events.is_sorted_by(|a, b| a.start <= b.start));
-    // The first stop ended as the edge came in; the last goes on with it inside.
+    // The first stop ended as the edge came in; the last one goes on with the edge inside.
     assert!(events.iter().all(|event| event.edge == 1));
     assert_eq!(events[2].force, events[1].force);
 }

@@ -34,7 +34,7 @@ fn on_wheels() -> Simulation {
         friction: 0.9,
     };
     let mut simulation = Simulation::new(&Checked::new(&scenario).expect("the scenario is valid"));
-    // The post is now in the gap between the middle wheel and the front one.
+    // The post is now in the gap between the middle and the front wheel.
     let x = simulation.reading().position.x;
     simulation.state.center.x -= x + 0.085;
     advance(&mut simulation);
@@ -62,7 +62,7 @@ fn advance(simulation: &mut Simulation) {
     }
 }
 
-/// The bits of what a user sees of the next steps.
+/// The bits of the next steps, as users see them.
 fn future(mut simulation: Simulation) -> Vec<[u64; 7]> {
     let mut look = || {
         simulation.step().expect("the state stays finite");
@@ -104,7 +104,7 @@ fn the_number_is_the_same_after_a_snapshot() {
         };
         (0..300).map(|_| look()).collect::<Vec<_>>()
     };
-    // Its wheels come down on the post and off it, as one and as the next.
+    // Its wheels come down on the post and off it; each contact has its own number.
     let mut whole = on_wheels();
     for _ in 0..300 {
         whole.step().expect("the state stays finite");
@@ -148,7 +148,7 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     }
 }
 
-/// Why bytes are refused.
+/// The message with which bytes are rejected.
 fn refusal(bytes: &[u8]) -> String {
     match Simulation::from_snapshot(bytes) {
         Err(Error::Scenario(e)) => {
@@ -160,7 +160,7 @@ fn refusal(bytes: &[u8]) -> String {
     }
 }
 
-/// A snapshot whose head and digest are right.
+/// A snapshot with correct head and digest.
 fn sealed(image: &Image) -> Vec<u8> {
     let mut snapshot = MAGIC.to_vec();
     snapshot.extend(bytes(image));
@@ -191,6 +191,6 @@ fn a_snapshot_of_another_build_is_refused() {
         rest: Vec::new(),
     };
     let refusal = refusal(&sealed(&image));
-    assert!(refusal.contains("one of build another"), "{refusal}");
+    assert!(refusal.contains("a snapshot of build another"), "{refusal}");
     assert!(refusal.contains(BUILD_ID), "{refusal}");
 }

@@ -6,7 +6,7 @@ use crate::contact::Contact;
 /// [m] How far beyond the ground a robot may be.
 const FAR: f64 = 1e6;
 
-/// A simulation, and what its snapshot holds.
+/// A simulation, and the contents of its snapshot.
 struct Genuine {
     simulation: Simulation,
     rest: Vec<u8>,
@@ -26,7 +26,7 @@ impl Genuine {
         postcard::from_bytes(&self.rest).expect("it was just made")
     }
 
-    /// Whether a moment with one thing changed fits.
+    /// Whether a moment with one change is accepted.
     fn fits(&self, change: impl Fn(&mut Moment)) -> bool {
         let mut moment = self.moment();
         change(&mut moment);
