@@ -48,8 +48,7 @@ def rate(
     table : xarray.Dataset or iterable of str or None
         What `sweep` returned; or outcomes, None for a run without a result.
     outcome : str
-        Name of an `Outcome`, or "stopped" for all that are stops: cycling, seized, hung_up,
-        stalled and slipping.
+        Name of an `Outcome`, or "stopped" for all that are stops (`Outcome.is_stop`).
     dim : str or iterable of str
         The dimension of a table that is counted over, or several.
 
