@@ -80,7 +80,7 @@ def test_every_outcome_and_mechanism_is_in_the_tables_of_the_conventions() -> No
 
 
 def test_every_metric_is_in_the_conventions_with_its_unit() -> None:
-    told = {}
+    told: dict[str, str] = {}
     for names, units in re.findall(r"^\| (`.*?) \| (.*?) ?\| ", section("Metrics"), re.M):
         each = re.findall(r"`(\w+)`", names)
         of_each = [unit or "1" for unit in units.split(", ")]
