@@ -212,6 +212,8 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     names.set_item("body_kind", BodyKind::ALL.map(BodyKind::name))?;
     names.set_item("lane", Side::ALL.map(Side::name))?;
     names.set_item("outcome", Outcome::ALL.map(Outcome::name))?;
+    let stops = Outcome::ALL.iter().filter(|outcome| outcome.is_stop());
+    names.set_item("stop", stops.map(|stop| stop.name()).collect::<Vec<_>>())?;
     names.set_item("mechanism", Mechanism::ALL.map(Mechanism::name))?;
     names.set_item("condition", Condition::ALL.map(Condition::name))?;
     Ok(names)

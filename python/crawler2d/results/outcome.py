@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from crawler2d import _core
+
 __all__ = ["Outcome"]
 
 
@@ -33,4 +35,4 @@ class Outcome(StrEnum):
         return self in _STOPS
 
 
-_STOPS = (Outcome.CYCLING, Outcome.SEIZED, Outcome.HUNG_UP, Outcome.STALLED, Outcome.SLIPPING)
+_STOPS = frozenset(_core.kinds()["stop"])

@@ -48,8 +48,7 @@ def rate(
     table : xarray.Dataset or iterable of str or None
         The table that `sweep` returned; or outcomes, with None for a run without a result.
     outcome : str
-        Name of an `Outcome`, or "stopped" for any stop: cycling, seized, hung_up, stalled or
-        slipping.
+        Name of an `Outcome`, or "stopped" for any stop (`Outcome.is_stop`).
     dim : str or iterable of str
         The dimension or dimensions of the table to count over.
 

@@ -1,5 +1,8 @@
 //! Coulomb's law with softness: the grip and the impulses of a contact at given velocities.
 //!
+//! The searches write the same limit of friction into the equations: `direct` and `newton` for what slides,
+//! `descent` for limits that are frozen.
+//!
 //! The equations: docs/physics.md, "Coulomb's law".
 
 use super::damper::{DAMPING, Damper};

@@ -92,13 +92,16 @@ impl Simulation {
             let rule = format!(
                 "must be from this build, {BUILD_ID}, because the layout differs between builds"
             );
-            return Err(refused(&format!("one of build {}", image.build), &rule));
+            return Err(refused(
+                &format!("a snapshot of build {}", image.build),
+                &rule,
+            ));
         }
         let moment: Moment = postcard::from_bytes(&image.rest).map_err(|_| damaged())?;
         let mut simulation = Self::new(&Checked::from_json(&moment.scenario)?);
         if !simulation.fits(&moment) {
             let rule = "must hold a state that its own robot and ground can reach";
-            return Err(refused("contents of another", rule));
+            return Err(refused("an impossible state", rule));
         }
         simulation.step = moment.step;
         simulation.command = moment.command;
