@@ -6,9 +6,12 @@ use crawler2d_core::{
 
 use crate::common::*;
 
-/// A hash of every number of a run's motion, what it took to find it left out.
+/// A hash of every number of a run's motion. Its metrics are named, so that one more leaves the hash as it is.
 fn motion(run: &Run) -> u64 {
-    const EFFORT: [&str; 4] = ["solves", "solve_rounds", "descents", "unresolved_solves"];
+    const OF_MOTION: &str = "time time_to_clear final_x final_y final_angle distance track_distance path_length \
+        max_angle min_angle max_penetration drive_work stopped_time time_to_free progress \
+        vertical_acceleration angular_velocity intrusion_depth intrusion_root_depth intrusion_force \
+        max_track_tension max_pin_gap max_guide_penetration max_sprocket_slip";
 
     let t = &run.trace;
     let columns = [
@@ -20,7 +23,7 @@ fn motion(run: &Run) -> u64 {
         &t.drive_forces,
     ];
     let metrics = run.metrics.entries().into_iter();
-    let metrics = metrics.filter(|(name, _)| !EFFORT.contains(name));
+    let metrics = metrics.filter(|(name, _)| OF_MOTION.split(' ').any(|each| each == *name));
     let numbers = columns.into_iter().flatten().copied();
     hash(numbers.chain(metrics.map(|(_, value)| value)))
 }
