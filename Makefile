@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-browser check bench bench-peers bench-scaling format build fuzz map mutants picture soak tools
+.PHONY: help study test test-debug test-python test-browser check bench bench-peers bench-scaling format build fuzz map mutants picture soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -30,9 +30,14 @@ study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
 
 test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 	$(CARGO) test --release
-	$(CARGO) test --package crawler2d-core --test facts every_build
-	$(BIN)/python -m pytest
+	@$(MAKE) --no-print-directory --jobs=2 test-debug test-python
 	@$(MAKE) --no-print-directory check
+
+# Side by side: the one compiles on all cores, the other needs little more than one.
+test-debug:
+	$(CARGO) test --package crawler2d-core --test facts every_build
+test-python:
+	$(BIN)/python -m pytest
 
 test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs in a real browser
 	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
