@@ -1,0 +1,179 @@
+"""Draw cells, and search the height of each: cheaply first, then finely."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benches.accuracy import ensemble, grounds
+from benches.accuracy.cells import Cell, Setting, read, write
+from benches.accuracy.kinds import KINDS, Kind
+
+RATES = (0.15, 0.85)
+"""[-] Rates of clearing of a cell, as the search sees them."""
+DRAWS = 12
+"""Draws of a kind, before it counts as one without such a height."""
+
+# Settings of the search: while it is coarse, and to confirm.
+_COARSE: Setting = {"time_step": 1e-3}
+_CONFIRM: dict[bool, Setting] = {False: {"time_step": 1e-3}, True: {"time_step": 0.25e-3}}
+# Runs per height, and those after which a height with equal outcomes is given up.
+_RUNS = {False: 48, True: 24}
+_COARSE_RUNS = 24
+_FIRST = 8
+# [m] Heights are whole multiples of this.
+_GRID = 1e-4
+# [-] Share of the coarse height, above and below, within which the fine one is looked for.
+_NEAR = 0.15
+_LOOKS = 11
+
+
+def draw(name: str, seed: int, attempt: int) -> Cell:
+    """Draw a cell of a kind, without its height.
+
+    Parameters
+    ----------
+    name : str
+        Name in `KINDS`.
+    seed, attempt : int
+        Number of the set, and of the draw of this kind.
+    """
+    kind = KINDS[name]
+    random = np.random.default_rng((seed, attempt, *name.encode()))
+    shift, rise = random.uniform((-0.03, 0.0), (0.03, 0.03))
+    torque = float(random.choice((6.0, 60.0)))
+    friction, speed, angle = random.uniform((0.5, 0.2, -0.2), (0.95, 0.6, 0.8))
+    obstacle = grounds.draw(str(random.choice(kind.obstacles)), random)
+    speed = round(float(speed), 2)
+    return Cell(
+        name=name,
+        kind=name,
+        center_of_mass=(round(float(shift), 3), round(0.02 + float(rise), 3)),
+        max_torque=torque,
+        friction=round(float(friction), 2),
+        speed=speed,
+        obstacle=obstacle,
+        height=kind.heights[1],
+        duration=_duration(kind, speed, obstacle),
+        hold_angle=round(float(angle), 2) if kind.gait == "hold" else 0.0,
+    )
+
+
+def _duration(kind: Kind, speed: float, obstacle: Mapping[str, Any]) -> float:
+    """[s] Twice what an unhindered robot takes, with seconds to start, to stop and to move arms."""
+    way = 0.7 + grounds.length(obstacle)
+    return float(round(5.0 + (5.0 if kind.ends else 0.0) + 2.0 * way / speed))
+
+
+def find(name: str, seed: int, threads: int | None, tell: Callable[[str], None]) -> Cell | None:
+    """Draw cells of a kind until one has a height at which some runs clear and some do not.
+
+    Returns
+    -------
+    Cell or None
+        None if `DRAWS` draws have none.
+    """
+    for attempt in range(DRAWS):
+        cell = draw(name, seed, attempt)
+        found = search(cell, threads, tell)
+        if found is not None:
+            return replace(found, found={**found.found, "redrawn": attempt})
+    return None
+
+
+def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell | None:
+    """Search the height of a drawn cell."""
+    is_fine = cell.what.is_fine
+
+    def rate(height: float, setting: Setting, count: int) -> float:
+        share, made = _rate(replace(cell, height=height), setting, count, threads)
+        tell(f"{cell.name}: {1e3 * height:.1f} mm, {setting}: {share:.2f} of {made}")
+        return share
+
+    coarse = _bisect(lambda h: rate(h, _COARSE, _COARSE_RUNS), *cell.what.heights)
+    if coarse is None:
+        return None
+    setting, count = _CONFIRM[is_fine], _RUNS[is_fine]
+    low, high = (1.0 - _NEAR) * coarse[0], (1.0 + _NEAR) * coarse[0]
+    fine = _bisect(lambda h: rate(h, setting, count), low, high)
+    if fine is None:
+        return None
+    told = {"rate": round(fine[1], 3), "runs": count, "setting": dict(setting)}
+    return replace(cell, height=fine[0], found=told)
+
+
+def _bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[float, float] | None:
+    """Halve the interval until the rate in its middle is one in between.
+
+    Rates need not fall with the height; where they do not, halving finds one of the places.
+    """
+    for _ in range(_LOOKS):
+        height = round(round(0.5 * (low + high) / _GRID) * _GRID, 6)
+        share = rate(height)
+        if RATES[0] <= share <= RATES[1]:
+            return height, share
+        if share > RATES[1]:
+            low = height
+        else:
+            high = height
+        if high - low < 1.5 * _GRID:
+            return None
+    return None
+
+
+def _rate(cell: Cell, setting: Setting, count: int, threads: int | None) -> tuple[float, int]:
+    """Rate of clearing, and the number of runs; few if all of the first end alike."""
+    # Not the draws of the study: a cell that was found by chance must not keep that chance.
+    plans = ensemble.plans(cell, setting, count, cell.seed + 1)
+    cleared: list[bool] = []
+    for part in _parts(count):
+        cleared += [row.outcome == "cleared" for row in ensemble.simulate(plans, part, threads)]
+        if len(set(cleared)) == 1:
+            break
+    return sum(cleared) / len(cleared), len(cleared)
+
+
+def _parts(count: int) -> Iterator[range]:
+    yield range(min(_FIRST, count))
+    if count > _FIRST:
+        yield range(_FIRST, count)
+
+
+def complete(
+    path: Path, seed: int, names: Iterable[str], threads: int | None, tell: Callable[[str], None]
+) -> list[str]:
+    """Add a drawn cell of every kind that a set lacks, and write the set after each.
+
+    Parameters
+    ----------
+    path : Path
+        File of the set.
+    seed : int
+        Number of the set.
+    names : iterable of str
+        Kinds, names in `KINDS`.
+    threads : int or None
+        See `crawler2d.simulate_many`.
+    tell : callable
+        Takes a line about each height that was tried.
+
+    Returns
+    -------
+    list of str
+        The kinds of which no draw has such a height.
+    """
+    without = []
+    for name in names:
+        cells = read(path)
+        if any(cell.name == name for cell in cells):
+            continue
+        cell = find(name, seed, threads, tell)
+        if cell is None:
+            without.append(name)
+        else:
+            write(path, [*cells, cell])
+    return without
