@@ -1,0 +1,160 @@
+"""Draw cells, make their runs, write the page.
+
+Usage, from the repository root: ``python -m benches.accuracy [search | run | report] [--set N]``;
+without a verb the runs that are missing are made and the page is written. ``--quick`` tries all of
+it in half a minute. Ctrl-C loses nothing: the same command goes on where it ended.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import crawler2d as c2d
+from benches.accuracy import plot, report, runs, search
+from benches.accuracy.cells import Cell, Setting, path_of, read
+from benches.accuracy.findings import Study, collect
+from benches.accuracy.kinds import KINDS
+from benches.accuracy.statistics import LOOKS
+from benches.accuracy.store import Store
+from benches.accuracy.verdicts import undecided
+from benches.peers import machine
+from benches.peers.timing import progress
+
+_ROOT = Path(__file__).parents[2]
+_PAGE = _ROOT / "docs" / "studies" / "accuracy.md"
+_SETTINGS = Path(__file__).with_name("settings.json")
+
+# Of the quick try: kinds that cost little, and their runs.
+_QUICK_KINDS = ("line of 3 round", "line of 5 gears", "belt (a)")
+_QUICK_LOOKS = (6, 12)
+_QUICK_FINE: Setting = {"time_step": 0.5e-3}
+_QUICK_DEFAULT: Setting = {"time_step": 2e-3}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """What is to be done with which cells, settings and files."""
+
+    cells: Path
+    seed: int
+    kinds: tuple[str, ...]
+    settings: dict[str, Setting]
+    reference: str
+    default: str
+    looks: tuple[int, ...]
+    store: Path
+    page: Path
+    any_build: bool
+    threads: int | None
+
+    def search(self) -> None:
+        """Complete the set of cells."""
+        without = search.complete(self.cells, self.seed, self.kinds, self.threads, progress)
+        for name in without:
+            progress(f"{name}: no height found in {search.DRAWS} draws")
+
+    def run(self) -> None:
+        """Make all runs of the first look, and more where the setting that is judged needs them."""
+        cells = self._cells()
+        with Store(self.store, any_build=self.any_build) as store:
+            self._complete(store, cells, self.settings, self.looks[0])
+            pair = {name: self.settings[name] for name in (self.reference, self.default)}
+            for count in self.looks[1:]:
+                self._complete(store, undecided(self._study(store)), pair, count)
+
+    def report(self) -> None:
+        """Write page and figures from the runs in the store."""
+        with Store(self.store, any_build=self.any_build) as store:
+            study = self._study(store)
+        here = machine.describe({"crawler2d": c2d.__version__})
+        folder = self.page.with_suffix("")
+        text = report.render(study, here, folder.name)
+        plot.plot(study, folder)
+        self.page.write_text(text, encoding="utf-8", newline="\n")
+        sys.stdout.write(text)
+
+    def _cells(self) -> list[Cell]:
+        return [cell for cell in read(self.cells) if cell.kind in self.kinds]
+
+    def _study(self, store: Store) -> Study:
+        return Study(
+            findings=collect(store, self._cells(), self.settings, self.reference),
+            settings=self.settings,
+            reference=self.reference,
+            default=self.default,
+            looks=self.looks,
+            builds=store.builds(),
+        )
+
+    def _complete(
+        self, store: Store, cells: list[Cell], settings: dict[str, Setting], count: int
+    ) -> None:
+        runs.complete(store, cells, settings, count, threads=self.threads, tell=progress)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Parse the arguments and do the job."""
+    parser = argparse.ArgumentParser(prog="python -m benches.accuracy", description=__doc__)
+    parser.add_argument("verb", nargs="?", choices=("search", "run", "report"))
+    parser.add_argument("--quick", action="store_true", help="a few runs, all files in out/")
+    parser.add_argument("--set", type=int, default=1, help="number of the set of cells")
+    parser.add_argument("--settings", type=Path, default=_SETTINGS, help="settings of the solver")
+    parser.add_argument("--looks", type=int, nargs="+", default=list(LOOKS), help="runs of a cell")
+    parser.add_argument("--store", type=Path, default=_ROOT / "out" / "accuracy.sqlite")
+    parser.add_argument("--page", type=Path, default=_PAGE)
+    parser.add_argument("--any-build", action="store_true", help="take runs of other builds, too")
+    parser.add_argument("--threads", type=int, default=None)
+    asked = parser.parse_args(arguments)
+    chosen: dict[str, Any] = json.loads(asked.settings.read_text(encoding="utf-8"))
+    job = Job(
+        cells=path_of(asked.set),
+        seed=asked.set,
+        kinds=tuple(KINDS),
+        settings=chosen["settings"],
+        reference=chosen["reference"],
+        default=chosen["default"],
+        looks=tuple(asked.looks),
+        store=asked.store,
+        page=asked.page,
+        any_build=asked.any_build,
+        threads=asked.threads,
+    )
+    if asked.quick:
+        job = quick(job, _ROOT / "out")
+    steps: dict[str | None, list[Callable[[], None]]] = {
+        "search": [job.search],
+        "run": [job.run],
+        "report": [job.report],
+        None: [job.search, job.run, job.report] if asked.quick else [job.run, job.report],
+    }
+    for step in steps[asked.verb]:
+        step()
+
+
+def quick(job: Job, folder: Path) -> Job:
+    """Make a job that tries everything on a few cells, with all files in a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return replace(
+        job,
+        cells=folder / "accuracy-quick.json",
+        kinds=_QUICK_KINDS,
+        settings={"2 ms": _QUICK_DEFAULT, "1 ms": {"time_step": 1e-3}, "0.5 ms": _QUICK_FINE},
+        reference="0.5 ms",
+        default="2 ms",
+        looks=_QUICK_LOOKS,
+        store=folder / "accuracy-quick.sqlite",
+        page=folder / "accuracy-quick.md",
+    )
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("interrupted; the same command goes on from here")
