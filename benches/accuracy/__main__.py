@@ -28,6 +28,7 @@ from benches.peers.timing import progress
 
 _ROOT = Path(__file__).parents[2]
 _PAGE = _ROOT / "docs" / "studies" / "accuracy.md"
+_STORE = _ROOT / "out" / "accuracy.sqlite"
 _SETTINGS = Path(__file__).with_name("settings.json")
 
 # Of the quick try: kinds that cost little, and their runs.
@@ -102,12 +103,14 @@ def main(arguments: list[str] | None = None) -> None:
     """Parse the arguments and do the job."""
     parser = argparse.ArgumentParser(prog="python -m benches.accuracy", description=__doc__)
     parser.add_argument("verb", nargs="?", choices=("search", "run", "report"))
-    parser.add_argument("--quick", action="store_true", help="a few runs, all files in out/")
+    parser.add_argument(
+        "--quick", action="store_true", help="a few runs, all files beside the store"
+    )
     parser.add_argument("--set", type=int, default=1, help="number of the set of cells")
     parser.add_argument("--settings", type=Path, default=_SETTINGS, help="settings of the solver")
     parser.add_argument("--looks", type=int, nargs="+", default=list(LOOKS), help="runs of a cell")
-    parser.add_argument("--store", type=Path, default=_ROOT / "out" / "accuracy.sqlite")
-    parser.add_argument("--page", type=Path, default=_PAGE)
+    parser.add_argument("--store", type=Path, default=_STORE, help="runs")
+    parser.add_argument("--page", type=Path, default=_PAGE, help="the page that is written")
     parser.add_argument("--any-build", action="store_true", help="take runs of other builds, too")
     parser.add_argument("--threads", type=int, default=None)
     asked = parser.parse_args(arguments)
@@ -126,7 +129,7 @@ def main(arguments: list[str] | None = None) -> None:
         threads=asked.threads,
     )
     if asked.quick:
-        job = quick(job, _ROOT / "out")
+        job = _quick(job, asked.store.parent)
     steps: dict[str | None, list[Callable[[], None]]] = {
         "search": [job.search],
         "run": [job.run],
@@ -137,7 +140,7 @@ def main(arguments: list[str] | None = None) -> None:
         step()
 
 
-def quick(job: Job, folder: Path) -> Job:
+def _quick(job: Job, folder: Path) -> Job:
     """Make a job that tries everything on a few cells, with all files in a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     return replace(

@@ -15,7 +15,7 @@ from benches.accuracy import grounds
 from benches.accuracy.kinds import KINDS, Kind
 from crawler2d.parameters.scenario import Scenario
 
-FOLDER = Path(__file__).parent / "cells"
+FOLDER = Path(__file__).parent / "sets"
 
 Setting = Mapping[str, Any]
 """Arguments of `Solver`."""

@@ -94,19 +94,19 @@ def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell
         tell(f"{cell.name}: {1e3 * height:.1f} mm, {setting}: {share:.2f} of {made}")
         return share
 
-    coarse = _bisect(lambda h: rate(h, _COARSE, _COARSE_RUNS), *cell.what.heights)
+    coarse = bisect(lambda h: rate(h, _COARSE, _COARSE_RUNS), *cell.what.heights)
     if coarse is None:
         return None
     setting, count = _CONFIRM[is_fine], _RUNS[is_fine]
     low, high = (1.0 - _NEAR) * coarse[0], (1.0 + _NEAR) * coarse[0]
-    fine = _bisect(lambda h: rate(h, setting, count), low, high)
+    fine = bisect(lambda h: rate(h, setting, count), low, high)
     if fine is None:
         return None
     told = {"rate": round(fine[1], 3), "runs": count, "setting": dict(setting)}
     return replace(cell, height=fine[0], found=told)
 
 
-def _bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[float, float] | None:
+def bisect(rate: Callable[[float], float], low: float, high: float) -> tuple[float, float] | None:
     """Halve the interval until the rate in its middle is one in between.
 
     Rates need not fall with the height; where they do not, halving finds one of the places.
