@@ -85,6 +85,7 @@ class Job:
 
     def _study(self, store: Store) -> Study:
         return Study(
+            number=self.seed,
             findings=collect(store, self._cells(), self.settings, self.reference),
             settings=self.settings,
             reference=self.reference,
@@ -115,6 +116,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--threads", type=int, default=None)
     asked = parser.parse_args(arguments)
     chosen: dict[str, Any] = json.loads(asked.settings.read_text(encoding="utf-8"))
+    for role in ("reference", "default"):
+        if chosen[role] not in chosen["settings"]:
+            names = ", ".join(chosen["settings"])
+            parser.error(f"{role} must be one of the settings: {names}, got {chosen[role]}")
     job = Job(
         cells=path_of(asked.set),
         seed=asked.set,

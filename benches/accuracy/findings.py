@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from benches.accuracy.cells import Cell, Setting
-from benches.accuracy.ensemble import Row
+from benches.accuracy.ensemble import FAILED, Row
 from benches.accuracy.statistics import Pairs, pair, path_error
 from benches.accuracy.store import Store
 
@@ -15,6 +15,8 @@ class Figures(NamedTuple):
     """A cell with one setting."""
 
     runs: int
+    failed: int
+    """Those without a result; they count as not cleared."""
     rate: float
     cost: float
     """[-] Processor time per simulated time."""
@@ -38,10 +40,13 @@ class Finding(NamedTuple):
 class Study(NamedTuple):
     """All that a report needs."""
 
+    number: int
+    """Of the set of cells."""
     findings: list[Finding]
     settings: Mapping[str, Setting]
+    """By name, the finest last."""
     reference: str
-    """Name of the finest setting."""
+    """Name of the setting that the others are compared with, the finest."""
     default: str
     """Name of the setting that is judged."""
     looks: tuple[int, ...]
@@ -78,6 +83,7 @@ def _figures(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Figures:
     simulated = sum(row.time for row in rows.values())
     return Figures(
         runs=len(rows),
+        failed=sum(row.outcome == FAILED for row in rows.values()),
         rate=sum(row.outcome == "cleared" for row in rows.values()) / len(rows),
         cost=processor / simulated if simulated else 0.0,
         processor=processor,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Any
 
@@ -65,6 +65,7 @@ def render(study: Study, machine: dict[str, Any], figures: str) -> str:
 def _head(study: Study, machine: dict[str, Any]) -> str:
     runs = sum(f.runs for each in study.findings for f in each.by_setting.values())
     spent = sum(f.processor for each in study.findings for f in each.by_setting.values())
+    failed = sum(f.failed for each in study.findings for f in each.by_setting.values())
     looks = " or ".join(map(str, study.looks))
     again = (
         f" A cell whose interval is undecided after {study.looks[0]} runs gets"
@@ -86,8 +87,10 @@ track model), friction, speed and obstacle were drawn; then the height was searc
 runs clear and some do not, because elsewhere errors hardly show. Every setting has the same draws,
 so rates are compared run by run: {looks} runs for each cell and setting.{again}
 
-{len(study.findings)} cells, {runs:,} runs, {spent / 3600.0:.1f} hours of processor time, until
-{machine["date"]}: {machine["processor"]}, {machine["cores"]} cores, {machine["system"]}, Python
+The default is chosen with set 1 of cells and judged with sets that are drawn afterwards. This is
+set {study.number} (`benches/accuracy/sets/{study.number}.json`): {len(study.findings)} cells,
+{runs:,} runs, {failed} of them without a result, {spent / 3600.0:.1f} hours of processor time,
+until {machine["date"]}: {machine["processor"]}, {machine["cores"]} cores, {machine["system"]}, Python
 {machine["python"]}, crawler2d {machine["versions"]["crawler2d"]}, core {", ".join(study.builds)}.
 """
 
@@ -102,12 +105,12 @@ def _result(study: Study, cells: Sequence[Judged]) -> str:
     return f"""
 ## Result for {study.default}
 
-- *Mean over all cells*: {_interval(found)} (95 %). Within {MEAN_BOUND}:
-  {_MEANING[judge(found, MEAN_BOUND)]}.
-- *Models*: {_tally(of_models)} within {MODEL_BOUND} (95 % each).
-- *Cells*: {_tally(of_cells)} within {CELL_BOUND} (90 % each).
-- *Cells with a rate of their own*: {len(alone)} of {len(cells)} (McNemar's test, Holm's correction,
-  5 %).
+- *Mean of all cells* within {MEAN_BOUND}: {_MEANING[judge(found, MEAN_BOUND)]},
+  {_interval(found)} (95 %).
+- *Models* within {MODEL_BOUND} (95 % each): {_tally(of_models)}.
+- *Cells* within {CELL_BOUND} (90 % each): {_tally(of_cells)}.
+- *Cells with another rate* than with {study.reference}: {len(alone)} of {len(cells)}
+  (McNemar's test with Holm's correction, 5 %).
 """
 
 
@@ -238,8 +241,8 @@ def _errors(findings: Sequence[Finding], setting: str) -> Iterator[float]:
 
 
 def _tally(verdicts: Sequence[str]) -> str:
-    said: Callable[[str], int] = verdicts.count
-    return f"{said('inside')} of {len(verdicts)}, {said('outside')} not, {said('open')} undecided;"
+    inside, outside, undecided = (verdicts.count(each) for each in ("inside", "outside", "open"))
+    return f"{inside} of {len(verdicts)}; {outside} beyond it, {undecided} not decided"
 
 
 def _interval(found: Interval) -> str:

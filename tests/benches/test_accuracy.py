@@ -42,7 +42,7 @@ def some(outcomes: Sequence[bool]) -> list[Row]:
 def study(store: Store, *drawn: Cell) -> Study:
     settings = {"coarse": COARSE, "fine": FINE}
     found = collect(store, drawn, settings, "fine")
-    return Study(found, settings, "fine", "coarse", (400, 1600), store.builds())
+    return Study(1, found, settings, "fine", "coarse", (400, 1600), store.builds())
 
 
 @pytest.mark.parametrize("number", [1, 2])
