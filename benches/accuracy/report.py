@@ -91,7 +91,8 @@ The default is chosen with set 1 of cells and judged with sets that are drawn af
 set {study.number} (`benches/accuracy/sets/{study.number}.json`): {len(study.findings)} cells,
 {runs:,} runs, {failed} of them without a result, {spent / 3600.0:.1f} hours of processor time,
 until {machine["date"]}: {machine["processor"]}, {machine["cores"]} cores, {machine["system"]},
-Python {machine["python"]}, crawler2d {machine["versions"]["crawler2d"]}, core {", ".join(study.builds)}.
+Python {machine["python"]}, crawler2d {machine["versions"]["crawler2d"]}, core
+{", ".join(study.builds)}.
 """
 
 
