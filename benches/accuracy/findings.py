@@ -34,7 +34,7 @@ class Finding(NamedTuple):
     cell: Cell
     by_setting: dict[str, Figures]
     is_chaotic: bool
-    """Whether the last setting before the reference differs from it as often as new draws would."""
+    """Whether the last setting before the reference differs from it as new draws would."""
 
 
 class Study(NamedTuple):

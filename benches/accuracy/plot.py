@@ -1,4 +1,4 @@
-"""The figures of the study: error against cost, one panel for each model."""
+"""The figures of the study: error against cost, of all cells and of each model."""
 
 from __future__ import annotations
 
@@ -6,24 +6,47 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator
 
 from benches.accuracy.findings import Finding, Study
 from benches.accuracy.verdicts import size_of_difference
 
-_COLUMNS = 4
+_COLUMNS = 5
+# Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
 _GREY, _BLUE, _RED = "#666666", "#0072B2", "#D55E00"
-_ALL = "all cells"
+_COST = "processor time per simulated time [ms/s]"
+_ERRORS = {"rates": "mean size of the difference of rates", "paths": "median path error [mm]"}
 
-# Settings of one family share a curve: by which argument of `Solver` they choose the step.
-_FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
-    "time_step": ("fixed time step", {"color": _GREY, "marker": "s", "linestyle": "--"}),
-    "accuracy": ("error control", {"color": _BLUE, "marker": "o", "linestyle": "-"}),
-}
+
+class _Family(NamedTuple):
+    """Settings that share a curve: those that choose the step by the same argument of `Solver`."""
+
+    argument: str
+    title: str
+    style: dict[str, Any]
+    side: Literal["left", "right"]
+    """Where the settings' names are, seen from their points."""
+
+
+_FAMILIES = (
+    _Family(
+        "time_step",
+        "fixed time step",
+        {"color": _GREY, "marker": "s", "linestyle": "--"},
+        "right",
+    ),
+    _Family(
+        "accuracy",
+        "error control",
+        {"color": _BLUE, "marker": "o", "linestyle": "-"},
+        "left",
+    ),
+)
 
 
 class Point(NamedTuple):
@@ -39,64 +62,90 @@ class Point(NamedTuple):
     """What the error would be if all rates were equal; nan for paths."""
 
 
-Points = Callable[[Sequence[Finding], str], Iterator[Point]]
+_Points = Callable[[Sequence[Finding], str], Iterator[Point]]
 
 
 def plot(study: Study, folder: Path) -> None:
-    """Write ``rates.svg`` and ``paths.svg`` into a folder."""
+    """Write ``all.svg``, ``rates.svg`` and ``paths.svg`` into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    groups = _groups(study.findings)
     # Text stays text, and equal figures give equal files.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "crawler2d", "font.size": 8.0}):
-        for name, make, label in (
-            ("rates", _rate, "mean size of the\ndifference of rates"),
-            ("paths", _path, "median path error [mm]"),
-        ):
-            figure = _draw(study, groups, make, label, is_log=name == "paths")
+        figures = {"all": _all(study)} | {name: _models(study, name) for name in _ERRORS}
+        for name, figure in figures.items():
             figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
 
 
-def _groups(findings: Sequence[Finding]) -> dict[str, list[Finding]]:
-    groups: dict[str, list[Finding]] = {_ALL: list(findings)}
-    for each in findings:
+def _all(study: Study) -> Figure:
+    """Draw all cells together, and name the settings."""
+    figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+    axes = figure.subplots(1, 2)
+    for ax, name in zip(axes, _ERRORS, strict=True):
+        _panel(ax, study, study.findings, name, is_named=True)
+        ax.set(xlabel=_COST, ylabel=_ERRORS[name])
+    axes[0].set_ylim(bottom=0.0)
+    _legend(figure, axes[0])
+    return figure
+
+
+def _models(study: Study, name: str) -> Figure:
+    """Draw one panel for each model."""
+    groups: dict[str, list[Finding]] = {}
+    for each in study.findings:
         groups.setdefault(each.cell.what.model, []).append(each)
-    return groups
-
-
-def _draw(
-    study: Study,
-    groups: Mapping[str, Sequence[Finding]],
-    make: Points,
-    label: str,
-    *,
-    is_log: bool,
-) -> Figure:
-    rows = math.ceil(len(groups) / _COLUMNS)
-    figure = Figure(figsize=(9.0, 0.5 + 1.9 * rows), layout="constrained")
-    grid = figure.subplots(rows, _COLUMNS, sharey=True, squeeze=False)
+    rows = max(1, math.ceil(len(groups) / _COLUMNS))
+    figure = Figure(figsize=(10.0, 0.9 + 1.7 * rows), layout="constrained")
+    grid = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)
     for ax in grid.flat[len(groups) :]:
         ax.set_axis_off()
-    for ax, (name, own) in zip(grid.flat, groups.items(), strict=False):
-        for family, (title, style) in _FAMILIES.items():
-            points = [
-                point
-                for setting, arguments in study.settings.items()
-                if family in arguments and setting != study.reference
-                for point in make(own, setting)
-            ]
-            _curve(ax, points, title, style)
-            _mark(ax, points, study.default, name == _ALL)
-        ax.set_xscale("log")
-        if is_log:
-            ax.set_yscale("log")
-        ax.set_title(f"{name} ({len(own)})", fontsize="medium")
-        ax.grid(alpha=0.25)
-        ax.spines[["top", "right"]].set_visible(False)
-    figure.supxlabel("processor time per simulated time [ms/s]")
-    figure.supylabel(label)
-    handles, names = grid.flat[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False)
+    for ax, (model, own) in zip(grid.flat, groups.items(), strict=False):
+        _panel(ax, study, own, name, is_named=False)
+        ax.set_title(f"{model} ({len(own)})", fontsize="medium")
+    # Panels above an empty place have no panel below them that shows the costs.
+    for ax in grid.flat[max(0, len(groups) - _COLUMNS) : len(groups)]:
+        ax.tick_params(labelbottom=True)
+    if name == "rates":
+        grid.flat[0].set_ylim(bottom=0.0)
+    figure.supxlabel(_COST, fontsize="medium")
+    figure.supylabel(_ERRORS[name], fontsize="medium")
+    _legend(figure, grid.flat[0])
     return figure
+
+
+def _panel(
+    ax: Axes, study: Study, findings: Sequence[Finding], name: str, *, is_named: bool
+) -> None:
+    make = {"rates": _rate, "paths": _path}[name]
+    for family in _FAMILIES:
+        points = _points(study, family, findings, make)
+        if not points:
+            continue
+        _curve(ax, points, family)
+        for point in points:
+            place = (point.cost, point.error)
+            if point.setting == study.default:
+                ring: dict[str, Any] = {"markersize": 10, "markerfacecolor": "none"}
+                ax.plot(*place, marker="o", color=_RED, linestyle="", label=point.setting, **ring)
+            if is_named:
+                _name(ax, point, family.side)
+    ax.set_xscale("log")
+    if name == "paths":
+        ax.set_yscale("log")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda cost, _: f"{cost:g}"))
+    ax.minorticks_off()
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def _points(
+    study: Study, family: _Family, findings: Sequence[Finding], make: _Points
+) -> list[Point]:
+    return [
+        point
+        for setting, arguments in study.settings.items()
+        if family.argument in arguments and setting != study.reference
+        for point in make(findings, setting)
+    ]
 
 
 def _rate(findings: Sequence[Finding], setting: str) -> Iterator[Point]:
@@ -121,9 +170,7 @@ def _cost(findings: Sequence[Finding], setting: str) -> float:
     return 1e3 * median(each.by_setting[setting].cost for each in findings)
 
 
-def _curve(ax: Axes, points: Sequence[Point], title: str, style: Mapping[str, Any]) -> None:
-    if not points:
-        return
+def _curve(ax: Axes, points: Sequence[Point], family: _Family) -> None:
     costs = [point.cost for point in points]
     errors = [point.error for point in points]
     # Of a single cell there is no interval.
@@ -131,31 +178,22 @@ def _curve(ax: Axes, points: Sequence[Point], title: str, style: Mapping[str, An
         [min(max(point.error - point.low, 0.0), point.error) for point in points],
         [point.high - point.error if math.isfinite(point.high) else 0.0 for point in points],
     ]
-    ax.errorbar(
-        costs, errors, yerr=sides, markersize=4, linewidth=1.2, elinewidth=0.7, label=title, **style
-    )
+    style: Mapping[str, Any] = {"markersize": 4, "linewidth": 1.2, "elinewidth": 0.7}
+    ax.errorbar(costs, errors, yerr=sides, label=family.title, **style, **family.style)
     if not math.isnan(points[0].chance):
         chances = [point.chance for point in points]
-        ax.plot(costs, chances, color=style["color"], linestyle=":", label=f"{title}, by chance")
+        title = f"{family.title}, by chance"
+        ax.plot(costs, chances, color=family.style["color"], linestyle=":", label=title)
 
 
-def _mark(ax: Axes, points: Sequence[Point], default: str, is_named: bool) -> None:
-    """Ring the setting that is judged, and name the settings in one panel."""
-    for point in points:
-        if point.setting == default:
-            place = ([point.cost], [point.error])
-            ring: dict[str, Any] = {
-                "markersize": 10,
-                "markerfacecolor": "none",
-                "color": _RED,
-                "linestyle": "",
-            }
-            ax.plot(*place, marker="o", label=default, **ring)
-        if is_named:
-            ax.annotate(
-                point.setting,
-                (point.cost, point.error),
-                textcoords="offset points",
-                xytext=(5, 5),
-                fontsize="x-small",
-            )
+def _name(ax: Axes, point: Point, side: Literal["left", "right"]) -> None:
+    """Write the name of a setting beside its point: at the top right or at the bottom left."""
+    place, offset = (point.cost, point.error), {"right": (5, 5), "left": (-5, -11)}[side]
+    anchor: Literal["left", "right"] = "left" if side == "right" else "right"
+    ax.annotate(point.setting, place, xytext=offset, textcoords="offset points", ha=anchor)
+
+
+def _legend(figure: Figure, ax: Axes) -> None:
+    handles, names = ax.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, names, loc="outside upper center", ncols=len(names), frameon=False)

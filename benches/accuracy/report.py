@@ -47,6 +47,7 @@ def render(study: Study, machine: dict[str, Any], figures: str) -> str:
             _head(study, machine),
             _result(study, cells),
             "## What a finer step changes, and what it costs",
+            f"![Error against cost, of all cells together]({figures}/all.svg)",
             f"![Error of the rates against cost, for each model]({figures}/rates.svg)",
             f"![Error of the path against cost, for each model]({figures}/paths.svg)",
             _FIGURES,
@@ -116,11 +117,13 @@ def _result(study: Study, cells: Sequence[Judged]) -> str:
 
 
 _FIGURES = """
-Each point is a setting. *Error of the rates* is the mean size of the difference of a model's cells,
-with its 95 % interval (bootstrap over cells); the dotted line is what it would be by chance alone
-if all rates were equal. *Error of the path* is the median distance between the final positions of
-runs that ended alike, in cells that are not chaotic; a cell is chaotic if its runs with the two
-finest settings differ half as often as those of two new draws would, or more.
+Each point is a setting; the ring marks the one that is judged. The *difference of rates* is that to
+the finest setting, in size, the mean over cells with its 95 % interval (bootstrap over cells). The
+dotted line is what it would be by chance alone if all rates were equal. The *path error* of a cell
+is the median distance between the final positions of runs that ended alike; the point is the median
+over cells, the bar reaches from the least to the largest. Chaotic cells are left out there: those
+in which runs with the two finest settings differ at least half as often as two new draws would, in
+either direction.
 """
 
 _CELLS = """

@@ -58,10 +58,13 @@ class Pairs(NamedTuple):
 
     @property
     def is_chaotic(self) -> bool:
-        """Whether pairs differ almost as often as if each run were drawn anew."""
+        """Whether pairs differ in both directions, almost as often as if drawn anew.
+
+        Where all differ in one direction, the rate has moved, but the runs are not chaotic.
+        """
         first, second = self.both + self.only, self.both + self.reference
         anew = (first * (self.runs - second) + second * (self.runs - first)) / self.runs
-        return self.only + self.reference >= _CHAOTIC * anew > 0.0
+        return 2 * min(self.only, self.reference) >= _CHAOTIC * anew > 0.0
 
     def interval(self, confidence: float) -> Interval:
         """Estimate the difference with Newcombe's interval for paired data."""

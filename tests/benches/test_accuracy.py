@@ -184,10 +184,11 @@ def test_a_difference_at_the_bound_is_rarely_called_small() -> None:
     assert wrong <= 30
 
 
-def test_new_draws_look_chaotic_and_equal_ones_do_not() -> None:
+def test_new_draws_look_chaotic_and_those_of_another_rate_do_not() -> None:
     assert Pairs(100, 100, 100, 100).is_chaotic
     assert not Pairs(200, 5, 5, 190).is_chaotic
     assert not Pairs(400, 0, 0, 0).is_chaotic
+    assert not Pairs(100, 80, 0, 220).is_chaotic
 
 
 def test_only_undecided_cells_get_more_runs(tmp_path: Path) -> None:
@@ -209,6 +210,7 @@ def test_everything_is_tried_in_half_a_minute(tmp_path: Path) -> None:
     page = (tmp_path / "accuracy-quick.md").read_text(encoding="utf-8")
     assert all(f"| {cell['name']}" in page for cell in drawn)
     assert {path.name for path in (tmp_path / "accuracy-quick").iterdir()} == {
+        "all.svg",
         "rates.svg",
         "paths.svg",
     }
