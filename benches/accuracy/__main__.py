@@ -1,8 +1,11 @@
 """Draw cells, make their runs, write the page.
 
-Usage, from the repository root: ``python -m benches.accuracy [search | run | report] [--set N]``;
-without a verb the runs that are missing are made and the page is written. ``--quick`` tries all of
-it in half a minute. Ctrl-C loses nothing: the same command goes on where it ended.
+Usage, from the repository root: ``python -m benches.accuracy [search | run | report] [--set N]``.
+``search`` completes set N of cells, drawn with seed N; ``run`` makes the runs that are missing, and
+more where a cell is undecided; ``report`` writes the page. Without a verb, it runs and reports.
+``--quick`` tries all of it in half a minute. Ctrl-C loses nothing: the same command goes on where
+it ended. The settings file names arguments of `Solver`, the finest last, the ``reference`` among
+them that all are compared with, and the ``default`` that is judged.
 """
 
 from __future__ import annotations
@@ -51,12 +54,14 @@ class Job:
     looks: tuple[int, ...]
     store: Path
     page: Path
+    only: str
     any_build: bool
     threads: int | None
 
     def search(self) -> None:
         """Complete the set of cells."""
-        without = search.complete(self.cells, self.seed, self.kinds, self.threads, progress)
+        kinds = [name for name in self.kinds if self.only in name]
+        without = search.complete(self.cells, self.seed, kinds, self.threads, progress)
         for name in without:
             progress(f"{name}: no height found in {search.DRAWS} draws")
 
@@ -81,7 +86,7 @@ class Job:
         sys.stdout.write(text)
 
     def _cells(self) -> list[Cell]:
-        return [cell for cell in read(self.cells) if cell.kind in self.kinds]
+        return [cell for cell in read(self.cells) if self.only in cell.name]
 
     def _study(self, store: Store) -> Study:
         return Study(
@@ -112,6 +117,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--looks", type=int, nargs="+", default=list(LOOKS), help="runs of a cell")
     parser.add_argument("--store", type=Path, default=_STORE, help="runs")
     parser.add_argument("--page", type=Path, default=_PAGE, help="the page that is written")
+    parser.add_argument("--only", default="", help="only cells with this in their name")
     parser.add_argument("--any-build", action="store_true", help="take runs of other builds, too")
     parser.add_argument("--threads", type=int, default=None)
     asked = parser.parse_args(arguments)
@@ -130,6 +136,7 @@ def main(arguments: list[str] | None = None) -> None:
         looks=tuple(asked.looks),
         store=asked.store,
         page=asked.page,
+        only=asked.only,
         any_build=asked.any_build,
         threads=asked.threads,
     )
