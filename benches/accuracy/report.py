@@ -197,8 +197,8 @@ def _standing_out(study: Study, cells: Sequence[Judged]) -> str:
         return f"With {study.default}, no cell differs beyond its interval."
     chosen.sort(key=lambda each: -abs(each.interval.rate))
     lines = (
-        f"- *{each.cell.name}*: {each.interval.rate:+.3f} ({each.interval.low:+.3f} to"
-        f" {each.interval.high:+.3f}), p = {each.p_value:.2g}"
+        f"- *{each.cell.name}*: {each.interval.rate:+z.3f} ({each.interval.low:+z.3f} to"
+        f" {each.interval.high:+z.3f}), p = {each.p_value:.2g}"
         for each in chosen
     )
     return "\n".join(lines)
@@ -212,7 +212,7 @@ def _cells(study: Study, cells: Sequence[Judged]) -> str:
             f"{1e3 * each.cell.height:.1f}",
             f"{each.finding.by_setting[study.reference].rate:.3f}",
             f"{each.figures.rate:.3f}",
-            f"{each.interval.rate:+.3f} ({each.interval.low:+.3f} to {each.interval.high:+.3f})",
+            f"{each.interval.rate:+z.3f} ({each.interval.low:+z.3f} to {each.interval.high:+z.3f})",
             _MEANING[each.verdict],
             f"{each.p_value:.2g}",
             str(each.figures.pairs.runs),
@@ -250,7 +250,7 @@ def _tally(verdicts: Sequence[str]) -> str:
 
 
 def _interval(found: Interval) -> str:
-    return f"{found.rate:+.3f} ({found.low:+.3f} to {found.high:+.3f})"
+    return f"{found.rate:+z.3f} ({found.low:+z.3f} to {found.high:+z.3f})"
 
 
 def _percent(share: float) -> str:
