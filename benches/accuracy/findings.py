@@ -25,7 +25,7 @@ class Figures(NamedTuple):
     pairs: Pairs
     """With the runs of the reference."""
     path: float
-    """[m] Median distance between the ends of pairs that ended alike."""
+    """[m] See `statistics.path_error`."""
 
 
 class Finding(NamedTuple):
@@ -68,7 +68,7 @@ def collect(
         if not rows[reference]:
             continue
         figures = {
-            name: _figures(own, rows[reference])
+            name: _figures(own, rows[reference], cell.speed)
             for name, own in rows.items()
             if own.keys() & rows[reference].keys()
         }
@@ -78,7 +78,7 @@ def collect(
     return found
 
 
-def _figures(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Figures:
+def _figures(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: float) -> Figures:
     processor = sum(row.processor for row in rows.values())
     simulated = sum(row.time for row in rows.values())
     return Figures(
@@ -88,5 +88,5 @@ def _figures(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Figures:
         cost=processor / simulated if simulated else 0.0,
         processor=processor,
         pairs=pair(rows, reference),
-        path=path_error(rows, reference),
+        path=path_error(rows, reference, speed),
     )

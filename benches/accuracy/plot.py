@@ -9,6 +9,7 @@ from statistics import median
 from typing import Any, Literal, NamedTuple
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
@@ -130,8 +131,9 @@ def _panel(
     ax.set_xscale("log")
     if name == "paths":
         ax.set_yscale("log")
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda cost, _: f"{cost:g}"))
+    for axis in (ax.xaxis, ax.yaxis) if name == "paths" else (ax.xaxis,):
+        axis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.minorticks_off()
     ax.grid(alpha=0.25)
     ax.spines[["top", "right"]].set_visible(False)
@@ -163,7 +165,8 @@ def _path(findings: Sequence[Finding], setting: str) -> Iterator[Point]:
     paths = [1e3 * each.by_setting[setting].path for each in own]
     paths = [path for path in paths if path > 0.0]  # neither nan nor off the scale
     if paths:
-        yield Point(setting, _cost(own, setting), median(paths), min(paths), max(paths), math.nan)
+        low, middle, high = np.quantile(paths, (0.25, 0.5, 0.75)).tolist()
+        yield Point(setting, _cost(own, setting), middle, low, high, math.nan)
 
 
 def _cost(findings: Sequence[Finding], setting: str) -> float:

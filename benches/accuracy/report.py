@@ -120,10 +120,10 @@ _FIGURES = """
 Each point is a setting; the ring marks the one that is judged. The *difference of rates* is that to
 the finest setting, in size, the mean over cells with its 95 % interval (bootstrap over cells). The
 dotted line is what it would be by chance alone if all rates were equal. The *path error* of a cell
-is the median distance between the final positions of runs that ended alike; the point is the median
-over cells, the bar reaches from the least to the largest. Chaotic cells are left out there: those
-in which runs with the two finest settings differ at least half as often as two new draws would, in
-either direction.
+is the median distance, at one time, between runs that both cleared: it grows with every moment that
+one hesitates at an edge and the other does not. The point is the median over cells, the bar half of
+them. Chaotic cells are left out there: those in which runs with the two finest settings differ at
+least half as often as two new draws would, in either direction.
 """
 
 _CELLS = """
@@ -154,7 +154,7 @@ def _settings(study: Study) -> str:
                 f"{chance:.3f}",
                 str(beyond),
                 _path(own, name),
-                f"{1e3 * cost:.3g}",
+                _short(1e3 * cost),
             ]
         )
     head = [
@@ -180,8 +180,8 @@ def _models(study: Study) -> str:
                 _MEANING[judge(found, MODEL_BOUND)],
                 f"{size.rate:.3f}",
                 _path(findings, study.default),
-                f"{1e3 * cost:.3g}",
-                f"{1e3 * fine:.3g}",
+                _short(1e3 * cost),
+                _short(1e3 * fine),
             ]
         )
     head = [
@@ -216,7 +216,7 @@ def _cells(study: Study, cells: Sequence[Judged]) -> str:
             _MEANING[each.verdict],
             f"{each.p_value:.2g}",
             str(each.figures.pairs.runs),
-            f"{1e3 * each.figures.cost:.3g}",
+            _short(1e3 * each.figures.cost),
         ]
         for each in cells
     ]
@@ -234,7 +234,7 @@ def _ground(found: Finding) -> str:
 
 def _path(findings: Sequence[Finding], setting: str) -> str:
     errors = list(_errors(findings, setting))
-    return f"{1e3 * median(errors):.2g}" if errors else "-"
+    return _short(1e3 * median(errors)) if errors else "-"
 
 
 def _errors(findings: Sequence[Finding], setting: str) -> Iterator[float]:
@@ -251,6 +251,10 @@ def _tally(verdicts: Sequence[str]) -> str:
 
 def _interval(found: Interval) -> str:
     return f"{found.rate:+z.3f} ({found.low:+z.3f} to {found.high:+z.3f})"
+
+
+def _short(value: float) -> str:
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
 def _percent(share: float) -> str:

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from benches.accuracy.ensemble import FAILED, Row
+from benches.accuracy.ensemble import Row
 from crawler2d.sweeps.statistics import Interval, mcnemar, newcombe_paired
 
 LOOKS = (400, 1600)
@@ -79,13 +79,18 @@ def pair(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> Pairs:
     return Pairs(*counts.values())
 
 
-def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row]) -> float:
-    """[m] Median distance between the final positions of pairs that ended alike; nan if none."""
-    apart = [
-        math.hypot(rows[repeat].x - reference[repeat].x, rows[repeat].y - reference[repeat].y)
-        for repeat in rows.keys() & reference.keys()
-        if rows[repeat].outcome == reference[repeat].outcome != FAILED
-    ]
+def path_error(rows: Mapping[int, Row], reference: Mapping[int, Row], speed: float) -> float:
+    """[m] Median distance, at one time, between pairs that both cleared; nan if there are none.
+
+    Runs end at the same place beyond the obstacle, at different times; from there on both drive at
+    the commanded speed. Where both stop, they end in the same equilibrium whatever came before.
+    """
+    apart = []
+    for repeat in rows.keys() & reference.keys():
+        ours, theirs = rows[repeat], reference[repeat]
+        if _cleared(ours) and _cleared(theirs):
+            lead = ours.x - theirs.x - speed * (ours.time - theirs.time)
+            apart.append(math.hypot(lead, ours.y - theirs.y))
     return float(np.median(apart)) if apart else math.nan
 
 

@@ -15,7 +15,15 @@ from benches.accuracy.cells import Cell
 from benches.accuracy.ensemble import Row
 from benches.accuracy.findings import Study, collect
 from benches.accuracy.kinds import KINDS
-from benches.accuracy.statistics import CELL_BOUND, Pairs, cell_interval, holm, judge, mean
+from benches.accuracy.statistics import (
+    CELL_BOUND,
+    Pairs,
+    cell_interval,
+    holm,
+    judge,
+    mean,
+    path_error,
+)
 from benches.accuracy.store import Store
 from benches.accuracy.verdicts import judged_cells, undecided
 from crawler2d.sweeps.statistics import Interval, newcombe_paired
@@ -189,6 +197,14 @@ def test_new_draws_look_chaotic_and_those_of_another_rate_do_not() -> None:
     assert not Pairs(200, 5, 5, 190).is_chaotic
     assert not Pairs(400, 0, 0, 0).is_chaotic
     assert not Pairs(100, 80, 0, 220).is_chaotic
+
+
+def test_a_run_that_hesitates_is_behind_by_the_way_it_lost() -> None:
+    (there,) = some([True])
+    late = there._replace(time=there.time + 0.5, x=there.x + 0.01)
+    assert path_error({0: late}, {0: there}, speed=0.4) == pytest.approx(0.19)
+    stopped = late._replace(outcome="seized")
+    assert np.isnan(path_error({0: stopped}, {0: stopped}, speed=0.4))
 
 
 def test_only_undecided_cells_get_more_runs(tmp_path: Path) -> None:
