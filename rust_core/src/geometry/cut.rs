@@ -13,8 +13,8 @@ pub(crate) struct Chord {
     pub points: Vec<Vector>,
     /// Indices of the polyline's points strictly inside.
     pub vertices: std::ops::Range<usize>,
-    /// Where it begins and ends on the polyline: index of the segment plus a share of it.
-    pub span: (f64, f64),
+    /// Where it begins and ends on the polyline: index of the segment and a share of it.
+    pub span: [(usize, f64); 2],
     /// [m] Positions along the envelope at which it enters and leaves.
     enters: f64,
     leaves: f64,
@@ -23,12 +23,12 @@ pub(crate) struct Chord {
 /// A connected piece: the chords that bound it, in the order in which the envelope joins them.
 pub(crate) struct Piece<'a>(Vec<&'a Chord>);
 
-/// The stretches of a polyline inside the envelope; `first` is the index of its first point.
-pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<Chord> {
+/// The stretches of a polyline inside the envelope.
+pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
     let mut chords: Vec<Chord> = Vec::new();
     // The last chord continues, because it reached the end of the previous segment.
     let mut open = false;
-    for (i, ends) in (first..).zip(polyline.windows(2)) {
+    for (i, ends) in polyline.windows(2).enumerate() {
         let Some((from, to)) = belt.clip(ends[0], ends[1]) else {
             open = false;
             continue;
@@ -39,13 +39,13 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<
             Some(chord) if open && from <= 0.0 => {
                 chord.vertices.end = i + 1;
                 chord.points.push(end);
-                chord.span.1 = i as f64 + to;
+                chord.span[1] = (i, to);
                 chord.leaves = belt.way_of(end);
             }
             _ => chords.push(Chord {
                 points: vec![begin, end],
                 vertices: i + 1..i + 1,
-                span: (i as f64 + from, i as f64 + to),
+                span: [(i, from), (i, to)],
                 enters: belt.way_of(begin),
                 leaves: belt.way_of(end),
             }),

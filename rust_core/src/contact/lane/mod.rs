@@ -17,7 +17,7 @@ use index::Index;
 use roof::Chord;
 
 use crate::geometry::{Vector, cross, left_of};
-use crate::terrain::Profile;
+use crate::terrain::{Profile, facet_along};
 
 pub(super) use corner::Corner;
 pub(super) use index::{Region, Stretch};
@@ -34,6 +34,8 @@ pub(crate) struct Lane {
     faces: Vec<Face>,
     corners: Vec<Corner>,
     index: Index,
+    /// [m] The points of the profile.
+    points: Vec<Vector>,
 }
 
 impl Lane {
@@ -44,8 +46,9 @@ impl Lane {
         let faces: Vec<Face> = corners
             .windows(2)
             .map(|ends| {
-                let (begin, facet) = (end_of(&ends[0]), ends[0].facet + ends[0].facets);
-                let way = profile.points[ends[1].facet] - begin;
+                let begin = end_of(&ends[0]);
+                let facets = ends[0].facet + ends[0].facets..ends[1].facet;
+                let way = profile.points[facets.end] - begin;
                 let length = way.length();
                 let normal = left_of(way.normalize_or(Vector::X));
                 let adjoining = length == 0.0;
@@ -59,7 +62,7 @@ impl Lane {
                     along: Vector::new(normal.y, -normal.x),
                     normal,
                     length,
-                    facet,
+                    facets,
                     edges: [ends[0].edge, ends[1].edge],
                 }
             })
@@ -69,6 +72,7 @@ impl Lane {
             faces,
             corners,
             index,
+            points: profile.points.clone(),
         }
     }
 
@@ -185,7 +189,7 @@ impl Lane {
             place: face.begin + face.along * along,
             normal: face.normal,
             distance: spoke.dot(face.normal) - radius,
-            facet: face.facet,
+            facet: facet_along(&self.points, face.facets.clone(), along / face.length),
             edge,
             on: On::Face(i),
         })
