@@ -118,7 +118,12 @@ impl TrackEnvelope {
             let edge = profile.edge_of_point[*i];
             edge >= 0 && profile.edges[edge as usize].angle > 0.0
         };
+        let lowest = |disc: &Disc| pose.transform_point(disc.center).y - disc.radius;
+        let bottom = self.discs.iter().map(lowest).fold(f64::INFINITY, f64::min);
         let inside = |i: usize| {
+            if profile.points[i].y < bottom {
+                return false;
+            }
             let point = pose.inverse_transform_point(profile.points[i]);
             self.tips.hull.depth(point) > 0.0
         };
@@ -170,9 +175,11 @@ impl TrackEnvelope {
         // Straight down from a point in the ground everything is ground, so the rim below it bounds its piece.
         let down = pose.rotation.inverse() * -Vector::Y;
         let far = point + down * self.tips.hull.length();
-        let (_, share) = self.tips.hull.clip(point, far).unwrap_or_default();
-        let below = self.tips.hull.way_of(point + (far - point) * share);
-        below_ground(profile, pose, point) && piece.reaches(&self.tips.hull, below)
+        let hull = &self.tips.hull;
+        let inside = hull.clip([point, far], [point, far].map(|p| hull.depth(p)));
+        let (_, share) = inside.unwrap_or_default();
+        let below = hull.way_of(point + (far - point) * share);
+        below_ground(profile, pose, point) && piece.reaches(hull, below)
     }
 
     /// The point of a piece that lies deepest below a belt.

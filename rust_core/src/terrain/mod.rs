@@ -13,6 +13,7 @@ use skyline::Skyline;
 use straight::COLLINEAR;
 
 pub(crate) use place::facet_along;
+pub(crate) use straight::{FINE, STRAIGHT};
 
 use crate::scenario::{Scenario, ScenarioError, Terrain};
 pub use profile::{Edge, Profile, Side};

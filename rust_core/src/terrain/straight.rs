@@ -9,8 +9,8 @@ use crate::geometry::{Vector, cross, left_of};
 pub(super) const COLLINEAR: f64 = 1e-9;
 /// [m] Ground within this of a straight line is straight: less than the 0.3 um that a robot at rest sinks in.
 pub(crate) const STRAIGHT: f64 = 0.25e-6;
-/// [m] Only pieces shorter than this are joined; described ground has larger ones.
-const FINE: f64 = 1e-3;
+/// [m] Ground in pieces shorter than this is finely divided; described ground has larger ones.
+pub(crate) const FINE: f64 = 1e-3;
 
 /// The points at which a profile bends, both ends included.
 pub(super) fn bends(profile: &Profile) -> Vec<u32> {

@@ -14,7 +14,7 @@ mod touch;
 
 use corner::corners_of;
 use index::Index;
-use roof::Chord;
+use roof::{Chord, SAME_FACE};
 
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::{Profile, facet_along};
@@ -268,9 +268,18 @@ impl Lane {
         let mut chord = None;
         if region.is_long() && self.index.any(region, |s| s.stands_out && matters(s)) {
             let first = corners.by_ref().take(NEAR_END).find_map(&mut meet);
-            let last = corners.by_ref().rev().take(NEAR_END).find_map(&mut meet);
-            let ends = first.zip(last);
-            chord = ends.and_then(|(first, last)| Chord::new(&first, &last));
+            // The last corner may lie beyond the run.
+            let joins = |last: &Touch| first.as_ref().is_some_and(|f| Chord::joins(f, last));
+            let of_run = |i| meet(i).filter(joins);
+            let last = corners.by_ref().rev().take(NEAR_END).find_map(of_run);
+            if let Some((first, last)) = first.zip(last) {
+                if self.index.is_fine(region) {
+                    let between = Region::between(*corners.start(), *corners.end() + 1);
+                    self.visit_highest(&between, (&first, &last), &mut meet);
+                    return;
+                }
+                chord = Chord::new(&first, &last);
+            }
         }
         let hides = |hidden: &dyn Fn(&Chord) -> bool| chord.as_ref().is_some_and(hidden);
         if !corners.is_empty() {
@@ -284,5 +293,42 @@ impl Lane {
                 },
             );
         }
+    }
+
+    /// Calls `meet` with corners between two touches on a straight run until no corner rises above the chords
+    /// between those that bear.
+    fn visit_highest(
+        &self,
+        region: &Region,
+        (first, last): (&Touch, &Touch),
+        meet: &mut impl FnMut(usize) -> Option<Touch>,
+    ) {
+        let Some(chord) = Chord::new(first, last).filter(|_| !region.is_empty()) else {
+            return;
+        };
+        let highest = self.index.highest(
+            region,
+            SAME_FACE,
+            |stretch| chord.rise_of(&stretch.roof),
+            |i| chord.rise(&self.corners[i]),
+        );
+        let Some(highest) = highest else {
+            return;
+        };
+        let [before, behind] = region.around(highest);
+        if let Some(touch) = meet(highest) {
+            self.visit_highest(&before, (first, &touch), meet);
+            self.visit_highest(&behind, (&touch, last), meet);
+        } else {
+            // It does not face the run.
+            self.visit_highest(&before, (first, last), meet);
+            self.visit_highest(&behind, (first, last), meet);
+        }
+    }
+
+    /// Whether the ground within reach of a place is finely divided.
+    pub(super) fn is_fine(&self, center: Vector, reach: f64) -> bool {
+        let region = self.region(center.x - reach, center.x + reach);
+        self.index.is_fine(&region)
     }
 }

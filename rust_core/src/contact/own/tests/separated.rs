@@ -7,16 +7,34 @@ use super::judge::Approach;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::geometry::{Pose, Vector, left_of};
+use crate::geometry::{Pose, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
 /// [m] Tolerance of the comparison.
 const SAME: f64 = 1e-9;
 
-/// Whether the place is a contact, or lies between two others with the same normal and is no nearer than
+/// [m] The smallest gap of a place after any displacement of the part, by up to `far` along x and y, that closes
+/// no gap of the contacts: at a corner of the range of these displacements.
+fn reached(approach: &Approach, contacts: &[Contact], far: f64) -> f64 {
+    let sides = [Vector::X, -Vector::X, Vector::Y, -Vector::Y].map(|normal| (normal, far));
+    let gaps = contacts.iter().map(|c| (c.normal, c.distance));
+    let gaps: Vec<(Vector, f64)> = sides.into_iter().chain(gaps).collect();
+    let crossing = |(m, a): (Vector, f64), (n, b): (Vector, f64)| {
+        let turn = cross(m, n);
+        let at = Vector::new(b * m.y - a * n.y, a * n.x - b * m.x) / turn;
+        (turn.abs() > 1e-12).then_some(at)
+    };
+    let is_open = |at: &Vector| gaps.iter().all(|(n, gap)| n.dot(*at) + gap > -1e-12);
+    let pairs = (0..gaps.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let corners = pairs.filter_map(|(i, j)| crossing(gaps[i], gaps[j]).filter(is_open));
+    let at_corner = |at: Vector| approach.distance() + approach.normal().dot(at);
+    corners.map(at_corner).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two others with the same normal and is no nearer than
 /// these.
-fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
+fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
     // If the gap is mere rounding, so is its direction; contacts count as parallel up to 1.4e-6 rad.
@@ -30,7 +48,9 @@ fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
         let chord = a.distance + (b.distance - a.distance) * share;
         (0.0..=1.0).contains(&share) && distance > chord - scene.untold()
     };
+    let is_fine = scene.ground.curves.len() > 16;
     alike.iter().any(|c| is_it(c))
+        || (is_fine && reached(approach, contacts, prediction) > -2.6e-7)
         || alike.iter().any(|a| {
             alike
                 .iter()
@@ -72,7 +92,7 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         let approaches = judge.approaches(prediction - SAME);
         for approach in &approaches {
             assert!(
-                is_told(approach, &contacts, &scene),
+                is_told(approach, &contacts, &scene, prediction),
                 "{approach:?} {prediction} {contacts:?} {}",
                 scene.tell()
             );
