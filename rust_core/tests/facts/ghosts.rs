@@ -114,6 +114,25 @@ fn vertices_off_by_a_ten_millionth_leave_none_either() {
 }
 
 #[test]
+fn vertices_off_by_a_ten_millionth_are_no_edges_inside_a_track() {
+    // Flat ground reaches into the belt round gear wheels, between two grousers, but has no edge there.
+    let scenario = engineer_on(line_of(3, paper_gear()));
+    for pieces in [1, 100_000] {
+        let ground = cut(pieces, if pieces > 1 { 1e-7 } else { 0.0 }, &mut Draw(4));
+        let mut simulation = Simulation::on_ground(&scenario, ground).expect("it fits");
+        let (mut inside, mut edges) = (0, 0);
+        for _ in 0..1000 {
+            simulation.step().expect("finite");
+            let intrusions = simulation.intrusions();
+            inside += intrusions.len();
+            edges += intrusions.iter().map(|i| i.edges.len()).sum::<usize>();
+        }
+        println!("{pieces} pieces: {inside} intrusions with {edges} edges");
+        assert!(inside > 0 && edges == 0);
+    }
+}
+
+#[test]
 fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
     let step_at = |x: f64| Terrain::Points {
         points: vec![[x - 5.0, 0.0], [x, 0.0], [x, 0.1], [x + 5.0, 0.1]],

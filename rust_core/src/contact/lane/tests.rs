@@ -151,3 +151,31 @@ fn few_pieces_are_looked_at_however_finely_a_flat_is_cut() {
         assert!(visited.get() <= 64);
     }
 }
+
+#[test]
+fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
+    let mut draw = Draw(20_270_123);
+    for jitter in [3e-7, 1e-6, 1e-5] {
+        let points = (0..100_000).map(|i| [5e-6 * f64::from(i), draw.between(-jitter, jitter)]);
+        let profile = Profile::new("terrain", &points.collect::<Vec<_>>(), 0.0, 0.9, false);
+        let rough = Lane::new(&profile.unwrap());
+        let region = rough.region(0.01, 0.49);
+        let visited = Cell::new(0);
+        let last = *region.corners().end();
+        let meet = |i: usize| {
+            visited.set(visited.get() + 1);
+            let corner = &rough.corners[i];
+            // It lies under the arc behind the run.
+            let tilt = if i == last { 1e-3 } else { 0.0 };
+            let normal = Vector::new(tilt, 1.0).normalize();
+            (corner.stands_out && corner.faces(normal)).then(|| corner.touch(i, normal, 0.0))
+        };
+        rough.visit_corners_below_run(&region, |_| true, meet);
+        println!(
+            "jitter {jitter}: {} of {} corners",
+            visited.get(),
+            rough.corners.len()
+        );
+        assert!(visited.get() <= 150);
+    }
+}

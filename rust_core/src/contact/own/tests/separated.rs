@@ -7,7 +7,7 @@ use super::judge::Approach;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::geometry::{Pose, Vector, cross, left_of};
+use crate::geometry::{Disc, Pose, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
@@ -141,5 +141,57 @@ fn a_rounded_edge_is_a_true_arc() {
             contacts.iter().any(is_it),
             "{edge_radius} {radius} {angle} {gap} {contacts:?}"
         );
+    }
+}
+
+#[test]
+fn a_part_on_rough_ground_has_few_contacts_however_finely_it_is_cut() {
+    let mut draw = Draw(20_270_122);
+    let disc = Shape::Disc {
+        center: Vector::ZERO,
+        radius: 0.064,
+    };
+    let ends = [-0.18, 0.18].map(|x| Disc {
+        center: Vector::new(x, 0.0),
+        radius: 0.064,
+    });
+    for jitter in [1e-6, 1e-5, 1e-4] {
+        let mut point = |i: u32| [1e-5 * f64::from(i) - 0.3, draw.between(-jitter, jitter)];
+        let corners: Vec<[f64; 2]> = (0..60_000).map(&mut point).collect();
+        let profile = Profile::new("terrain", &corners, 0.0, 0.9, true).unwrap();
+        for shape in [
+            disc.clone(),
+            Shape::Hull {
+                discs: ends.to_vec(),
+                grouser_height: 0.0,
+            },
+        ] {
+            let part = Part {
+                kind: BodyKind::Wheel,
+                shape,
+                drive: Some(0),
+                friction_limit: f64::INFINITY,
+                lane: 0,
+                mount: Mount::Chassis,
+            };
+            let contact = OwnContact::new(&[part], std::slice::from_ref(&profile));
+            for prediction in [2e-4, 1e-3, 6e-3] {
+                for _ in 0..20 {
+                    let place = Vector::new(draw.between(-0.01, 0.01), 0.064 + jitter);
+                    let running = Running {
+                        drives: vec![0.0],
+                        ..Running::default()
+                    };
+                    let mut contacts = Vec::new();
+                    let pose = Pose::from_translation(place);
+                    contact.find(pose, &running, prediction, &mut contacts);
+                    assert!(
+                        (1..=60).contains(&contacts.len()),
+                        "{jitter} {prediction}: {}",
+                        contacts.len()
+                    );
+                }
+            }
+        }
     }
 }
