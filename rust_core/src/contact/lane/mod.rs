@@ -274,8 +274,9 @@ impl Lane {
             let last = corners.by_ref().rev().take(NEAR_END).find_map(of_run);
             if let Some((first, last)) = first.zip(last) {
                 if self.index.is_fine(region) {
-                    let between = Region::between(*corners.start(), *corners.end() + 1);
-                    self.visit_highest(&between, (&first, &last), &mut meet);
+                    let end = (*corners.end() + 1).min(self.faces.len());
+                    let between = Region::between(*corners.start(), end);
+                    self.visit_highest(between, (first, last), &mut meet);
                     return;
                 }
                 chord = Chord::new(&first, &last);
@@ -299,30 +300,29 @@ impl Lane {
     /// between those that bear.
     fn visit_highest(
         &self,
-        region: &Region,
-        (first, last): (&Touch, &Touch),
+        region: Region,
+        (first, last): (Touch, Touch),
         meet: &mut impl FnMut(usize) -> Option<Touch>,
     ) {
-        let Some(chord) = Chord::new(first, last).filter(|_| !region.is_empty()) else {
-            return;
-        };
-        let highest = self.index.highest(
-            region,
-            SAME_FACE,
-            |stretch| chord.rise_of(&stretch.roof),
-            |i| chord.rise(&self.corners[i]),
-        );
-        let Some(highest) = highest else {
-            return;
-        };
-        let [before, behind] = region.around(highest);
-        if let Some(touch) = meet(highest) {
-            self.visit_highest(&before, (first, &touch), meet);
-            self.visit_highest(&behind, (&touch, last), meet);
-        } else {
-            // It does not face the run.
-            self.visit_highest(&before, (first, last), meet);
-            self.visit_highest(&behind, (first, last), meet);
+        let mut open = vec![(region, first, last)];
+        while let Some((region, first, last)) = open.pop() {
+            let Some(chord) = Chord::new(&first, &last).filter(|_| !region.is_empty()) else {
+                continue;
+            };
+            let highest = self.index.highest(
+                &region,
+                SAME_FACE,
+                |stretch| chord.rise_of(&stretch.roof),
+                |i| chord.rise(&self.corners[i]),
+            );
+            if let Some(highest) = highest {
+                let [before, behind] = region.around(highest);
+                // A corner that does not bear on the run leaves the chord as it is.
+                let is_between = |t: &Touch| Chord::joins(&first, t) && Chord::joins(t, &last);
+                let touch = meet(highest).filter(is_between);
+                open.push((before, first, touch.unwrap_or(last)));
+                open.push((behind, touch.unwrap_or(first), last));
+            }
         }
     }
 
