@@ -161,29 +161,35 @@ fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
         let rough = Lane::new(&profile.unwrap());
         let arc = Vector::new(1e-3, 1.0).normalize();
         let bears = |i: &usize| rough.corners[*i].stands_out && rough.corners[*i].faces(arc);
-        let last = (0..rough.corners.len() - 100).rev().find(bears).unwrap();
+        let last = (0..rough.corners.len()).rev().find(bears).unwrap();
         let region = Region::between(100, last);
-        let height = |i: &usize| rough.corners[*i].center.y;
-        let highest = region
-            .corners()
-            .max_by(|i, j| height(i).total_cmp(&height(j)));
-        let (visited, is_highest_met) = (Cell::new(0), Cell::new(false));
+        let (mut visited, mut bearing) = (0, Vec::new());
         let meet = |i: usize| {
-            visited.set(visited.get() + 1);
-            is_highest_met.set(is_highest_met.get() || highest == Some(i));
+            visited += 1;
             let corner = &rough.corners[i];
             // The last one lies below the arc behind the run.
             let normal = if i == last { arc } else { Vector::Y };
-            (corner.stands_out && corner.faces(normal)).then(|| corner.touch(i, normal, 0.0))
+            let bears = corner.stands_out && corner.faces(normal);
+            if bears && i != last {
+                bearing.push(corner.center);
+            }
+            bears.then(|| corner.touch(i, normal, 0.0))
         };
         rough.visit_corners_below_run(&region, |_| true, meet);
         println!(
-            "jitter {jitter}: {} of {} corners",
-            visited.get(),
+            "jitter {jitter}: {visited} of {} corners",
             rough.corners.len()
         );
-        // Below a micrometre above a chord, it bears no more than the ends.
-        assert!(is_highest_met.get() || jitter < 1e-5);
-        assert!(visited.get() <= 150);
+        assert!(visited <= 150);
+        bearing.sort_by(|a, b| a.x.total_cmp(&b.x));
+        for corner in &rough.corners[100..last] {
+            let next = bearing.partition_point(|p| p.x <= corner.center.x);
+            if next > 0 && next < bearing.len() {
+                let [a, b] = [bearing[next - 1], bearing[next]];
+                let chord = a.y + (b.y - a.y) * (corner.center.x - a.x) / (b.x - a.x);
+                assert!(corner.center.y < chord + 1.001e-6);
+            }
+        }
+        assert!(bearing[0].x < 0.012 && bearing[bearing.len() - 1].x > 0.488);
     }
 }
