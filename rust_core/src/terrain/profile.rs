@@ -125,7 +125,10 @@ impl Profile {
             bends: Vec::new(),
         };
         profile.round(path, &points, radius)?;
-        profile.bends = bends(&profile);
+        profile.bends = bends(&profile.points, |i| {
+            let edge = usize::try_from(profile.edge_of_point[i]);
+            edge.is_ok_and(|edge| profile.edges[edge].radius > 0.0)
+        });
         Ok(profile)
     }
 
