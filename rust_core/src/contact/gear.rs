@@ -9,7 +9,8 @@
 use super::Contact;
 use super::lane::{Lane, On, Touch};
 use super::overlap::{self, Tip};
-use crate::geometry::{Gear, Pose, Rotation, Vector, direction, right_of};
+use super::reach::thin_out;
+use crate::geometry::{Disc, Gear, Pose, Rotation, Vector, direction, right_of};
 
 /// [m] Ground sinks into a flank by no more than this.
 const SUNK: f64 = 1e-3;
@@ -100,12 +101,14 @@ impl GearContact {
         let turned = pose.rotation * Rotation::new(-drive / self.gear.radius);
         if room <= self.gear.root_radius {
             // If the centre is past a face, that face is the far side of something thin.
-            let reach = (prediction, 0.0);
-            lane.touches_of_disc(center, self.gear.root_radius, reach, |touch| {
+            let (reach, radius) = ((prediction, 0.0), self.gear.root_radius);
+            let first = contacts.len();
+            lane.touches_of_disc(center, radius, reach, |touch| {
                 if self.is_between_grousers(turned.inverse() * -touch.normal) {
                     contacts.push(touch.contact(self.part));
                 }
             });
+            thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
         }
         let corners_stand_out = lane.may_stand_out(&region);
         let [_, _, tip, base] = self.grouser.corners;
@@ -136,7 +139,7 @@ impl GearContact {
         contacts: &mut Vec<Contact>,
     ) {
         for tip in [grouser.tip(1), grouser.tip(2)] {
-            let reach = (prediction, self.height());
+            let (reach, first) = ((prediction, self.height()), contacts.len());
             lane.touches_of_disc(tip.place, 0.0, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
@@ -145,6 +148,7 @@ impl GearContact {
                     contacts.push(touch.contact(self.part));
                 }
             });
+            thin_out(contacts, first, lane, &Disc::point(tip.place), prediction);
         }
     }
 

@@ -6,7 +6,7 @@
 mod tests;
 
 use super::Contact;
-use crate::geometry::cut::{self, Piece};
+use crate::geometry::cut::{self, Chord, Piece};
 use crate::geometry::search::maximise;
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::robot::{Mount, Part};
@@ -118,11 +118,18 @@ impl TrackEnvelope {
             let edge = profile.edge_of_point[*i];
             edge >= 0 && profile.edges[edge as usize].angle > 0.0
         };
+        let lowest = |disc: &Disc| pose.transform_point(disc.center).y - disc.radius;
+        let bottom = self.discs.iter().map(lowest).fold(f64::INFINITY, f64::min);
         let inside = |i: usize| {
+            if profile.points[i].y < bottom {
+                return false;
+            }
             let point = pose.inverse_transform_point(profile.points[i]);
             self.tips.hull.depth(point) > 0.0
         };
         self.points_under(profile, pose)
+            .iter()
+            .map(|i| *i as usize)
             .filter(stands_out)
             .any(inside)
     }
@@ -130,11 +137,9 @@ impl TrackEnvelope {
     /// Every piece of the ground inside the envelope, from the left.
     pub(crate) fn intrusions(&self, profile: &Profile, pose: Pose) -> Vec<Intrusion> {
         let under = self.points_under(profile, pose);
-        let polyline: Vec<Vector> = under
-            .clone()
-            .map(|i| pose.inverse_transform_point(profile.points[i]))
-            .collect();
-        let chords = cut::chords(&self.tips.hull, &polyline, under.start);
+        let place = |i: &u32| pose.inverse_transform_point(profile.points[*i as usize]);
+        let polyline: Vec<Vector> = under.iter().map(place).collect();
+        let chords = cut::chords(&self.tips.hull, &polyline);
         if chords.is_empty() {
             let buried = below_ground(profile, pose, self.tips.middle);
             let buried = buried.then(|| self.buried(profile.side, pose));
@@ -142,12 +147,12 @@ impl TrackEnvelope {
         }
         cut::pieces(&self.tips.hull, &chords)
             .iter()
-            .map(|piece| self.intrusion(profile, pose, piece))
+            .map(|piece| self.intrusion(profile, under, pose, piece))
             .collect()
     }
 
-    /// Range of points of the profile that bound all facets under the envelope.
-    fn points_under(&self, profile: &Profile, pose: Pose) -> std::ops::Range<usize> {
+    /// Indices of the points of the profile that bound all its straight pieces under the envelope.
+    fn points_under<'a>(&self, profile: &'a Profile, pose: Pose) -> &'a [u32] {
         let sides = |disc: &Disc| {
             let x = pose.transform_point(disc.center).x;
             (x - disc.radius, x + disc.radius)
@@ -159,8 +164,10 @@ impl TrackEnvelope {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
                 (low.min(a), high.max(b))
             });
-        let facets = profile.facets(low, high);
-        facets.start..(facets.end + 1).min(profile.points.len())
+        let (bends, x) = (profile.bends(), |i: &u32| profile.points[*i as usize].x);
+        let first = bends.partition_point(|i| x(i) < low).saturating_sub(1);
+        let end = bends.partition_point(|i| x(i) <= high) + 1;
+        &bends[first..end.min(bends.len())]
     }
 
     /// Whether a point inside the envelope lies in a piece.
@@ -168,9 +175,11 @@ impl TrackEnvelope {
         // Straight down from a point in the ground everything is ground, so the rim below it bounds its piece.
         let down = pose.rotation.inverse() * -Vector::Y;
         let far = point + down * self.tips.hull.length();
-        let (_, share) = self.tips.hull.clip(point, far).unwrap_or_default();
-        let below = self.tips.hull.way_of(point + (far - point) * share);
-        below_ground(profile, pose, point) && piece.reaches(&self.tips.hull, below)
+        let hull = &self.tips.hull;
+        let inside = hull.clip([point, far], [point, far].map(|p| hull.depth(p)));
+        let (_, share) = inside.unwrap_or_default();
+        let below = hull.way_of(point + (far - point) * share);
+        below_ground(profile, pose, point) && piece.reaches(hull, below)
     }
 
     /// The point of a piece that lies deepest below a belt.
@@ -182,12 +191,14 @@ impl TrackEnvelope {
         }
     }
 
-    fn intrusion(&self, profile: &Profile, pose: Pose, piece: &Piece) -> Intrusion {
+    /// The intrusion of a piece; `under` are the points of its polyline.
+    fn intrusion(&self, profile: &Profile, under: &[u32], pose: Pose, piece: &Piece) -> Intrusion {
         let deepest = self.deepest(profile, pose, piece, &self.tips);
         let root = self.deepest(profile, pose, piece, &self.roots);
         let mut edges: Vec<i32> = Vec::new();
         let mut edge = (f64::NEG_INFINITY, -1);
-        for i in piece.chords().flat_map(|c| c.vertices.clone()) {
+        for i in piece.chords().flat_map(|c| &under[c.vertices.clone()]) {
+            let i = *i as usize;
             let id = profile.edge_of_point[i];
             if id < 0 {
                 continue;
@@ -206,7 +217,7 @@ impl TrackEnvelope {
             edge: edge.1,
             area: piece.area(&self.tips.hull).max(0.0),
             rim: piece.rim().collect(),
-            stretches: piece.chords().map(|c| c.span).collect(),
+            stretches: piece.chords().map(|c| span(profile, under, c)).collect(),
             ..self.at(profile.side, pose, [deepest, root])
         }
     }
@@ -261,6 +272,14 @@ impl TrackEnvelope {
             stretches: Vec::new(),
         }
     }
+}
+
+/// The stretch of a profile along a chord, as facet index plus fraction of the facet.
+fn span(profile: &Profile, under: &[u32], chord: &Chord) -> (f64, f64) {
+    let place = |(piece, share): (usize, f64)| {
+        profile.place_along(under[piece] as usize..under[piece + 1] as usize, share)
+    };
+    (place(chord.span[0]), place(chord.span[1]))
 }
 
 /// Whether a point of the chassis frame lies in the ground.

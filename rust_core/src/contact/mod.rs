@@ -10,6 +10,7 @@ mod intrusion;
 mod lane;
 mod overlap;
 mod own;
+mod reach;
 mod reference;
 
 use serde::{Deserialize, Serialize};

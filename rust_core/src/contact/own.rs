@@ -10,8 +10,9 @@ mod tests;
 use super::gear::GearContact;
 use super::hull::{HullContact, SHALLOW};
 use super::lane::Lane;
+use super::reach::thin_out;
 use super::{Contact, without_redundant};
-use crate::geometry::{Grouser, Pose, Vector};
+use crate::geometry::{Disc, Grouser, Pose, Vector};
 use crate::robot::{Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
@@ -89,11 +90,12 @@ impl OwnContact {
                     center,
                     radius,
                 } => {
-                    let center = pose.transform_point(*center);
-                    let reach = (prediction, SHALLOW);
-                    lane.touches_of_disc(center, *radius, reach, |touch| {
+                    let (center, radius) = (pose.transform_point(*center), *radius);
+                    let (reach, first) = ((prediction, SHALLOW), contacts.len());
+                    lane.touches_of_disc(center, radius, reach, |touch| {
                         contacts.push(touch.contact(*part));
                     });
+                    thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
                 }
                 Outline::Gear { drive, gear } => {
                     gear.find(

@@ -13,8 +13,8 @@ pub(crate) struct Chord {
     pub points: Vec<Vector>,
     /// Indices of the polyline's points strictly inside.
     pub vertices: std::ops::Range<usize>,
-    /// Where it begins and ends on the polyline: index of the segment plus a share of it.
-    pub span: (f64, f64),
+    /// Where it begins and ends on the polyline: index of the segment and a share of it.
+    pub span: [(usize, f64); 2],
     /// [m] Positions along the envelope at which it enters and leaves.
     enters: f64,
     leaves: f64,
@@ -23,13 +23,14 @@ pub(crate) struct Chord {
 /// A connected piece: the chords that bound it, in the order in which the envelope joins them.
 pub(crate) struct Piece<'a>(Vec<&'a Chord>);
 
-/// The stretches of a polyline inside the envelope; `first` is the index of its first point.
-pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<Chord> {
+/// The stretches of a polyline inside the envelope.
+pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
     let mut chords: Vec<Chord> = Vec::new();
     // The last chord continues, because it reached the end of the previous segment.
     let mut open = false;
-    for (i, ends) in (first..).zip(polyline.windows(2)) {
-        let Some((from, to)) = belt.clip(ends[0], ends[1]) else {
+    let depths: Vec<f64> = polyline.iter().map(|p| belt.depth(*p)).collect();
+    for (i, ends) in polyline.windows(2).enumerate() {
+        let Some((from, to)) = belt.clip([ends[0], ends[1]], [depths[i], depths[i + 1]]) else {
             open = false;
             continue;
         };
@@ -39,15 +40,14 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<
             Some(chord) if open && from <= 0.0 => {
                 chord.vertices.end = i + 1;
                 chord.points.push(end);
-                chord.span.1 = i as f64 + to;
-                chord.leaves = belt.way_of(end);
+                chord.span[1] = (i, to);
             }
             _ => chords.push(Chord {
                 points: vec![begin, end],
                 vertices: i + 1..i + 1,
-                span: (i as f64 + from, i as f64 + to),
-                enters: belt.way_of(begin),
-                leaves: belt.way_of(end),
+                span: [(i, from), (i, to)],
+                enters: 0.0,
+                leaves: 0.0,
             }),
         }
         open = to >= 1.0;
@@ -56,6 +56,10 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector], first: usize) -> Vec<
         let length: f64 = c.points.windows(2).map(|p| (p[1] - p[0]).length()).sum();
         length > TOUCHES
     });
+    for chord in &mut chords {
+        let ends = [chord.points[0], chord.points[chord.points.len() - 1]];
+        [chord.enters, chord.leaves] = ends.map(|end| belt.way_of(end));
+    }
     chords
 }
 
@@ -132,16 +136,24 @@ impl Piece<'_> {
     /// The point of its chords that lies deepest below an envelope.
     pub(crate) fn deepest_on_chords(&self, belt: &Envelope) -> Vector {
         let points = self.chords().flat_map(|c| &c.points);
-        let of_points = points.map(|p| (belt.depth(*p), *p));
-        let mut deepest = of_points.fold((f64::NEG_INFINITY, Vector::ZERO), deeper);
-        for ends in self.chords().flat_map(|c| c.points.windows(2)) {
-            let at = |share: f64| ends[0] + (ends[1] - ends[0]) * share;
-            // Depth changes by no more than the distance moved, so most segments cannot have the deepest point.
-            let length = (ends[1] - ends[0]).length();
-            if 0.5 * (belt.depth(ends[0]) + belt.depth(ends[1]) + length) > deepest.0 {
-                // The depth below a convex rim is concave along a line.
-                let point = at(maximise(0.0, 1.0, |t| belt.depth(at(t))));
-                deepest = deeper(deepest, (belt.depth(point), point));
+        let of_points: Vec<_> = points.map(|p| (belt.depth(*p), *p)).collect();
+        let start = (f64::NEG_INFINITY, Vector::ZERO);
+        let mut deepest = of_points.iter().copied().fold(start, deeper);
+        let mut rest = &of_points[..];
+        for chord in self.chords() {
+            let (of_chord, others) = rest.split_at(chord.points.len());
+            rest = others;
+            for ends in of_chord.windows(2) {
+                let [(of_a, a), (of_b, b)] = [ends[0], ends[1]];
+                let at = |share: f64| a + (b - a) * share;
+                // Depth changes by no more than the distance moved, so most segments cannot have the deepest
+                // point; on others it is that of one straight run all along.
+                let most = 0.5 * (of_a + of_b + (b - a).length());
+                if most > deepest.0 && belt.depth_below_runs([a, b]) > deepest.0 {
+                    // The depth below a convex rim is concave along a line.
+                    let point = at(maximise(0.0, 1.0, |t| belt.depth(at(t))));
+                    deepest = deeper(deepest, (belt.depth(point), point));
+                }
             }
         }
         deepest.1

@@ -133,6 +133,14 @@ impl Envelope {
         depths.fold(f64::INFINITY, f64::min)
     }
 
+    /// [m] No point of a segment is deeper than this: the depth of its deeper end below a straight run.
+    pub(super) fn depth_below_runs(&self, ends: [Vector; 2]) -> f64 {
+        let is_run = |s: &&Stretch| matches!(s.shape, Form::Run { .. });
+        let runs = self.stretches.iter().filter(is_run);
+        let depths = runs.filter_map(|s| Some(s.depth(ends[0])?.max(s.depth(ends[1])?)));
+        depths.fold(f64::INFINITY, f64::min)
+    }
+
     /// The nearest stretch of the hull; the first of several equally near ones.
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
         let depths = || self.stretches.iter().map(|s| s.depth(point));
@@ -221,8 +229,11 @@ impl Envelope {
         }
     }
 
-    /// The part of a segment that lies inside, as fractions of its length.
-    pub(crate) fn clip(&self, a: Vector, b: Vector) -> Option<(f64, f64)> {
+    /// The part of a segment that lies inside, as fractions of its length; `depths` are those of its ends.
+    pub(crate) fn clip(&self, [a, b]: [Vector; 2], depths: [f64; 2]) -> Option<(f64, f64)> {
+        if depths.iter().all(|depth| *depth > 0.0) {
+            return Some((0.0, 1.0));
+        }
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut cut = |t: f64| {
             low = low.min(t);
@@ -232,11 +243,10 @@ impl Envelope {
             stretch.crossings(a, b, &mut cut);
         }
         // An end inside has no crossing on its own side.
-        if self.depth(a) > 0.0 {
-            cut(0.0);
-        }
-        if self.depth(b) > 0.0 {
-            cut(1.0);
+        for (end, depth) in [0.0, 1.0].into_iter().zip(depths) {
+            if depth > 0.0 {
+                cut(end);
+            }
         }
         (low < high).then_some((low, high))
     }

@@ -2,13 +2,18 @@
 
 mod field;
 mod obstacle;
+mod place;
 mod profile;
 mod skyline;
+mod straight;
 mod upper;
 
 use obstacle::RUN_OUT;
-use profile::COLLINEAR;
 use skyline::Skyline;
+use straight::COLLINEAR;
+
+pub(crate) use place::facet_along;
+pub(crate) use straight::{FINE, STRAIGHT};
 
 use crate::scenario::{Scenario, ScenarioError, Terrain};
 pub use profile::{Edge, Profile, Side};

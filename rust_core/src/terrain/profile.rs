@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::straight::{COLLINEAR, bends, without_collinear};
 use crate::geometry::{Vector, left_of};
 use crate::scenario::ScenarioError;
 
@@ -9,12 +10,6 @@ use crate::scenario::ScenarioError;
 const FACET_TURN: f64 = 0.0175;
 /// Largest number of facets of a lane, which are built in well under a second.
 const MAX_FACETS: f64 = 1e6;
-/// [m] Points closer than this to the line through their neighbours do not make an edge.
-pub(super) const COLLINEAR: f64 = 1e-9;
-
-/// [m] A contact this close to a vertex touches the edge, not the face beside it.
-const AT_VERTEX: f64 = 1e-7;
-
 /// The part of the robot that a profile is under; the code is the `lane` of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
@@ -58,6 +53,8 @@ pub struct Profile {
     pub friction: f64,
     /// Number of points left out because they repeat or continue their neighbours.
     pub merged: usize,
+    /// Indices of the points at which it bends.
+    bends: Vec<u32>,
 }
 
 /// A corner of the ground.
@@ -125,8 +122,13 @@ impl Profile {
             edges: Vec::new(),
             friction,
             merged,
+            bends: Vec::new(),
         };
         profile.round(path, &points, radius)?;
+        profile.bends = bends(&profile.points, |i| {
+            let edge = usize::try_from(profile.edge_of_point[i]);
+            edge.is_ok_and(|edge| profile.edges[edge].radius > 0.0)
+        });
         Ok(profile)
     }
 
@@ -217,6 +219,12 @@ impl Profile {
         self
     }
 
+    /// Indices of the points at which it bends, both ends included: between them it is straight, for contacts
+    /// and for what is inside a track.
+    pub(crate) fn bends(&self) -> &[u32] {
+        &self.bends
+    }
+
     /// [m] Smallest and largest x.
     pub fn extent(&self) -> (f64, f64) {
         (self.points[0].x, self.points[self.points.len() - 1].x)
@@ -238,28 +246,6 @@ impl Profile {
             .partition_point(|p| p.x <= high)
             .min(self.points.len() - 1);
         first..last
-    }
-
-    /// Position along the profile of a point on a facet, as the index of the facet plus a share of it, and the
-    /// length [m] of the facet.
-    pub(crate) fn place_on(&self, facet: usize, point: Vector) -> (f64, f64) {
-        let (a, b) = (self.points[facet], self.points[facet + 1]);
-        let (way, length) = (b - a, (b - a).length());
-        let share = (point - a).dot(way) / (length * length);
-        (facet as f64 + share.clamp(0.0, 1.0), length)
-    }
-
-    /// The edge that a point on a facet touches, or -1 on a face.
-    pub(crate) fn edge_at(&self, facet: usize, point: Vector) -> i32 {
-        let (left, right) = (self.edge_of_point[facet], self.edge_of_point[facet + 1]);
-        let on_arc = left == right && left >= 0;
-        if on_arc || (point - self.points[facet]).length() < AT_VERTEX {
-            left
-        } else if (point - self.points[facet + 1]).length() < AT_VERTEX {
-            right
-        } else {
-            -1
-        }
     }
 
     /// [rad] Angle of the ground at x; of the right-hand facet at a corner.
@@ -379,20 +365,4 @@ fn check_overhangs(path: &str, points: &[(usize, Vector)]) -> Result<(), Scenari
         ));
     }
     Ok(())
-}
-
-/// Leaves out every point on the line through the last one kept and the next.
-fn without_collinear(points: &[Vector]) -> Vec<Vector> {
-    let mut kept = vec![points[0]];
-    for pair in points[1..].windows(2) {
-        let (last, here, next) = (kept[kept.len() - 1], pair[0], pair[1]);
-        let (back, chord) = (here - last, next - last);
-        let off = (back.x * chord.y - back.y * chord.x).abs() / chord.length();
-        let between = back.dot(chord) >= 0.0 && back.dot(chord) <= chord.length_squared();
-        if off > COLLINEAR || !between {
-            kept.push(here);
-        }
-    }
-    kept.push(points[points.len() - 1]);
-    kept
 }

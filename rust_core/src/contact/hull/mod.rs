@@ -14,6 +14,7 @@ use sector::Sector;
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
 use super::overlap::{self, Tip};
+use super::reach::thin_out;
 use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
 use crate::robot::{Part, Shape};
 
@@ -92,6 +93,7 @@ impl HullContact {
         if lane.top(&region) < low.y {
             return;
         }
+        let first = contacts.len();
         // A part that is fast enough to be found from far away may be this deep in the middle of a step.
         let reach = (prediction, SHALLOW.max(prediction));
         for arc in &self.arcs {
@@ -109,6 +111,13 @@ impl HullContact {
             });
         }
         self.find_corners(lane, &region, pose, prediction, contacts);
+        for arc in &self.arcs {
+            let disc = Disc {
+                center: center(arc),
+                ..arc.disc
+            };
+            thin_out(contacts, first, lane, &disc, prediction);
+        }
     }
 
     /// Adds the contacts of corners of the ground on the hull; where the hull's normal lies outside a

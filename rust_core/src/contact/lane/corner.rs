@@ -63,12 +63,14 @@ impl Corner {
 
 /// The corners of a profile, both ends included; the points of one arc are one corner.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
-    let points = &profile.points;
-    let last = points.len() - 1;
+    let bends = profile.bends();
+    let point = |i: usize| profile.points[bends[i] as usize];
+    let edge_of = |i: usize| profile.edge_of_point[bends[i] as usize];
+    let last = bends.len() - 1;
     let mut corners = Vec::new();
     let mut i = 0;
     while i <= last {
-        let edge = profile.edge_of_point[i];
+        let edge = edge_of(i);
         let rounded = usize::try_from(edge)
             .ok()
             .map(|e| &profile.edges[e])
@@ -76,21 +78,21 @@ pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
         // An arc adjacent to the last one shares its end point.
         let shares_point = rounded.is_some_and(|e| {
             let on_arc = |p: Vector| ((p - e.center).length() - e.radius).abs() < SHARED;
-            i > 0 && edge != profile.edge_of_point[i - 1] && on_arc(points[i - 1])
+            i > 0 && edge != edge_of(i - 1) && on_arc(point(i - 1))
         });
         let first = i - usize::from(shares_point);
-        while rounded.is_some() && i < last && profile.edge_of_point[i + 1] == edge {
+        while rounded.is_some() && i < last && edge_of(i + 1) == edge {
             i += 1;
         }
-        let normal_of = |a: usize, b: usize| left_of((points[b] - points[a]).normalize());
+        let normal_of = |a: usize, b: usize| left_of((point(b) - point(a)).normalize());
         let (center, normals) = match rounded {
             Some(e) => {
                 let normal = |p: Vector| (p - e.center) / e.radius;
-                (e.center, [normal(points[first]), normal(points[i])])
+                (e.center, [normal(point(first)), normal(point(i))])
             }
             // Each end of the ground has one normal only.
             None => (
-                points[i],
+                point(i),
                 [
                     normal_of(i.saturating_sub(1), i.max(1)),
                     normal_of(i.min(last - 1), (i + 1).min(last)),
@@ -103,7 +105,7 @@ pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
             stands_out: 0 < first && i < last && cross(normals[1], normals[0]) > 0.0,
             normals,
             edge,
-            facet: first,
+            facet: bends[first] as usize,
             facets: i - first,
         });
         i += 1;

@@ -7,13 +7,14 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
+use std::cell::Cell;
 use std::ops::{Range, RangeInclusive};
 
 use super::Corner;
 use super::roof::{Roof, roof};
 use super::touch::{Face, ROUNDING};
 use crate::geometry::{Vector, cross};
-use crate::terrain::Profile;
+use crate::terrain::{FINE, Profile};
 
 /// Pieces per stretch of the lowest level.
 const BLOCK: usize = 8;
@@ -50,6 +51,16 @@ impl Region {
     /// Whether it has too many pieces to visit one by one.
     pub(crate) fn is_long(&self) -> bool {
         self.0.len() > FEW
+    }
+
+    /// Whether it has no piece.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The regions before and behind a piece.
+    pub(super) fn around(&self, piece: usize) -> [Self; 2] {
+        [self.0.start..piece, piece + 1..self.0.end].map(Self)
     }
 
     /// The pieces of the region.
@@ -245,6 +256,33 @@ impl Index {
         if last == end {
             piece(end, false);
         }
+    }
+
+    /// Whether the pieces of a region are many and small.
+    pub(super) fn is_fine(&self, region: &Region) -> bool {
+        let Range { start, end } = region.0;
+        let is_fine = || self.begins[end - 1] - self.begins[start] < FINE * (end - start) as f64;
+        region.is_long() && is_fine()
+    }
+
+    /// The corner of a region that rises highest, and by more than `least` [m]; `bound` is a bound of a stretch.
+    pub(super) fn highest(
+        &self,
+        region: &Region,
+        least: f64,
+        bound: impl Fn(&Stretch) -> f64,
+        rise: impl Fn(usize) -> f64,
+    ) -> Option<usize> {
+        let highest = Cell::new((least, None));
+        let meet = |i: usize| {
+            let rise = rise(i);
+            if rise > highest.get().0 {
+                highest.set((rise, Some(i)));
+            }
+        };
+        let matters = |stretch: &Stretch| stretch.stands_out && bound(stretch) > highest.get().0;
+        self.descend(region, matters, |pieces| pieces.for_each(meet));
+        highest.get().1
     }
 
     /// Calls `block` with the pieces of each lowest-level stretch of a region that may matter.

@@ -14,10 +14,10 @@ mod touch;
 
 use corner::corners_of;
 use index::Index;
-use roof::Chord;
+use roof::{Chord, SAME_FACE};
 
 use crate::geometry::{Vector, cross, left_of};
-use crate::terrain::Profile;
+use crate::terrain::{Profile, facet_along};
 
 pub(super) use corner::Corner;
 pub(super) use index::{Region, Stretch};
@@ -34,6 +34,8 @@ pub(crate) struct Lane {
     faces: Vec<Face>,
     corners: Vec<Corner>,
     index: Index,
+    /// [m] The points of the profile.
+    points: Vec<Vector>,
 }
 
 impl Lane {
@@ -44,8 +46,9 @@ impl Lane {
         let faces: Vec<Face> = corners
             .windows(2)
             .map(|ends| {
-                let (begin, facet) = (end_of(&ends[0]), ends[0].facet + ends[0].facets);
-                let way = profile.points[ends[1].facet] - begin;
+                let begin = end_of(&ends[0]);
+                let facets = ends[0].facet + ends[0].facets..ends[1].facet;
+                let way = profile.points[facets.end] - begin;
                 let length = way.length();
                 let normal = left_of(way.normalize_or(Vector::X));
                 let adjoining = length == 0.0;
@@ -59,7 +62,7 @@ impl Lane {
                     along: Vector::new(normal.y, -normal.x),
                     normal,
                     length,
-                    facet,
+                    facets,
                     edges: [ends[0].edge, ends[1].edge],
                 }
             })
@@ -69,6 +72,7 @@ impl Lane {
             faces,
             corners,
             index,
+            points: profile.points.clone(),
         }
     }
 
@@ -185,7 +189,7 @@ impl Lane {
             place: face.begin + face.along * along,
             normal: face.normal,
             distance: spoke.dot(face.normal) - radius,
-            facet: face.facet,
+            facet: facet_along(&self.points, face.facets.clone(), along / face.length),
             edge,
             on: On::Face(i),
         })
@@ -264,9 +268,19 @@ impl Lane {
         let mut chord = None;
         if region.is_long() && self.index.any(region, |s| s.stands_out && matters(s)) {
             let first = corners.by_ref().take(NEAR_END).find_map(&mut meet);
-            let last = corners.by_ref().rev().take(NEAR_END).find_map(&mut meet);
-            let ends = first.zip(last);
-            chord = ends.and_then(|(first, last)| Chord::new(&first, &last));
+            // The last corner may lie beyond the run.
+            let joins = |last: &Touch| first.as_ref().is_some_and(|f| Chord::joins(f, last));
+            let of_run = |i| meet(i).filter(joins);
+            let last = corners.by_ref().rev().take(NEAR_END).find_map(of_run);
+            if let Some((first, last)) = first.zip(last) {
+                if self.index.is_fine(region) {
+                    let end = (*corners.end() + 1).min(self.faces.len());
+                    let between = Region::between(*corners.start(), end);
+                    self.visit_highest(between, (first, last), &mut meet);
+                    return;
+                }
+                chord = Chord::new(&first, &last);
+            }
         }
         let hides = |hidden: &dyn Fn(&Chord) -> bool| chord.as_ref().is_some_and(hidden);
         if !corners.is_empty() {
@@ -280,5 +294,41 @@ impl Lane {
                 },
             );
         }
+    }
+
+    /// Calls `meet` with corners between two touches on a straight run until no corner rises above the chords
+    /// between those that bear.
+    fn visit_highest(
+        &self,
+        region: Region,
+        (first, last): (Touch, Touch),
+        meet: &mut impl FnMut(usize) -> Option<Touch>,
+    ) {
+        let mut open = vec![(region, first, last)];
+        while let Some((region, first, last)) = open.pop() {
+            let Some(chord) = Chord::new(&first, &last).filter(|_| !region.is_empty()) else {
+                continue;
+            };
+            let highest = self.index.highest(
+                &region,
+                SAME_FACE,
+                |stretch| chord.rise_of(&stretch.roof),
+                |i| chord.rise(&self.corners[i]),
+            );
+            if let Some(highest) = highest {
+                let [before, behind] = region.around(highest);
+                // A corner that does not bear on the run leaves the chord as it is.
+                let is_between = |t: &Touch| Chord::joins(&first, t) && Chord::joins(t, &last);
+                let touch = meet(highest).filter(is_between);
+                open.push((before, first, touch.unwrap_or(last)));
+                open.push((behind, touch.unwrap_or(first), last));
+            }
+        }
+    }
+
+    /// Whether the ground within reach of a place is finely divided.
+    pub(super) fn is_fine(&self, center: Vector, reach: f64) -> bool {
+        let region = self.region(center.x - reach, center.x + reach);
+        self.index.is_fine(&region)
     }
 }

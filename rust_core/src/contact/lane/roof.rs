@@ -8,7 +8,7 @@ use crate::geometry::{Vector, left_of};
 
 /// [m] Ground that rises above a chord by less than this bears no more than the ends of the chord: it is a
 /// thousandth of the deepest overlap that should ever occur.
-const SAME_FACE: f64 = 1e-6;
+pub(super) const SAME_FACE: f64 = 1e-6;
 
 /// Both ends of a line above all corners of a stretch of ground, roughly parallel to the stretch.
 pub(super) type Roof = [Vector; 2];
@@ -38,11 +38,15 @@ pub(super) struct Chord {
 }
 
 impl Chord {
+    /// Whether two touches are on the same run, the first on the left.
+    pub(super) fn joins(first: &Touch, last: &Touch) -> bool {
+        first.normal.dot(last.normal) > 1.0 - 1e-12 && first.place.x < last.place.x
+    }
+
     /// The chord from left to right, if both touches are on the same run.
     pub(super) fn new(first: &Touch, last: &Touch) -> Option<Self> {
         let [a, b] = [first.place, last.place];
-        let is_one_run = first.normal.dot(last.normal) > 1.0 - 1e-12;
-        (is_one_run && a.x < b.x).then(|| Self {
+        Self::joins(first, last).then(|| Self {
             ends: [a, b],
             up: left_of((b - a).normalize()),
         })
@@ -52,6 +56,17 @@ impl Chord {
     fn hides(&self, point: Vector) -> bool {
         let [a, b] = self.ends;
         a.x <= point.x && point.x <= b.x && (point - a).dot(self.up) < SAME_FACE
+    }
+
+    /// [m] How far a corner rises above the line.
+    pub(super) fn rise(&self, corner: &Corner) -> f64 {
+        (corner.center - self.ends[0]).dot(self.up) + corner.radius
+    }
+
+    /// [m] No corner below a roof rises farther than this.
+    pub(super) fn rise_of(&self, roof: &Roof) -> f64 {
+        let rises = roof.map(|end| (end - self.ends[0]).dot(self.up));
+        rises[0].max(rises[1])
     }
 
     /// Whether that holds for a corner.

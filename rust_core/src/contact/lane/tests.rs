@@ -151,3 +151,45 @@ fn few_pieces_are_looked_at_however_finely_a_flat_is_cut() {
         assert!(visited.get() <= 64);
     }
 }
+
+#[test]
+fn a_corner_beyond_a_run_does_not_make_it_look_at_all_the_others() {
+    let mut draw = Draw(20_270_123);
+    for jitter in [3e-7, 1e-6, 1e-5] {
+        let points = (0..100_000).map(|i| [5e-6 * f64::from(i), draw.between(-jitter, jitter)]);
+        let profile = Profile::new("terrain", &points.collect::<Vec<_>>(), 0.0, 0.9, false);
+        let rough = Lane::new(&profile.unwrap());
+        let arc = Vector::new(1e-3, 1.0).normalize();
+        let bears = |i: &usize| rough.corners[*i].stands_out && rough.corners[*i].faces(arc);
+        let last = (0..rough.corners.len()).rev().find(bears).unwrap();
+        let region = Region::between(100, last);
+        let (mut visited, mut bearing) = (0, Vec::new());
+        let meet = |i: usize| {
+            visited += 1;
+            let corner = &rough.corners[i];
+            // The last one lies below the arc behind the run.
+            let normal = if i == last { arc } else { Vector::Y };
+            let bears = corner.stands_out && corner.faces(normal);
+            if bears && i != last {
+                bearing.push(corner.center);
+            }
+            bears.then(|| corner.touch(i, normal, 0.0))
+        };
+        rough.visit_corners_below_run(&region, |_| true, meet);
+        println!(
+            "jitter {jitter}: {visited} of {} corners",
+            rough.corners.len()
+        );
+        assert!(visited <= 150);
+        bearing.sort_by(|a, b| a.x.total_cmp(&b.x));
+        for corner in &rough.corners[100..last] {
+            let next = bearing.partition_point(|p| p.x <= corner.center.x);
+            if next > 0 && next < bearing.len() {
+                let [a, b] = [bearing[next - 1], bearing[next]];
+                let chord = a.y + (b.y - a.y) * (corner.center.x - a.x) / (b.x - a.x);
+                assert!(corner.center.y < chord + 1.001e-6);
+            }
+        }
+        assert!(bearing[0].x < 0.012 && bearing[bearing.len() - 1].x > 0.488);
+    }
+}

@@ -2,13 +2,15 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
+use std::ops::Range;
+
 use crate::contact::Contact;
 use crate::geometry::Vector;
 
 /// Sine of the angle by which rounding may turn a normal out of a corner's cone.
 pub(in crate::contact) const ROUNDING: f64 = 1e-9;
 /// A straight piece of the ground; the solid is on its right.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Face {
     /// [m] Its left end.
     pub begin: Vector,
@@ -18,8 +20,8 @@ pub(super) struct Face {
     pub normal: Vector,
     /// [m] Length; 0 between two adjacent arcs.
     pub length: f64,
-    /// Facet of the profile.
-    pub facet: usize,
+    /// Facets of the profile that make it up.
+    pub facets: Range<usize>,
     /// Edge ids at both ends.
     pub edges: [i32; 2],
 }

@@ -1,5 +1,7 @@
 //! Random ground: the profile that the contacts get, and the test's own lines and arcs.
 
+use std::collections::HashSet;
+
 use super::curve::{Curve, Extent};
 use crate::draw::Draw;
 use crate::geometry::{Vector, cross, left_of};
@@ -40,7 +42,13 @@ impl Ground {
     pub(super) fn new(corners: &[Vector], radius: f64) -> Option<Self> {
         let points: Vec<[f64; 2]> = corners.iter().map(|p| [p.x, p.y]).collect();
         let profile = Profile::new("terrain", &points, radius, 0.9, false).ok()?;
-        let curves = curves(corners, radius);
+        // Points on straight ground are none of its corners.
+        let bends: HashSet<usize> = profile.bends().iter().map(|i| *i as usize).collect();
+        let straight = (0..profile.points.len()).filter(|i| !bends.contains(i));
+        let straight: Vec<Vector> = straight.map(|i| profile.points[i]).collect();
+        let mut corners = corners.to_vec();
+        corners.retain(|corner| !straight.contains(corner));
+        let curves = curves(&corners, radius);
         Some(Self {
             name: format!("{} corners, edge radius {radius}", corners.len()),
             profile,

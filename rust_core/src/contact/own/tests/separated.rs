@@ -7,16 +7,34 @@ use super::judge::Approach;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::geometry::{Pose, Vector, left_of};
+use crate::geometry::{Disc, Pose, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 use crate::terrain::Profile;
 
 /// [m] Tolerance of the comparison.
 const SAME: f64 = 1e-9;
 
-/// Whether the place is a contact, or lies between two others with the same normal and is no nearer than
+/// [m] The smallest gap of a place after any displacement of the part, by up to `far` along x and y, that closes
+/// no gap of the contacts: at a corner of the range of these displacements.
+fn reached(approach: &Approach, contacts: &[Contact], far: f64) -> f64 {
+    let sides = [Vector::X, -Vector::X, Vector::Y, -Vector::Y].map(|normal| (normal, far));
+    let gaps = contacts.iter().map(|c| (c.normal, c.distance));
+    let gaps: Vec<(Vector, f64)> = sides.into_iter().chain(gaps).collect();
+    let crossing = |(m, a): (Vector, f64), (n, b): (Vector, f64)| {
+        let turn = cross(m, n);
+        let at = Vector::new(b * m.y - a * n.y, a * n.x - b * m.x) / turn;
+        (turn.abs() > 1e-12).then_some(at)
+    };
+    let is_open = |at: &Vector| gaps.iter().all(|(n, gap)| n.dot(*at) + gap > -1e-12);
+    let pairs = (0..gaps.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let corners = pairs.filter_map(|(i, j)| crossing(gaps[i], gaps[j]).filter(is_open));
+    let at_corner = |at: Vector| approach.distance() + approach.normal().dot(at);
+    corners.map(at_corner).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two others with the same normal and is no nearer than
 /// these.
-fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
+fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
     // If the gap is mere rounding, so is its direction; contacts count as parallel up to 1.4e-6 rad.
@@ -30,7 +48,9 @@ fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene) -> bool {
         let chord = a.distance + (b.distance - a.distance) * share;
         (0.0..=1.0).contains(&share) && distance > chord - scene.untold()
     };
+    let is_fine = scene.ground.curves.len() > 16;
     alike.iter().any(|c| is_it(c))
+        || (is_fine && reached(approach, contacts, prediction) > -2.6e-7)
         || alike.iter().any(|a| {
             alike
                 .iter()
@@ -72,7 +92,7 @@ fn every_nearest_place_within_the_prediction_is_a_contact_and_none_is_nearer() {
         let approaches = judge.approaches(prediction - SAME);
         for approach in &approaches {
             assert!(
-                is_told(approach, &contacts, &scene),
+                is_told(approach, &contacts, &scene, prediction),
                 "{approach:?} {prediction} {contacts:?} {}",
                 scene.tell()
             );
@@ -121,5 +141,57 @@ fn a_rounded_edge_is_a_true_arc() {
             contacts.iter().any(is_it),
             "{edge_radius} {radius} {angle} {gap} {contacts:?}"
         );
+    }
+}
+
+#[test]
+fn a_part_on_rough_ground_has_few_contacts_however_finely_it_is_cut() {
+    let mut draw = Draw(20_270_122);
+    let disc = Shape::Disc {
+        center: Vector::ZERO,
+        radius: 0.064,
+    };
+    let ends = [-0.18, 0.18].map(|x| Disc {
+        center: Vector::new(x, 0.0),
+        radius: 0.064,
+    });
+    for jitter in [1e-6, 1e-5, 1e-4] {
+        let mut point = |i: u32| [1e-5 * f64::from(i) - 0.3, draw.between(-jitter, jitter)];
+        let corners: Vec<[f64; 2]> = (0..60_000).map(&mut point).collect();
+        let profile = Profile::new("terrain", &corners, 0.0, 0.9, true).unwrap();
+        for shape in [
+            disc.clone(),
+            Shape::Hull {
+                discs: ends.to_vec(),
+                grouser_height: 0.0,
+            },
+        ] {
+            let part = Part {
+                kind: BodyKind::Wheel,
+                shape,
+                drive: Some(0),
+                friction_limit: f64::INFINITY,
+                lane: 0,
+                mount: Mount::Chassis,
+            };
+            let contact = OwnContact::new(&[part], std::slice::from_ref(&profile));
+            for prediction in [2e-4, 1e-3, 6e-3] {
+                for _ in 0..20 {
+                    let place = Vector::new(draw.between(-0.01, 0.01), 0.064 + jitter);
+                    let running = Running {
+                        drives: vec![0.0],
+                        ..Running::default()
+                    };
+                    let mut contacts = Vec::new();
+                    let pose = Pose::from_translation(place);
+                    contact.find(pose, &running, prediction, &mut contacts);
+                    assert!(
+                        (1..=60).contains(&contacts.len()),
+                        "{jitter} {prediction}: {}",
+                        contacts.len()
+                    );
+                }
+            }
+        }
     }
 }

@@ -1,0 +1,153 @@
+//! Where the ground bends: finely divided ground that is straight but for a fraction of a micrometre is straight.
+//!
+//! What is left out changes no contact by more than the contacts of a robot at rest sink in.
+
+use crate::geometry::{Vector, cross, left_of};
+
+/// [m] Points closer than this to the line through their neighbours do not make an edge.
+pub(super) const COLLINEAR: f64 = 1e-9;
+/// [m] Ground within this of a straight line is straight: less than the 0.3 um that a robot at rest sinks in.
+pub(crate) const STRAIGHT: f64 = 0.25e-6;
+/// [m] Ground in pieces shorter than this is finely divided; described ground has larger ones.
+pub(crate) const FINE: f64 = 1e-3;
+
+/// The points at which a polyline bends, both ends included; `is_arc` says which belong to a rounded edge.
+pub(super) fn bends(points: &[Vector], is_arc: impl Fn(usize) -> bool) -> Vec<u32> {
+    let last = points.len() - 1;
+    // An arc goes on in the direction of the piece beside it.
+    let is_fine =
+        |i: usize| (points[i + 1] - points[i]).length() < FINE && !is_arc(i) && !is_arc(i + 1);
+    let mut bends = vec![0];
+    let (mut begin, mut lines) = (points[0], Lines::default());
+    for i in 1..last {
+        lines.pass(points[i] - begin);
+        let is_passed = is_fine(i - 1) && is_fine(i) && lines.reach(points[i + 1] - begin);
+        if !is_passed {
+            bends.push(i as u32);
+            (begin, lines) = (points[i], Lines::default());
+        }
+    }
+    bends.push(last as u32);
+    bends
+}
+
+/// The lines from one point that pass close enough to all the points so far: a range of directions.
+#[derive(Default)]
+struct Lines(Option<[Vector; 2]>);
+
+impl Lines {
+    /// Leaves the lines that pass close to a point.
+    fn pass(&mut self, point: Vector) {
+        let far = point.length();
+        if far <= STRAIGHT {
+            return;
+        }
+        let (way, sine) = (point / far, STRAIGHT / far);
+        let (along, across) = (way * (1.0 - sine * sine).sqrt(), left_of(way) * sine);
+        let [mut right, mut left] = [along - across, along + across];
+        if let Some([known_right, known_left]) = self.0 {
+            if cross(right, known_right) > 0.0 {
+                right = known_right;
+            }
+            if cross(known_left, left) > 0.0 {
+                left = known_left;
+            }
+        }
+        self.0 = Some([right, left]);
+    }
+
+    /// Whether one of the lines leads to a point.
+    fn reach(&self, point: Vector) -> bool {
+        self.0.is_none_or(|[right, left]| {
+            cross(right, point) >= 0.0 && cross(point, left) >= 0.0 && point.dot(right + left) > 0.0
+        })
+    }
+}
+
+/// Leaves out every point on the line through the last one kept and the next.
+pub(super) fn without_collinear(points: &[Vector]) -> Vec<Vector> {
+    let mut kept = vec![points[0]];
+    for pair in points[1..].windows(2) {
+        let (last, here, next) = (kept[kept.len() - 1], pair[0], pair[1]);
+        let (back, chord) = (here - last, next - last);
+        let off = (back.x * chord.y - back.y * chord.x).abs() / chord.length();
+        let between = back.dot(chord) >= 0.0 && back.dot(chord) <= chord.length_squared();
+        if off > COLLINEAR || !between {
+            kept.push(here);
+        }
+    }
+    kept.push(points[points.len() - 1]);
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::print_stdout)] // the printed counts say what was joined
+
+    use super::*;
+    use crate::draw::Draw;
+
+    /// A metre of ground in pieces of this length [m], each end off its line by up to `jitter` [m].
+    fn rough(length: f64, jitter: f64, draw: &mut Draw) -> Vec<Vector> {
+        let (slope, curvature) = (draw.between(-1.0, 1.0), draw.between(-5.0, 5.0));
+        let line = |x: f64| slope * x + 0.5 * curvature * x * x;
+        let xs = (0..=(1.0 / length) as usize).map(|i| i as f64 * length);
+        xs.map(|x| Vector::new(x, line(x) + draw.between(-jitter, jitter)))
+            .collect()
+    }
+
+    #[test]
+    fn no_point_of_joined_ground_is_off_it_by_more_than_a_quarter_of_a_micrometre() {
+        const SEED: u64 = 20_261_122;
+        let mut draw = Draw(SEED);
+        let (mut given, mut left) = (0, 0);
+        for _ in 0..100 {
+            let (length, jitter) = (draw.size(2e-5, 9e-4), draw.size(1e-9, 1e-5));
+            let points = rough(length, jitter, &mut draw);
+            let bends = bends(&points, |_| false);
+            for ends in bends.windows(2) {
+                let [a, b] = [ends[0], ends[1]].map(|i| points[i as usize]);
+                for point in &points[ends[0] as usize..ends[1] as usize] {
+                    let share = (*point - a).dot(b - a) / (b - a).length_squared();
+                    let off = (*point - a - (b - a) * share).length();
+                    assert!((0.0..1.0).contains(&share) && off < STRAIGHT * (1.0 + 1e-6));
+                }
+            }
+            (given, left) = (given + points.len(), left + bends.len());
+        }
+        println!("seed {SEED}: {left} points of {given} left");
+        assert!(left < given / 2);
+    }
+
+    #[test]
+    fn flat_ground_of_heights_within_a_tenth_of_a_micrometre_is_one_piece() {
+        let mut draw = Draw(1);
+        for length in [1e-5, 1e-4, 9e-4] {
+            let mut points = rough(length, 0.0, &mut draw);
+            for point in &mut points {
+                point.y = draw.between(-1e-7, 1e-7);
+            }
+            assert_eq!(bends(&points, |_| false).len(), 2);
+        }
+    }
+
+    #[test]
+    fn ground_in_pieces_of_a_millimetre_stays_as_it_is() {
+        let mut draw = Draw(2);
+        for _ in 0..100 {
+            let (length, jitter) = (draw.size(1.001e-3, 1e-2), draw.size(1e-9, 1e-4));
+            let points = rough(length, jitter, &mut draw);
+            assert_eq!(bends(&points, |_| false).len(), points.len());
+        }
+    }
+
+    #[test]
+    fn ground_beside_an_arc_stays_as_it_is() {
+        let points: Vec<Vector> = (0..100)
+            .map(|i| Vector::new(5e-4 * f64::from(i), 0.0))
+            .collect();
+        let bends = bends(&points, |i| (40..50).contains(&i));
+        let kept: Vec<u32> = [0].into_iter().chain(39..=50).chain([99]).collect();
+        assert_eq!(bends, kept);
+    }
+}
