@@ -61,7 +61,7 @@ bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour
 	$(BIN)/python -m benches.peers $(ARGS)
 
-bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and time step, some minutes
+bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and accuracy, some minutes
 	$(BIN)/python -m benches.scaling $(ARGS)
 
 format: $(VENV)/.dependencies ## format all code

@@ -1,34 +1,40 @@
-//! Times steps in the middle of a climb, and whole runs, beside the bare engine's loop on the same scene.
+//! Times a fifth of a second in the middle of a climb, and whole runs, beside the bare engine's loop on the same
+//! scene. The throughput is in simulated milliseconds per second, because steps differ in length.
 
 use std::hint::black_box;
 
-use crawler2d_benches::{SCENES, Scene};
+use crawler2d_benches::{ENGINE_STEP, SCENES, Scene};
 use crawler2d_core::{Record, Simulation, simulate};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 
-/// Steps per measurement; a single step is too short for the clock.
-const STEPS: u64 = 200;
+/// [s] Simulated time of a measurement.
+const PIECE: f64 = 0.2;
 
 fn simulation(scene: &Scene) -> Simulation {
     let mut simulation = Simulation::new(&scene.checked());
-    while simulation.time() < scene.in_the_climb() {
-        simulation.step().expect("a finite state");
-    }
+    simulation
+        .advance(scene.in_the_climb())
+        .expect("a finite state");
     simulation
 }
 
-fn steps(criterion: &mut Criterion) {
+/// Steps of the bare engine in a simulated time [s].
+fn engine_steps(time: f64) -> u64 {
+    (time / ENGINE_STEP).round() as u64
+}
+
+fn simulated(time: f64) -> Throughput {
+    Throughput::Elements((1e3 * time).round() as u64)
+}
+
+fn pieces(criterion: &mut Criterion) {
     for scene in &SCENES {
-        let mut group = criterion.benchmark_group(format!("{}/steps", scene.name));
-        group.throughput(Throughput::Elements(STEPS));
+        let mut group = criterion.benchmark_group(format!("{}/piece", scene.name));
+        group.throughput(simulated(PIECE));
         group.bench_function("crawler2d", |bencher| {
             bencher.iter_batched_ref(
                 || simulation(scene),
-                |s| {
-                    (0..STEPS)
-                        .try_for_each(|_| s.step())
-                        .expect("a finite state");
-                },
+                |s| s.advance(PIECE).expect("a finite state"),
                 BatchSize::LargeInput,
             );
         });
@@ -37,11 +43,10 @@ fn steps(criterion: &mut Criterion) {
                 bencher.iter_batched_ref(
                     || {
                         let mut engine = scene.engine().expect("a scene of wheels");
-                        let dt = scene.scenario().solver.time_step;
-                        (0..(scene.in_the_climb() / dt) as u64).for_each(|_| engine.step());
+                        (0..engine_steps(scene.in_the_climb())).for_each(|_| engine.step());
                         engine
                     },
-                    |engine| (0..STEPS).for_each(|_| engine.step()),
+                    |engine| (0..engine_steps(PIECE)).for_each(|_| engine.step()),
                     BatchSize::LargeInput,
                 );
             });
@@ -52,12 +57,11 @@ fn steps(criterion: &mut Criterion) {
 
 fn runs(criterion: &mut Criterion) {
     for scene in &SCENES {
-        let scenario = scene.scenario();
         let run = simulate(&scene.checked(), Record::default()).expect("a valid scene");
-        let steps = (run.metrics.time / scenario.solver.time_step).round() as u64;
+        let time = run.metrics.time;
         let mut group = criterion.benchmark_group(format!("{}/run", scene.name));
         group.sample_size(10);
-        group.throughput(Throughput::Elements(steps));
+        group.throughput(simulated(time));
         group.bench_function("crawler2d", |bencher| {
             bencher.iter(|| simulate(black_box(&scene.checked()), Record::default()));
         });
@@ -68,7 +72,7 @@ fn runs(criterion: &mut Criterion) {
             group.bench_function("bare engine", |bencher| {
                 bencher.iter(|| {
                     let mut engine = scene.engine().expect("a scene of wheels");
-                    (0..steps).for_each(|_| engine.step());
+                    (0..engine_steps(time)).for_each(|_| engine.step());
                     engine.pose()
                 });
             });
@@ -77,5 +81,5 @@ fn runs(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, steps, runs);
+criterion_group!(benches, pieces, runs);
 criterion_main!(benches);

@@ -101,6 +101,7 @@ VARIANTS = {
     "circumferential-half-round": Scenario(
         ROBOT.with_track(c2d.CircumferentialWheels(24, wheel=c2d.GearWheel())),
         c2d.terrains.half_round(0.05),
+        solver=c2d.Solver(time_step=1e-3),
     ),
     "hybrid-gap": Scenario(
         ROBOT.with_track(c2d.HybridWheels(PLACEMENTS)), c2d.terrains.gap(0.1, edge_radius=0.005)

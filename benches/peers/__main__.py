@@ -138,7 +138,7 @@ def equal_accuracy(name: str, effort: Effort, repeats: int) -> list[dict[str, An
     for each, search in found.items():
         row = {"scene": name, "engine": each, **search}
         if each in times:
-            row |= sections.cost(scene, settings[each], times[each].least)
+            row["per_second"] = times[each].least / scene.duration
             row["setting"] = str(settings[each])
         rows.append(row)
     return rows

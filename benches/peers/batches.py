@@ -18,7 +18,7 @@ from benches.peers.engines import NAMES, at, engine
 from benches.peers.scenes import Draw, Scene
 from benches.peers.timing import interleaved, progress
 
-# [s] Time step of every world.
+# [s] Time step of the other engines' worlds.
 _TIME_STEP = 1e-3
 
 
@@ -37,12 +37,12 @@ def batches(
                     jobs[each, count] = _job(each, variants, count, pool)
                 jobs["spin", count] = partial(workers.spin, pool, len(draws))
             times = interleaved(jobs, repeats)
-        steps = len(variants) * variants[0].duration / _TIME_STEP
+        simulated = len(variants) * variants[0].duration
         for each in (*engines, "spin"):
             one, two = times[each, 1].least, times[each, 2].least
             row = {"scene": name, "engine": each, "worlds": len(variants), "scaling": one / two}
             if each != "spin":
-                row |= {"steps_per_second": [steps / one, steps / two]}
+                row |= {"real_time": [simulated / one, simulated / two]}
             rows.append(row)
     return rows
 

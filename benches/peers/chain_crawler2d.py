@@ -34,7 +34,7 @@ def scenario(
     profile : ndarray, shape (n, 2)
         [m] The ground from left to right; the robot stands in front of its second point.
     setting : Setting
-        Time step and substeps.
+        Its accuracy counts.
     duration, shift : float
         [s], [m]
     """
@@ -50,7 +50,7 @@ def scenario(
             approach=float(profile[1, 0]) - robot.axle_distance / 2.0 - robot.radius + shift
         ),
         duration=duration,
-        solver=Solver(time_step=setting.time_step, substeps=setting.substeps),
+        solver=Solver(accuracy=setting.accuracy),
         criteria=SeizureCriteria(stop_window=_NEVER),
     )
 

@@ -19,7 +19,7 @@ class Setting:
     Attributes
     ----------
     time_step : float
-        [s] Time of a step.
+        [s] Time of a step; 0 in crawler2d, which chooses it.
     substeps : int
         Substeps per step, in engines that have them.
     iterations : int
@@ -28,17 +28,21 @@ class Setting:
         Whether lengths and stiffness suit parts of a few millimetres, or are defaults.
     ground : {"boxes", "profile"}
         What the ground is made of, in engines that offer both.
+    accuracy : float
+        [m] By which crawler2d chooses its steps; 0 in engines with steps of a given length.
     """
 
-    time_step: float
+    time_step: float = 0.0
     substeps: int = 1
     iterations: int = 0
     tuned: bool = True
     ground: Literal["boxes", "profile"] = "boxes"
+    accuracy: float = 0.0
 
     def __str__(self) -> str:
         """Describe it for a table."""
-        parts = [f"{self.time_step * 1e3:.4g} ms"]
+        step, accuracy = f"{self.time_step * 1e3:.4g} ms", f"accuracy {self.accuracy * 1e6:.4g} um"
+        parts = [accuracy if self.accuracy else step]
         if self.substeps > 1:
             parts.append(f"{self.substeps} substeps")
         if self.iterations > 1:

@@ -32,15 +32,11 @@ class Crawler2D:
 
     name = "crawler2d"
     version = c2d.__version__
-    defaults = Setting(Solver().time_step, Solver().substeps, tuned=False)
-    grid: Sequence[Setting] = [
-        Setting(dt * 1e-3, substeps=substeps, iterations=iterations)
-        for dt in (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
-        for substeps in (1, 2, 4, 8)
-        for iterations in (5, 15, 60)
-    ]
-    finest = Setting(0.25e-3, substeps=8, iterations=60)
-    next_finest = Setting(0.5e-3, substeps=4, iterations=30)
+    defaults = Setting(accuracy=Solver().accuracy or 0.0, tuned=False)
+    # The defaults in every scene: users should not have to search for a setting.
+    grid: Sequence[Setting] = [defaults]
+    finest = Setting(accuracy=1e-8)
+    next_finest = Setting(accuracy=4e-8)
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""
@@ -53,9 +49,8 @@ class Crawler2D:
     def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
         """Run and sample all poses."""
         ready = scenario(scene, setting, duration)
-        stride = setting.stride(interval) * setting.time_step
         try:
-            run = c2d.simulate(ready, sample_interval=stride)
+            run = c2d.simulate(ready, sample_interval=interval)
         except SimulationDiverged:
             return Motion.of([0.0, duration], np.full((2, len(scene.bodies), 3), np.nan))
         poses = np.empty((len(run.time), len(scene.bodies), 3))
@@ -77,17 +72,12 @@ def scenario(scene: Scene, setting: Setting, duration: float) -> Scenario:
     """Make crawler2d's form of a scene, with the scene's draw."""
     base = as_it_is(scene.name)
     draw = scene.draw
-    solver = Solver(
-        time_step=setting.time_step,
-        substeps=setting.substeps,
-        iterations=setting.iterations or None,
-    )
     return base.replace(
         {
             "start.approach": base.start.approach + draw.approach,
             "drive.speed": base.drive.speed * draw.speed,
             "terrain.friction": scene.friction,
-            "solver": solver,
+            "solver": Solver(accuracy=setting.accuracy),
             "duration": duration,
             "criteria.stop_window": _NEVER,
         }

@@ -36,5 +36,7 @@ def engines() -> list[Engine]:
 
 
 def at(engine: Engine, time_step: float, *, tuned: bool = False) -> Setting:
-    """Return an engine's default substeps and iterations with another time step [s]."""
+    """Return an engine's defaults with another time step [s]; crawler2d keeps its accuracy."""
+    if engine.defaults.accuracy:
+        return engine.defaults
     return replace(engine.defaults, time_step=time_step, tuned=tuned)

@@ -41,12 +41,14 @@ that crawler2d's own form of them describes the same robots and grounds.
 {machine.sentence(result["machine"], result["wall"])}
 
 - Times are the shortest of several rounds in which all engines took turns, on one thread. *RTF*
-  (real-time factor) is the simulated time divided by the wall time. Each engine runs the fastest
-  loop that it offers from Python (rapier2d's is in Rust), nothing is recorded, and building the
-  world does not count, except for crawler2d, where one call does everything.
-- Errors come from recorded poses, sampled every 2 ms or every step, with the same geometry code for
-  all engines. *Overlap* is the deepest overlap of any part with the ground, *gap* the widest
-  opening of a pin.
+  (real-time factor) is the simulated time divided by the wall time: at 100x, a simulated second
+  costs 10 ms. crawler2d chooses the length of its steps by their accuracy, and has its one default
+  accuracy throughout; the others take steps of a given length. Each engine runs the fastest loop
+  that it offers from Python (rapier2d's is in Rust), nothing is recorded, and building the world
+  does not count, except for crawler2d, where one call does everything.
+- Errors come from recorded poses, sampled every 2 ms or every longer step, with the same geometry
+  code for all engines. *Overlap* is the deepest overlap of any part with the ground, *gap* the
+  widest opening of a pin.
 - *Cleared* means that the rear axle got past the last edge, within 10 s (step) or 15 s (field).
 - Every engine has a docstring in `benches/peers` that says how it was set up, and why.
 """
@@ -55,13 +57,13 @@ that crawler2d's own form of them describes the same robots and grounds.
 def _defaults(rows: Rows) -> str:
     titles = {
         "own": "At each engine's own time step",
-        "common": "All at steps of 2 ms, everything else at the defaults",
+        "common": "All others at steps of 2 ms, everything else at the defaults",
     }
     text = [
         "## At the engines' defaults",
         "These times come with very different errors: read each one together with its outcome."
         " Chipmunk's slop is scaled to metres, and sleeping is off; otherwise nothing would work."
-        " Cells: us per step, RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
+        " Cells: RTF, outcome with the last x of the chassis [m], overlap / gap [mm].",
     ]
     for kind, title in titles.items():
         text.append(f"### {title}")
@@ -74,7 +76,7 @@ def _defaults(rows: Rows) -> str:
 
 def _default_cell(row: dict[str, Any]) -> str:
     return (
-        f"{row['per_step'] * 1e6:.1f} us, {1.0 / row['per_second']:.0f}x<br>"
+        f"{1.0 / row['per_second']:.0f}x<br>"
         f"{'cleared' if row['cleared'] else 'not'} ({row['final_x']:.2f})<br>"
         f"{_millimetres(row['penetration'])} / {_millimetres(row['gap'])}"
     )
@@ -85,18 +87,20 @@ def _accuracy(rows: Rows) -> str:
         [
             "## At equal accuracy",
             f"""
-For each engine and scene, the cheapest setting of a grid that keeps these limits: overlap at most
-{_millimetres(PENETRATION)} mm, gaps at most {_millimetres(JOINT_GAP)} mm, and agreement with the
-engine's own converged result, its *limit*. The limit is its finest setting. Where its path differs
-by at most {_millimetres(PATH)} mm from that of the next finest, coarser by a factor of two in every
-respect, the setting's path must be as close to it, at equal times and in each of the first draws.
-Otherwise the scene is *chaotic* for the engine: over all draws, the Wilson interval (95 %) of the
+For each scene and each other engine, the cheapest setting of a grid that keeps these limits; for
+crawler2d its one default accuracy, if that keeps them. Overlap is at most
+{_millimetres(PENETRATION)} mm, gaps are at most {_millimetres(JOINT_GAP)} mm, and the result agrees
+with the engine's own converged one, its *limit*. The limit is its finest setting. Where its path
+differs by at most {_millimetres(PATH)} mm from that of the next finest, coarser by a factor of two
+in every respect (crawler2d: by four in accuracy, which makes its steps twice as long), the
+setting's path must be as close to it, at equal times and in each of the first draws. Otherwise the
+scene is *chaotic* for the engine: over all draws, the Wilson interval (95 %) of the
 setting's rate of clearing must contain the rate of the limit. The draws of approach (over 50 mm),
 speed and friction (2 % either way) are the same for all. Settings are tried in the order of their
 cost over the first {COST_SPAN:g} s; `out/peers.json` lists all that were tried, and why they were
 rejected. A robot that flies off counts as infinite overlap.
 
-Cells: RTF, us per step, the setting; for chaotic scenes the rate of the setting; how far its paths
+Cells: RTF, the setting; for chaotic scenes the rate of the setting; how far its paths
 deviate from those of the limit in the first draws.
 """.strip(),
             _by_scene(rows, _accuracy_cell),
@@ -123,9 +127,9 @@ def _standing(rows: Rows) -> str:
         own = found.pop("crawler2d", None)
         best = max(found, key=lambda name: found[name], default=None)
         if own is None:
-            lines.append(f"- {scene}: crawler2d has none in the grid.")
+            lines.append(f"- {scene}: the default of crawler2d does not keep the limits.")
         elif best is None:
-            lines.append(f"- {scene}: crawler2d alone has one in the grid.")
+            lines.append(f"- {scene}: crawler2d alone keeps the limits.")
         else:
             lines.append(
                 f"- {scene}: crawler2d runs at {own / found[best]:.2f} times the speed of {best}."
@@ -137,7 +141,7 @@ def _accuracy_cell(row: dict[str, Any]) -> str:
     if row["found"] is None:
         return "none in the grid"
     last = row["tried"][-1]
-    cell = f"**{1.0 / row['per_second']:.0f}x**, {row['per_step'] * 1e6:.1f} us<br>{row['setting']}"
+    cell = f"**{1.0 / row['per_second']:.0f}x**<br>{row['setting']}"
     if "count" in last:
         cell += f"<br>{last['cleared']}/{last['count']}"
     return f"{cell}<br>{_millimetres(last['distance'])} mm off"
@@ -154,13 +158,13 @@ def _limit_cell(row: dict[str, Any]) -> str:
 
 
 def _yardstick(rows: Rows) -> str:
-    cases = list(rows[0]["per_step"])
+    cases = list(rows[0]["per_second"])
     table = [
         [
             f"{row['robot']}, {row['terrain']}",
-            *(f"{row['per_step'][case] * 1e6:.1f}" for case in cases),
+            *(f"{row['per_second'][case] * 1e3:.1f}" for case in cases),
             *(
-                f"{row['per_step']['crawler2d gear'] / row['per_step'][bare]:.2f}"
+                f"{row['per_second']['crawler2d gear'] / row['per_second'][bare]:.2f}"
                 for bare in ("bare round", "bare round, tuned")
             ),
         ]
@@ -171,9 +175,9 @@ def _yardstick(rows: Rows) -> str:
         [
             "## Grousers against round wheels in the bare engine",
             "The cost of crawler2d's gear wheels compared with round wheels on cuboids in a plain"
-            " loop of rapier2d, all with steps of 1 ms and 4 substeps, in us per step. The bare"
-            " engine has its default tolerances or, where it says *tuned*, tolerances suitable for"
-            " grousers. `lwa3` is `lwa5` without"
+            " loop of rapier2d, in ms of wall time per simulated second. crawler2d has its default"
+            " accuracy, the bare engine steps of 1 ms with 4 substeps, and its default tolerances"
+            " or, where it says *tuned*, those suitable for grousers. `lwa3` is `lwa5` without"
             " its second and fourth wheel. The aim is a ratio of at most 1.25.",
             markdown.table(head, table),
         ]
@@ -183,17 +187,18 @@ def _yardstick(rows: Rows) -> str:
 def _batches(rows: Rows) -> str:
     table = []
     for row in rows:
-        rates = [f"{rate:,.0f}" for rate in row.get("steps_per_second", [])] or ["", ""]
+        rates = [f"{rate:,.0f}x" for rate in row.get("real_time", [])] or ["", ""]
         table.append(
             [row["scene"], row["engine"], str(row["worlds"]), *rates, f"{row['scaling']:.2f}"]
         )
-    head = ["scene", "engine", "worlds", "steps/s on one", "steps/s on two", "scaling"]
+    head = ["scene", "engine", "worlds", "RTF on one", "RTF on two", "scaling"]
     return "\n\n".join(
         [
             "## Batches",
-            "Worlds with different draws, steps of 1 ms, tuned: on one thread and on two, or one"
-            " process and two (pymunk, Box2D, rapier2d). *spin* is a loop that only counts: it"
-            " shows what the machine itself gains at the same time.",
+            "Worlds with different draws: on one thread and on two, or one process and two (pymunk,"
+            " Box2D, rapier2d). The other engines take steps of 1 ms, tuned. The RTF is that of all"
+            " worlds together. *spin* is a loop that only counts: it shows what the machine itself"
+            " gains at the same time.",
             markdown.table(head, table),
         ]
     )
@@ -210,8 +215,9 @@ _LIMITS = """
 - **Chains.** pymunk's chain has teeth, lugs and play; crawler2d's drive has no teeth, and its guide
   has a tensioner. Apart from that, the robots are the same.
 - **Additional work.** crawler2d's time includes building the model and monitoring for stops.
-- **The grid is coarse**, with a factor of two between settings. A cheaper setting may lie between
-  its points, and costs that differ by less than the noise of a shared machine may change places.
+- **The grid is coarse**, with a factor of two between settings. A cheaper setting of the other
+  engines may lie between its points, and costs that differ by less than the noise of a shared
+  machine may change places.
 - **Rates of few runs** have wide intervals: the rule for chaotic scenes only rejects gross errors.
 """
 

@@ -7,19 +7,19 @@ from functools import partial
 from typing import Any
 
 from benches.peers import scenes
-from benches.peers.engine import Engine, Setting
+from benches.peers.engine import Engine
 from benches.peers.engines import at, engine
 from benches.peers.errors import judge
 from benches.peers.timing import interleaved, progress
 
-# [s] Time step at which all engines are also timed.
+# [s] Time step at which all other engines are also timed.
 _COMMON_STEP = 2e-3
-# [s] Time step of the yardstick.
+# [s] Time step of the bare engine.
 _YARDSTICK_STEP = 1e-3
 
 
 def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> list[dict[str, Any]]:
-    """Time and judge every engine at its defaults, and at its defaults with steps of 2 ms."""
+    """Time and judge every engine at its defaults, and all others with steps of 2 ms."""
     rows = []
     for name in names:
         progress(f"defaults: {name}")
@@ -45,7 +45,7 @@ def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> l
                     "engine": each.name,
                     "kind": key[1],
                     "setting": str(setting),
-                    **cost(scene, setting, times[key].least),
+                    "per_second": times[key].least / scene.duration,
                     "median": times[key].median / scene.duration,
                     "cleared": run.cleared,
                     "final_x": float(run.motion.poses[-1, 0, 0]),
@@ -56,19 +56,11 @@ def defaults(names: Sequence[str], engines: Sequence[Engine], repeats: int) -> l
     return rows
 
 
-def cost(scene: scenes.Scene, setting: Setting, wall: float) -> dict[str, float]:
-    """Return a run's wall time per step [s] and per simulated second [-]."""
-    return {
-        "per_step": wall / setting.steps(scene.duration),
-        "per_second": wall / scene.duration,
-    }
-
-
 def yardstick(robots: Sequence[str], terrains: Sequence[str], repeats: int) -> list[dict[str, Any]]:
     """Time crawler2d's gear wheels against round wheels on cuboids in the bare engine.
 
-    All take steps of 1 ms with 4 substeps; the bare engine with its default tolerances and with
-    those that suit grousers.
+    The bare engine takes steps of 1 ms with 4 substeps, with its default tolerances and with those
+    that suit grousers; crawler2d has its default accuracy.
     """
     own, bare = engine("crawler2d"), engine("rapier2d")
     rows = []
@@ -79,8 +71,8 @@ def yardstick(robots: Sequence[str], terrains: Sequence[str], repeats: int) -> l
                 scenes.load(f"{robot}-{wheel}-{terrain}") for wheel in ("gear", "round")
             )
             cases = {
-                "crawler2d gear": (own, gear, at(own, _YARDSTICK_STEP)),
-                "crawler2d round": (own, round_, at(own, _YARDSTICK_STEP)),
+                "crawler2d gear": (own, gear, own.defaults),
+                "crawler2d round": (own, round_, own.defaults),
                 "bare round": (bare, round_, at(bare, _YARDSTICK_STEP)),
                 "bare round, tuned": (bare, round_, at(bare, _YARDSTICK_STEP, tuned=True)),
                 "bare gear, tuned": (bare, gear, at(bare, _YARDSTICK_STEP, tuned=True)),
@@ -92,7 +84,6 @@ def yardstick(robots: Sequence[str], terrains: Sequence[str], repeats: int) -> l
                 },
                 repeats,
             )
-            steps = gear.duration / _YARDSTICK_STEP
-            per_step = {case: time.least / steps for case, time in times.items()}
-            rows.append({"robot": robot, "terrain": terrain, "per_step": per_step})
+            costs = {case: time.least / gear.duration for case, time in times.items()}
+            rows.append({"robot": robot, "terrain": terrain, "per_second": costs})
     return rows

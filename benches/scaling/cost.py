@@ -1,4 +1,4 @@
-"""The cost of a step."""
+"""The cost of a simulated second."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        One per point: `per_step` [s] is the minimum over the rounds, `final_x` [m] the final x.
+        One per point: `per_second` [s] of wall time is the minimum over the rounds, `final_x` [m]
+        the final x.
     """
     ends: dict[int, float] = {}
     jobs: dict[int, Callable[[], float]] = {
@@ -38,7 +39,7 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
             "panel": point.panel,
             "curve": point.curve,
             "x": point.x,
-            "per_step": times[index].least,
+            "per_second": times[index].least,
             "final_x": ends[index],
         }
         for index, point in enumerate(points)
@@ -46,11 +47,11 @@ def measure(points: Sequence[Point], repeats: int) -> list[dict[str, Any]]:
 
 
 def _drive(point: Point, index: int, ends: dict[int, float]) -> float:
-    """[s] Drive to the scenario's end, and return the mean time per step."""
+    """[s] Drive to the scenario's end, and return the mean wall time of a simulated second."""
     scenario = point.scenario
     simulation = c2d.Simulation(scenario)
     start = time.perf_counter()
     simulation.advance(scenario.duration)
     wall = time.perf_counter() - start
     ends[index] = float(simulation.state().position[0])
-    return wall / round(scenario.duration / scenario.solver.time_step)
+    return wall / scenario.duration

@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benches.scaling.slopes import Curve, curves
+from benches.scaling.slopes import Curve, curves, deviations
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart; markers differ, too.
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
@@ -33,7 +33,7 @@ def plot(result: dict[str, Any], folder: Path) -> None:
         for figure in _LABELS:
             drawn = _costs(figure, curves(result["rows"], figure))
             _save(drawn, folder / f"{figure}.svg")
-        _save(_time_steps(curves(result["rows"], "time step")), folder / "time_step.svg")
+        _save(_accuracies(result["rows"]), folder / "accuracy.svg")
         _save(_threads(result["threads"]), folder / "threads.svg")
 
 
@@ -42,7 +42,7 @@ def _save(figure: Figure, path: Path) -> None:
 
 
 def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
-    """Draw the time per step, one panel per scene, with a line of slope 1."""
+    """Draw the cost of a simulated second, one panel per scene, with a line of slope 1."""
     panels = list(dict.fromkeys(curve.panel for curve in drawn))
     labels = list(dict.fromkeys(curve.name for curve in drawn))
     styles = dict(zip(labels, _styles(), strict=False))
@@ -51,7 +51,7 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
     for panel, ax in zip(panels, axes, strict=True):
         own = [curve for curve in drawn if curve.panel == panel]
         for curve in own:
-            heights = [value * 1e6 for value in curve.per_step]
+            heights = [value * 1e3 for value in curve.per_second]
             ax.loglog(curve.x, heights, label=curve.name, **styles[curve.name])
         ax.set_title(panel, fontsize="medium")
         ax.set_xlabel(_LABELS[name])
@@ -60,28 +60,28 @@ def _costs(name: str, drawn: Sequence[Curve]) -> Figure:
             _plain_ticks(ax, own[0].x)
     _whole_decades(axes)
     _proportional(axes[0])
-    axes[0].set_ylabel("wall time a step [µs]")
+    axes[0].set_ylabel("wall time a simulated second [ms]")
     handles, names = axes[0].get_legend_handles_labels()
     columns = min(_COLUMNS, len(names))
     figure.legend(handles, names, loc="outside lower center", ncols=columns, frameon=False)
     return figure
 
 
-def _time_steps(drawn: Sequence[Curve]) -> Figure:
-    """Draw the cost of a step and of a simulated second, one curve per scene."""
+def _accuracies(rows: Sequence[dict[str, Any]]) -> Figure:
+    """Draw the cost over the accuracy and how far off the robot gets, one curve per scene."""
     figure = Figure(figsize=(8.0, 3.4), layout="constrained")
-    step, second = figure.subplots(1, 2)
+    cost, error = figure.subplots(1, 2)
+    drawn = curves(rows, "accuracy")
     for curve, style in zip(drawn, _styles(), strict=False):
-        x = [value * 1e3 for value in curve.x]
-        step.loglog(x, [value * 1e6 for value in curve.per_step], label=curve.panel, **style)
-        costs = [cost / length for length, cost in zip(curve.x, curve.per_step, strict=True)]
-        second.loglog(x, [value * 1e3 for value in costs], **style)
-        for ax in (step, second):
-            ax.set_xlabel("time step [ms]")
+        x = [value * 1e6 for value in curve.x]
+        cost.loglog(x, [value * 1e3 for value in curve.per_second], label=curve.panel, **style)
+        error.loglog(x[1:], [value * 1e3 for value in deviations(rows, curve)], **style)
+        for ax in (cost, error):
+            ax.set_xlabel("accuracy [µm]")
             _plain_ticks(ax, x)
-    step.set_ylabel("wall time a step [µs]")
-    second.set_ylabel("wall time a simulated second [ms]")
-    for ax in (step, second):
+    cost.set_ylabel("wall time a simulated second [ms]")
+    error.set_ylabel("final x, off the finest [mm]")
+    for ax in (cost, error):
         _grid(ax)
         _whole_decades([ax])
     figure.legend(loc="outside lower center", ncols=len(drawn), frameon=False)

@@ -7,7 +7,7 @@ from typing import Any
 
 from benches.peers import machine, markdown
 from benches.scaling.scenes import BLOCKS, CUT, FLAT, LEVEL, STEP
-from benches.scaling.slopes import Curve, curves
+from benches.scaling.slopes import Curve, curves, deviations
 
 AIM = 1.3
 """[-] Largest cost of flat ground in the most pieces, relative to ground in one piece."""
@@ -31,15 +31,15 @@ def render(result: dict[str, Any]) -> str:
             _POINTS_MEAN,
             _THREADS,
             _speed_ups(result["threads"]),
-            _TIME_STEPS,
-            _steps(curves(rows, "time step")),
+            _ACCURACIES,
+            _accuracies(rows),
         ]
     )
 
 
 def _head(result: dict[str, Any]) -> str:
     return f"""
-# What a step costs, and how the cost grows
+# What a simulated second costs, and how the cost grows
 
 What `make bench-scaling` measures. The robot is always the Servosila Engineer without flippers. It
 drives at 0.4 m/s over flat ground (4 m, 11 s) or over a step of 50 mm (6 s); one number grows along
@@ -48,9 +48,9 @@ each curve. Runs do not end at a goal or a stop: all runs of a panel take the sa
 
 {machine.sentence(result["machine"], result["wall"])}
 
-- *A step* is the wall time of `Simulation.advance` divided by its number of steps: reading the
+- *The cost* is the wall time of `Simulation.advance` divided by the simulated time: reading the
   scenario and building the model do not count, and nothing is recorded. The solver's settings are
-  the defaults, with steps of 1 ms.
+  the defaults; it takes steps as long as its accuracy allows.
 - Each time is the shortest of several rounds in which all points of a panel took turns, on one
   thread.
 - An *exponent* is the slope of a curve on logarithmic scales: 0 costs the same, 1 grows in
@@ -62,7 +62,7 @@ each curve. Runs do not end at a goal or a stop: all runs of a panel take the sa
 _WHEELS = """
 ## Wheels
 
-![What a step costs against the number of wheels](scaling/wheels.svg)
+![Cost against the number of wheels](scaling/wheels.svg)
 
 Only the number changes: wheels of a line keep the outline's radius of 64 mm and overlap if there
 are 4 or more; circumferential wheels keep a radius of 16 mm, are spaced equally and overlap if
@@ -80,7 +80,7 @@ _WHEELS_MEAN = """
 _GROUSERS = """
 ## Grousers
 
-![What a step costs against the number of grousers](scaling/grousers.svg)
+![Cost against the number of grousers](scaling/grousers.svg)
 
 Gear wheels only: a line of 3, and 24 circumferential ones of 16 mm with tips 1 mm thick, so that 48
 grousers fit on them. Only grousers near the ground are checked, but the more there are, the more of
@@ -90,7 +90,7 @@ them carry load at the same time.
 _POINTS = """
 ## Pieces of the ground
 
-![What a step costs against the pieces of the ground](scaling/points.svg)
+![Cost against the pieces of the ground](scaling/points.svg)
 
 Ground 6 m long, cut into pieces of equal length, with random heights of all their ends within 0.1
 um up and down: points that are level to within 1 nm would be joined into one straight piece.
@@ -104,7 +104,7 @@ _POINTS_MEAN = """
   pieces are joined when the scenario is read.
 - The expensive part is that the contacts change: with a few pieces passed in each step, different
   corners carry load each time, and the solver has to find anew which contacts are open, stick or
-  slide.
+  slide; its steps become shorter, too.
 - Between two grousers, flat ground reaches up to 2.6 mm into the taut belt round gear wheels.
   Whenever the monitor looks for ground inside the track, it visits all the pieces there.
 """
@@ -119,13 +119,13 @@ comparison, loops that only count, one process per core: they show what the mach
 the same time. If these gain little either, other jobs were using the cores.
 """
 
-_TIME_STEPS = """
-## Time step
+_ACCURACIES = """
+## Accuracy
 
-![What a step and a simulated second cost against the time step](scaling/time_step.svg)
+![Cost and error against the accuracy of the solver](scaling/accuracy.svg)
 
-A line of 3 gear wheels. More happens in a longer step, which is cut where a part strikes the
-ground; a simulated second still becomes cheaper.
+A line of 3 gear wheels. The accuracy limits the local error of each step. How far the robot is off
+at the end is another matter: the table compares its final x with that at the finest accuracy.
 """
 
 
@@ -136,14 +136,14 @@ def _exponents(drawn: Sequence[Curve], panels: tuple[str, str]) -> str:
         [name, *(_ends(found.get((panel, name))) for panel in panels)]
         for name in dict.fromkeys(curve.name for curve in drawn)
     ]
-    cells = "us per step at the first and last point; exponent over all points, over the last two"
+    cells = "ms per simulated second at the first and last point; exponent over all, the last two"
     return f"Cells: {cells}.\n\n" + markdown.table(["curve", *panels], table)
 
 
 def _ends(curve: Curve | None) -> str:
     if curve is None:
         return ""
-    first, last = curve.per_step[0] * 1e6, curve.per_step[-1] * 1e6
+    first, last = curve.per_second[0] * 1e3, curve.per_second[-1] * 1e3
     return f"{_short(first)} to {_short(last)}; {curve.slope:.2f}, {curve.last_slope:.2f}"
 
 
@@ -159,7 +159,7 @@ def _stopped(rows: Sequence[dict[str, Any]]) -> str:
 
 def _ratios(rows: Sequence[dict[str, Any]]) -> str:
     """Compare the finest cuts of flat ground with ground in one piece."""
-    own = {(row["curve"], row["x"]): row["per_step"] for row in rows if row["panel"] == CUT}
+    own = {(row["curve"], row["x"]): row["per_second"] for row in rows if row["panel"] == CUT}
     most = max(x for _, x in own)
     names = [name for name, x in own if x == 1]
     endings = {"level": f", {LEVEL}", "rough": ""}
@@ -168,11 +168,11 @@ def _ratios(rows: Sequence[dict[str, Any]]) -> str:
     for name in names:
         whole, costs = own[name, 1], [own[name + end, most] for end in cuts.values()]
         ratios = [f"{cost / whole:.2f}" for cost in costs]
-        table.append([name, *(_short(cost * 1e6) for cost in (whole, *costs)), *ratios])
+        table.append([name, *(_short(cost * 1e3) for cost in (whole, *costs)), *ratios])
     head = ["track", "whole", *cuts, *(f"{kind} / whole" for kind in cuts)]
     text = f"""
-Flat ground in {most:,} pieces, us per step: *level* means pieces of equal height, *rough* those of
-the figure. The aim is a ratio of at most {AIM}.
+Flat ground in {most:,} pieces, ms per simulated second: *level* means pieces of equal height,
+*rough* those of the figure. The aim is a ratio of at most {AIM}.
 """
     return text + "\n" + markdown.table(head, table)
 
@@ -181,27 +181,29 @@ def _speed_ups(rows: Sequence[dict[str, Any]]) -> str:
     table = [
         [
             str(row["threads"]),
-            f"{row['steps_per_second']:,.0f}",
+            f"{row['real_time']:,.0f}x",
             f"{row['worlds']:.2f}",
             f"{row['loops']:.2f}",
         ]
         for row in rows
     ]
-    return markdown.table(["threads", "steps/s", "speed-up", "of a loop that counts"], table)
+    return markdown.table(["threads", "real time", "speed-up", "of a loop that counts"], table)
 
 
-def _steps(drawn: Sequence[Curve]) -> str:
+def _accuracies(rows: Sequence[dict[str, Any]]) -> str:
+    drawn = curves(rows, "accuracy")
+    off = [["", *(f"{1e3 * way:.2g}" for way in deviations(rows, curve))] for curve in drawn]
     table = [
         [
-            f"{length * 1e3:g}",
-            *(_short(curve.per_step[i] * 1e6) for curve in drawn),
-            *(f"{length / curve.per_step[i]:,.0f}x" for curve in drawn),
+            f"{accuracy * 1e6:g}",
+            *(_short(curve.per_second[i] * 1e3) for curve in drawn),
+            *(own[i] for own in off),
         ]
-        for i, length in enumerate(drawn[0].x)
+        for i, accuracy in enumerate(drawn[0].x)
     ]
     panels = [curve.panel for curve in drawn]
-    head = ["time step [ms]", *(f"{panel}, us a step" for panel in panels)]
-    return markdown.table([*head, *(f"{panel}, real time" for panel in panels)], table)
+    head = ["accuracy [um]", *(f"{panel}, ms a simulated second" for panel in panels)]
+    return markdown.table([*head, *(f"{panel}, mm off" for panel in panels)], table)
 
 
 def _short(value: float) -> str:

@@ -16,8 +16,8 @@ from crawler2d.parameters.track import Track, Wheel
 WHEELS = (3, 6, 12, 24, 48, 96)
 GROUSERS = (6, 12, 24, 48)
 PIECES = (10, 100, 1_000, 10_000, 100_000)
-TIME_STEPS = (0.5e-3, 1e-3, 2e-3, 4e-3, 8e-3)
-"""[s]"""
+ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
+"""[m] Of the solver."""
 
 FLAT, STEP = "flat ground", "step of 50 mm"
 CUT, BLOCKS = "flat ground in pieces", "blocks in pieces"
@@ -58,7 +58,7 @@ def points() -> Iterator[Point]:
     yield from _wheels()
     yield from _grousers()
     yield from _pieces()
-    yield from _time_steps()
+    yield from _accuracies()
 
 
 def panels(points: Iterable[Point]) -> dict[tuple[str, str], list[Point]]:
@@ -117,12 +117,12 @@ def _pieces() -> Iterator[Point]:
             yield Point("points", BLOCKS, name, count, _on(track, blocks(count)))
 
 
-def _time_steps() -> Iterator[Point]:
+def _accuracies() -> Iterator[Point]:
     track = c2d.LineOfWheels(3, wheel=c2d.GearWheel())
     for panel in (FLAT, STEP):
-        for time_step in TIME_STEPS:
-            scenario = _over(track, panel).replace({"solver.time_step": time_step})
-            yield Point("time step", panel, "line of 3 gear", time_step, scenario)
+        for accuracy in ACCURACIES:
+            scenario = _over(track, panel).replace({"solver.accuracy": accuracy})
+            yield Point("accuracy", panel, "line of 3 gear", accuracy, scenario)
 
 
 def flat(count: int, jitter: float, seed: int = 0) -> Lane:

@@ -1,4 +1,4 @@
-"""How cost grows along a curve."""
+"""How cost and error grow along a curve."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ class Curve(NamedTuple):
     panel: str
     name: str
     x: list[float]
-    per_step: list[float]
+    per_second: list[float]
 
     @property
     def slope(self) -> float:
         """[-] Exponent of the power law that fits all points best."""
-        return float(np.polyfit(np.log(self.x), np.log(self.per_step), 1)[0])
+        return float(np.polyfit(np.log(self.x), np.log(self.per_second), 1)[0])
 
     @property
     def last_slope(self) -> float:
         """[-] Exponent between the last two points."""
-        return float(np.diff(np.log(self.per_step[-2:]))[0] / np.diff(np.log(self.x[-2:]))[0])
+        return float(np.diff(np.log(self.per_second[-2:]))[0] / np.diff(np.log(self.x[-2:]))[0])
 
 
 def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
@@ -35,7 +35,18 @@ def curves(rows: Sequence[dict[str, Any]], figure: str) -> list[Curve]:
     for panel, name in keys:
         own = [row for row in rows if (row["figure"], row["panel"]) == (figure, panel)]
         own = [row for row in own if row["curve"] == name]
-        x, per_step = [row["x"] for row in own], [row["per_step"] for row in own]
+        x, per_second = [row["x"] for row in own], [row["per_second"] for row in own]
         if len(own) > 1:
-            found.append(Curve(figure, panel, name, x, per_step))
+            found.append(Curve(figure, panel, name, x, per_second))
     return found
+
+
+def deviations(rows: Sequence[dict[str, Any]], curve: Curve) -> list[float]:
+    """[m] How far the robot gets from where it does at the first point, at least a nanometre."""
+    own = {row["x"]: row["final_x"] for row in rows if _is_on(row, curve)}
+    first, *others = (own[x] for x in curve.x)
+    return [max(abs(other - first), 1e-9) for other in others]
+
+
+def _is_on(row: dict[str, Any], curve: Curve) -> bool:
+    return (row["figure"], row["panel"], row["curve"]) == (curve.figure, curve.panel, curve.name)

@@ -7,6 +7,9 @@ mod engine_world;
 
 pub use engine_world::{EngineSettings, EngineWorld};
 
+/// [s] Length of a step of the bare engine.
+pub const ENGINE_STEP: f64 = 1e-3;
+
 /// A robot in front of an obstacle.
 pub struct Scene {
     /// Name in the report.
@@ -60,12 +63,11 @@ impl Scene {
         Checked::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same in the bare engine, with as many steps and its own default of 4 substeps; `None` unless each wheel has
-    /// its own motor.
+    /// The same in the bare engine, with its own default of 4 substeps; `None` unless each wheel has its own motor.
     pub fn engine(&self) -> Option<EngineWorld> {
         let scenario = self.scenario();
         let settings = EngineSettings {
-            time_step: scenario.solver.time_step,
+            time_step: ENGINE_STEP,
             substeps: 4,
         };
         let own_motors = scenario.robot.drivetrain.torque_sharing == TorqueSharing::Wheel;

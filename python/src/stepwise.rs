@@ -1,7 +1,8 @@
 //! A simulation that Python advances and commands step by step.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use crawler2d_core::{Cancel, Checked, End, Error};
@@ -17,6 +18,8 @@ use crate::{convert, diagnosis, errors};
 #[pyclass(frozen, module = "crawler2d._core")]
 pub(crate) struct Simulation {
     inner: Arc<Inner>,
+    /// Held by the thread that advances: of two at once, one would count the other's steps as its own.
+    turn: Mutex<()>,
     /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
 }
@@ -25,6 +28,8 @@ pub(crate) struct Simulation {
 const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 /// A step that takes longer is too slow to let Ctrl-C wait for it.
 const SLOW: Duration = Duration::from_millis(20);
+/// Time between two attempts to take the turn.
+const BETWEEN_ATTEMPTS: Duration = Duration::from_micros(100);
 
 /// `None` after a step has failed, because its state cannot be trusted.
 type Inner = Mutex<Option<crawler2d_core::Simulation>>;
@@ -68,7 +73,7 @@ impl Simulation {
         why.map(|d| diagnosis::of(py, &d)).transpose()
     }
 
-    /// Advances by a duration, rounded to whole steps.
+    /// Advances by a duration; the last step ends with it.
     fn advance(&self, py: Python<'_>, duration: f64) -> PyResult<()> {
         if !(0.0..=1e5).contains(&duration) {
             return Err(errors::argument(
@@ -77,14 +82,14 @@ impl Simulation {
                 "must be >= 0 s and <= 100000 s",
             ));
         }
-        let dt = self.with(py, |simulation| Ok(simulation.time_step()))?;
-        #[allow(clippy::cast_sign_loss, clippy::cast_possible_truncation)] // bounded above
-        let mut left = (duration / dt).round() as u64;
-        while left > 0 && !self.is_slow.load(Ordering::Relaxed) {
-            left -= self.with(py, |simulation| self.steps_between_looks(simulation, left))?;
+        let _turn = self.turn(py)?;
+        let mut time = self.with(py, |simulation| Ok(simulation.time()))?;
+        let end = time + duration;
+        while time < end && !self.is_slow.load(Ordering::Relaxed) {
+            time = self.with(py, |simulation| self.steps_between_looks(simulation, end))?;
             py.check_signals()?;
         }
-        if left == 0 {
+        if time >= end {
             return Ok(());
         }
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
@@ -92,9 +97,9 @@ impl Simulation {
         let slowest = beside(py, &cancel, move || {
             call(&inner, |simulation| {
                 let mut slowest = Duration::ZERO;
-                for _ in 0..left {
+                while simulation.time() < end {
                     let begin = Instant::now();
-                    simulation.step()?;
+                    simulation.step_until(end)?;
                     slowest = slowest.max(begin.elapsed());
                     if asked.is_asked() {
                         break;
@@ -177,24 +182,37 @@ impl Simulation {
         Self {
             is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
             inner: Arc::new(Mutex::new(Some(simulation))),
+            turn: Mutex::new(()),
         }
     }
 
-    /// Takes at most so many steps, and no more than fit between two checks for Ctrl-C; returns how many.
+    /// Waits until no other thread advances it; Ctrl-C is answered meanwhile.
+    fn turn(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ()>> {
+        loop {
+            match self.turn.try_lock() {
+                Ok(turn) => return Ok(turn),
+                Err(TryLockError::Poisoned(turn)) => return Ok(turn.into_inner()),
+                Err(TryLockError::WouldBlock) => {
+                    py.detach(|| thread::sleep(BETWEEN_ATTEMPTS));
+                    py.check_signals()?;
+                }
+            }
+        }
+    }
+
+    /// Takes steps up to the time `end` [s], and no more than fit between two checks for Ctrl-C; returns the time.
     fn steps_between_looks(
         &self,
         simulation: &mut crawler2d_core::Simulation,
-        most: u64,
-    ) -> Result<u64, Error> {
+        end: f64,
+    ) -> Result<f64, Error> {
         let begin = Instant::now();
-        let mut taken = 0;
-        while taken < most && begin.elapsed() < BETWEEN_LOOKS {
-            simulation.step()?;
-            taken += 1;
+        while simulation.time() < end && begin.elapsed() < BETWEEN_LOOKS {
+            simulation.step_until(end)?;
         }
         self.is_slow
             .store(begin.elapsed() > BETWEEN_LOOKS + SLOW, Ordering::Relaxed);
-        Ok(taken)
+        Ok(simulation.time())
     }
 
     /// Calls the core detached from the interpreter, one thread at a time.

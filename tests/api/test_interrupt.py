@@ -10,12 +10,15 @@ import pytest
 
 Say = Callable[[str], None]
 
+# Steps of a given length: on flat ground, those of an accuracy are soon at the end of any run.
+
 BATCH = """
 import sys, time
 import crawler2d as c2d
 
 robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(9))
-base = c2d.Scenario(robot, c2d.terrains.flat(length=50.0))
+solver = c2d.Solver(time_step=1e-3)
+base = c2d.Scenario(robot, c2d.terrains.flat(length=50.0), solver=solver)
 scenarios = [base.replace({"duration": 1.0})] * 3 + [base.replace({"duration": 1000.0})] * 20
 
 def progress(done, total):
@@ -40,7 +43,8 @@ import time
 import crawler2d as c2d
 
 robot = c2d.robots.engineer(flippers=None)
-scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=10000.0)
+solver = c2d.Solver(time_step=1e-3)
+scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=10000.0, solver=solver)
 print("ready", flush=True)
 try:
     c2d.simulate(scenario, sample_interval=1.0)
@@ -52,7 +56,8 @@ ADVANCE = """
 import time
 import crawler2d as c2d
 
-sim = c2d.Simulation(c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat()))
+robot, solver = c2d.robots.engineer(flippers=None), c2d.Solver(time_step=1e-3)
+sim = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.flat(), solver=solver))
 print("ready", flush=True)
 try:
     sim.advance(10000.0)
@@ -69,7 +74,8 @@ import time
 import crawler2d as c2d
 
 robot = c2d.robots.engineer(flippers=None)
-scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=1000.0)
+solver = c2d.Solver(time_step=1e-3)
+scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=1000.0, solver=solver)
 run = c2d.Run(scenario, {{"outcome": "timed_out", "metrics": {{"time": 1000.0}}}})
 print("ready", flush=True)
 try:

@@ -238,8 +238,12 @@ def test_a_rule_says_what_is_allowed(name: str, path: str, value: float, rule: s
         ("drive.speed", 1.5),
         ("solver.time_step", 0.0),
         ("solver.time_step", 0.1),
-        ("solver.substeps", 0),
-        ("solver.substeps", 65),
+        ("solver.time_step", 1e-3),  # an accuracy is given, too
+        ("solver.accuracy", None),
+        ("solver.accuracy", 0.0),
+        ("solver.accuracy", 0.1),
+        ("solver.iterations", 0),
+        ("solver.iterations", 1001),
         ("schema", 2),
     ],
 )

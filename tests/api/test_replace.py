@@ -28,6 +28,38 @@ def test_paths_are_replaced_in_order() -> None:
     assert scenario.robot.track == c2d.LineOfWheels(5)
 
 
+def test_a_path_to_the_accuracy_or_the_time_step_takes_the_other_off() -> None:
+    scenario = VARIANTS["belt-step"]
+    steps = scenario.replace({"solver.time_step": 1e-3})
+    assert steps.solver == c2d.Solver(time_step=1e-3)
+    assert steps.solver.accuracy is None
+    fine = steps.replace({"solver.accuracy": 1e-7})
+    assert fine.solver == c2d.Solver(accuracy=1e-7)
+    assert fine.solver.time_step is None
+    for variant in (steps, fine):
+        variant.validate()
+        assert Scenario.from_json(variant.to_json()) == variant
+    # What is off already stays so; without both, there is the default accuracy.
+    assert fine.replace({"solver.time_step": None}) == fine
+    assert steps.replace({"solver.time_step": None}) == scenario
+    both = {"solver.accuracy": None, "solver.time_step": 1e-3}
+    assert scenario.replace(both) == steps.replace(both) == steps
+
+
+def test_an_accuracy_and_a_time_step_at_once_are_refused() -> None:
+    scenario = VARIANTS["belt-step"]
+    both = [
+        scenario.replace({"solver.time_step": 1e-3, "solver.accuracy": 1e-7}),
+        scenario.replace({"solver.accuracy": 1e-7, "solver.time_step": 1e-3}),
+        scenario.replace({"solver": c2d.Solver(accuracy=1e-7, time_step=1e-3)}),
+        scenario.replace({"solver": dataclasses.replace(scenario.solver, time_step=1e-3)}),
+    ]
+    for variant in both:
+        with pytest.raises(c2d.ScenarioError, match="together with accuracy") as caught:
+            variant.validate()
+        assert caught.value.path == "solver.time_step"
+
+
 def test_a_path_reaches_into_lanes() -> None:
     scenario = VARIANTS["belt-lanes"].replace({"terrain.left.height": 0.1})
     assert scenario.to_json().count('"height":0.1') == 1

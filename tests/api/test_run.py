@@ -74,6 +74,32 @@ def test_a_drive_starts_at_the_phase_of_the_track() -> None:
     assert run.metrics["track_distance"] == pytest.approx(travelled)
 
 
+@pytest.mark.parametrize("interval", [0.0007, 0.007, 0.02])
+def test_samples_fall_on_multiples_of_their_interval_whatever_the_steps(interval: float) -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=2.2345, sample_interval=interval)
+    *times, end = run.time.tolist()
+    assert times == [index * interval for index in range(len(times))]
+    assert end == run.metrics["time"] == 2.2345
+    # Forces are means weighted by time: those of the ground make up the change of momentum.
+    gained = ROBOT.mass * np.diff(run.velocity[:, 0])
+    assert run.tractive_effort[1:] * np.diff(run.time) == pytest.approx(gained, abs=1e-6)
+
+
+def test_steps_are_counted_and_longer_where_less_happens() -> None:
+    flat, step = c2d.terrains.flat(), c2d.terrains.step(0.05)
+    scenarios = [
+        Scenario(ROBOT, flat, duration=2.5, solver=c2d.Solver(time_step=1e-3)),
+        Scenario(ROBOT, flat, duration=2.5),
+        Scenario(ROBOT, step, duration=2.5),
+        Scenario(ROBOT, step, duration=2.5, solver=c2d.Solver(accuracy=1e-7)),
+    ]
+    given, easy, hard, fine = (run.metrics for run in c2d.simulate_many(scenarios))
+    assert (given["steps"], given["repeated_steps"]) == (2500, 0)
+    assert 2.5 / 0.016 < easy["steps"] < hard["steps"] < fine["steps"]
+    assert 0 < hard["repeated_steps"] < 0.1 * hard["steps"]
+    assert given["solves"] >= 2500
+
+
 def test_on_level_ground_a_belt_goes_as_far_as_its_path_and_does_not_shake() -> None:
     metrics = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=2.0).metrics
     assert metrics["path_length"] == pytest.approx(metrics["distance"], rel=1e-6)

@@ -178,10 +178,10 @@ def test_a_numpy_scalar_is_a_plain_number(scenario: Scenario, number: Any, plain
         ("robot.name", 5),
         ("robot.name", b"engineer"),
         ("robot.name", "\ud800"),
-        ("solver.substeps", 2.5),
-        ("solver.substeps", "4"),
-        ("solver.substeps", 2**70),
-        ("solver.substeps", True),
+        ("solver.iterations", 2.5),
+        ("solver.iterations", "4"),
+        ("solver.iterations", 2**70),
+        ("solver.iterations", True),
     ],
 )
 def test_what_is_no_scenario_is_refused_by_its_path(

@@ -42,7 +42,7 @@ def test_teeth_stand_between_lugs_and_below_the_plates(count: int) -> None:
 @every_chain
 def test_crawler2d_has_the_same_robot(count: int) -> None:
     robot = ChainRobot(count)
-    scenario = chain_crawler2d.scenario(robot, STEP, Setting(1e-3, 2, 30), 1.0, 0.0)
+    scenario = chain_crawler2d.scenario(robot, STEP, Setting(accuracy=1e-6), 1.0, 0.0)
     built = scenario.robot
     assert built.mass == pytest.approx(19.96)
     assert built.track_mass == pytest.approx(robot.shoe_mass * count)
@@ -102,14 +102,14 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
             },
             "wall": 60.0,
             "side_by_side": [
-                {**cell, **judged, "engine": "crawler2d", "per_step": 3e-5},
-                {**cell, **judged, "engine": "pymunk, defaults", "per_step": 2e-5, "gap": 1e-3},
+                {**cell, **judged, "engine": "crawler2d", "per_second": 3e-2},
+                {**cell, **judged, "engine": "pymunk, defaults", "per_second": 2e-2, "gap": 1e-3},
             ],
             "equal_gaps": [{**cell, **equal, "allowed": 2e-4}],
-            "engineer": [{"track": "22 shoes", "terrain": "flat", "per_step": 4e-5}],
+            "engineer": [{"track": "22 shoes", "terrain": "flat", "per_second": 4e-2}],
         }
     )
-    assert "**30.0 us**<br>0.005 mm, 3/3<br>3.16 m, -0.4 %<br>3 mm off" in text
+    assert "**30.0 ms**<br>0.005 mm, 3/3<br>3.16 m, -0.4 %<br>3 mm off" in text
     assert "1 ms, 20 iterations<br>100.0 ms, **2 times**" in text
     assert "none in the grid: 0.02 mm at 0.125 ms, 160 iterations" in text
     assert "| 22 shoes | 40.0 | 50, better 35 | yes |" in text

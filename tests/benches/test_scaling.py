@@ -60,12 +60,13 @@ def test_blocks_keep_their_shape_however_finely_cut() -> None:
 
 
 def result() -> dict[str, Any]:
-    """What a run would find if a step cost as many us as x, and one more for each panel before."""
+    """What a run would find if a second cost x ms, and one more for each panel before."""
     rows: list[dict[str, Any]] = []
     panels = list(scenes.panels(POINTS))
     for point in POINTS:
         offset = panels.index((point.figure, point.panel))
-        row = point._asdict() | {"per_step": (point.x + offset) * 1e-6, "final_x": 1.0}
+        found = {"per_second": (point.x + offset) * 1e-3, "final_x": 1.0 + point.x}
+        row = point._asdict() | found
         rows.append({key: value for key, value in row.items() if key != "scenario"})
     return {
         "machine": {
@@ -80,8 +81,8 @@ def result() -> dict[str, Any]:
         "wall": 120.0,
         "rows": rows,
         "threads": [
-            {"threads": 1, "steps_per_second": 1e6, "worlds": 1.0, "loops": 1.0},
-            {"threads": 2, "steps_per_second": 1.8e6, "worlds": 1.8, "loops": 1.9},
+            {"threads": 1, "real_time": 1e3, "worlds": 1.0, "loops": 1.0},
+            {"threads": 2, "real_time": 1.8e3, "worlds": 1.8, "loops": 1.9},
         ],
     }
 
@@ -91,8 +92,10 @@ def test_the_page_tells_what_it_is_given() -> None:
     for part in ("2026-01-02", "in 2 minutes", "Abacus 7", "crawler2d (1.2.3)", "unknown"):
         assert part in text
     assert "| line, round | 3 to 96; 1.00, 1.00 |" in text
-    assert "| 2 | 1,800,000 | 1.80 | 1.90 |" in text
-    # Whole ground costs 5 us, the others 100,004.
+    assert "| 2 | 1,800x | 1.80 | 1.90 |" in text
+    # The robot gets as many um farther as the accuracy is coarser.
+    assert "| 10 | 6 | 7 | 0.0099 | 0.0099 |" in text
+    # Whole ground costs 5 ms, the others 100,004.
     assert "| belt | 5 | 100,004 | 100,004 | 20000.80 | 20000.80 |" in text
     assert max(map(len, prose(text))) <= 100
 
@@ -103,7 +106,7 @@ def prose(text: str) -> Sequence[str]:
 
 def test_slopes_are_exponents() -> None:
     rows = [
-        {"figure": "f", "panel": "p", "curve": "c", "x": x, "per_step": 3e-6 * x**1.5}
+        {"figure": "f", "panel": "p", "curve": "c", "x": x, "per_second": 3e-6 * x**1.5}
         for x in (2.0, 4.0, 8.0)
     ]
     (curve,) = curves(rows, "f")
@@ -113,5 +116,5 @@ def test_slopes_are_exponents() -> None:
 def test_figures_are_light(tmp_path: Path) -> None:
     plot.plot(result(), tmp_path)
     sizes = {path.stem: path.stat().st_size for path in tmp_path.iterdir()}
-    assert set(sizes) == {"wheels", "grousers", "points", "threads", "time_step"}
+    assert set(sizes) == {"wheels", "grousers", "points", "threads", "accuracy"}
     assert max(sizes.values()) < 60_000

@@ -11,9 +11,7 @@ from crawler2d.parameters.track import Track
 from tests.fuzz.drawn_robots import TINY, Draw, drawn_robot, smallest_end
 
 STEPS = 600
-"""Longest run."""
-SUBSTEPS = 4_000
-"""Of a run, about: what a computer does in a moment."""
+"""Longest run, about."""
 
 
 def _friction(draw: Draw) -> float:
@@ -158,19 +156,27 @@ def drawn_criteria(draw: Draw, duration: float) -> c2d.SeizureCriteria:
     )
 
 
-def drawn_solver(draw: Draw, longest: float, track: Track) -> c2d.Solver:
-    """For a robot on a track, with time steps up to the longest [s]."""
+def drawn_solver(draw: Draw, longest: float, track: Track) -> tuple[c2d.Solver, float]:
+    """For a robot on a track, with a time step up to the longest [s]; and their length, about."""
     is_chain = isinstance(track, c2d.SegmentalTrack)
-    return c2d.Solver(
+    how: dict[str, Any] = {}
+    if draw.random() < 0.25:
+        step = draw.size(1e-5, max(1e-5, min(1.0 / 30.0, longest)), (2e-4, 4e-3))
+        how["time_step"] = step
+    else:
+        how["accuracy"] = draw.size(1e-10, 1e-2, (1e-7, 1e-5))
+        # In free fall.
+        step = min(max(2e-5, math.sqrt(how["accuracy"] / 10.0)), 0.016)
+    solver = c2d.Solver(
         contact="reference" if draw.random() < 0.25 else "own",
-        time_step=draw.size(1e-5, max(1e-5, min(1.0 / 30.0, longest)), (2e-4, 4e-3)),
-        substeps=draw.whole(1, 64, (1, 4)),
+        **how,
         iterations=None if is_chain else draw.whole(1, 1000, (5, 60)),
         contact_frequency=draw.size(1.0, 1e5, (300.0, 3000.0)),
         contact_damping_ratio=draw.size(TINY, 100.0, (1.0, 10.0)),
         max_push_speed=draw.size(TINY, 100.0, (0.1, 1.0)),
-        prediction_distance=draw.size(1e-5, 0.1, (5e-4, 5e-3)),
+        prediction_distance=draw.size(1e-5, 0.1, (1e-4, 1e-3)),
     )
+    return solver, step
 
 
 def drawn_scenario(draw: Draw) -> Scenario:
@@ -181,9 +187,8 @@ def drawn_scenario(draw: Draw) -> Scenario:
     fastest = robot.drivetrain.max_speed / smallest_end(robot.outline)
     if robot.flippers is not None:
         fastest = max(fastest, robot.flippers.rate_limit)
-    solver = drawn_solver(draw, 0.3 / fastest, robot.track)
-    duration = solver.time_step * min(STEPS, draw.whole(1, STEPS, (30, STEPS)))
-    duration = min(duration, solver.time_step * max(1, SUBSTEPS // solver.substeps))
+    solver, step = drawn_solver(draw, 0.3 / fastest, robot.track)
+    duration = step * min(STEPS, draw.whole(1, STEPS, (30, STEPS)))
     approach = draw.size_or_zero(1e-12, 1e4, (1e-3 * size, 0.5 * size))
     reach = approach + 10.0 * (robot.outline.axle_distance + size) + 300.0 * draw.random()
     speed = robot.drivetrain.max_speed

@@ -14,7 +14,7 @@ from crawler2d.common.table import Table
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz.account import SEED, Account, cases, interrupted
 from tests.fuzz.drawn_robots import Draw
-from tests.fuzz.drawn_scenes import drawn_scenario
+from tests.fuzz.drawn_scenes import STEPS, drawn_scenario
 
 Say = Callable[[str], None]
 
@@ -72,7 +72,9 @@ def of_state(sim: c2d.Simulation) -> list[str]:
 def simulated(draw: Draw, scenario: Scenario) -> tuple[str, list[str]]:
     """Simulate it in one call."""
     record: Any = draw.choice(("summary", "full"))
-    interval = draw.size(scenario.solver.time_step, 1.0, (scenario.solver.time_step, 0.01))
+    # Down to a tenth of a step, about.
+    shortest = 0.1 * scenario.duration / STEPS
+    interval = draw.size(shortest, 1.0, (shortest, 0.01))
     asked = draw.random() < 0.1
     run = c2d.simulate(scenario, record=record, sample_interval=interval, counterfactual=asked)
     return str(run.outcome), of_run(run)

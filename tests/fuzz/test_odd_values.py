@@ -20,7 +20,7 @@ HUGE = 10**5000
         ("duration", (None,)),
         ("duration", (1.0, 2.0)),
         ("robot.name", ("engineer",)),
-        ("solver.substeps", ()),
+        ("solver.iterations", ()),
         ("robot.outline.front_radius", (("a", 1), None)),
     ],
 )
@@ -65,9 +65,9 @@ def test_a_number_of_a_class_of_ones_own_is_a_plain_number(scenario: Scenario) -
     class Step(enum.IntEnum):
         FOUR = 4
 
-    own = {"duration": Length(4.0), "start.approach": Step.FOUR, "solver.substeps": Step.FOUR}
+    own = {"duration": Length(4.0), "start.approach": Step.FOUR, "solver.iterations": Step.FOUR}
     variant = scenario.replace(own)
-    plain = scenario.replace({"duration": 4.0, "start.approach": 4.0, "solver.substeps": 4})
+    plain = scenario.replace({"duration": 4.0, "start.approach": 4.0, "solver.iterations": 4})
     assert repr(variant) == repr(plain)
     assert variant.to_json() == plain.to_json()
 

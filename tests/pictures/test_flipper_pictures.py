@@ -12,7 +12,7 @@ from tests.pictures.reading import distance, page_of, placed
 from tests.shared import with_flippers
 
 STEP = c2d.terrains.step(0.2)
-LANES = c2d.terrains.lanes(c2d.terrains.step(0.15), c2d.terrains.step(0.12))
+LANES = c2d.terrains.lanes(c2d.terrains.step(0.2), c2d.terrains.step(0.17))
 CLIMB = c2d.Drive(speed=0.4, gait=c2d.Climb())
 
 

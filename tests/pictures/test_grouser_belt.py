@@ -59,9 +59,11 @@ def test_a_slower_belt_runs_as_a_faster_one_on_the_level() -> None:
             drive=c2d.Drive(speed=speed),
             duration=9.0,
         )
-        late = run.time > 7.0
-        assert run.velocity[late, 0].mean() == pytest.approx(speed, rel=0.01)
-        assert run.track_speed[late].mean() == pytest.approx(speed, rel=0.005)
+        # How far it got: the speeds of single samples scatter by 2 % where grousers strike.
+        late = np.searchsorted(run.time, [7.0, 9.0])
+        seconds = np.diff(run.time[late])
+        assert np.diff(run.position[late, 0]) / seconds == pytest.approx(speed, rel=0.01)
+        assert np.diff(run.track_position[late]) / seconds == pytest.approx(speed, rel=0.005)
         assert run.metrics["max_penetration"] < 1e-4
 
 

@@ -14,7 +14,6 @@ from crawler2d.studies.__main__ import main
 from crawler2d.studies.chain_steps import ChainStep, chain_steps, chain_steps_text
 from crawler2d.studies.chains import CHAINS, CHAINS_QUICK, chain_models
 from crawler2d.studies.chains_plot import plot_chains
-from crawler2d.studies.models import study_models
 from crawler2d.studies.sweeps import Study
 from crawler2d.studies.tables import Cell
 from tests.shared import ROBOT
@@ -32,19 +31,14 @@ def test_every_model_has_the_grousers_of_the_robot() -> None:
     assert CHAINS.repeats >= 40
 
 
-def test_a_model_is_stepped_as_finely_as_it_asks() -> None:
+def test_every_model_is_simulated_with_the_default_accuracy() -> None:
     models = {name: MODELS[name] for name in ("belt with grousers", "24 gears all round")}
     design = replace(CHAINS_QUICK, heights={"step": (0.03,)}, repeats=1)
     table = Study(design=design, models=models, progress=False).on_obstacle("step")
     assert table["track"].to_numpy().tolist() == list(models)
-    for name, step in (("belt with grousers", 1e-3), ("24 gears all round", 0.25e-3)):
+    for name in models:
         text = table["scenario"].sel(track=name).item()
-        assert Scenario.from_json(text).solver.time_step == step
-
-
-def test_of_the_study_small_gears_all_round_alone_need_finer_steps() -> None:
-    finer = [name for name, model in study_models(0.365).items() if model.time_step is not None]
-    assert finer == ["24 gears all round"]
+        assert Scenario.from_json(text).solver == c2d.Solver()
 
 
 def test_the_picture_has_tracks_on_the_left_and_wheels_beside_the_belt() -> None:
@@ -88,8 +82,9 @@ def test_it_writes_its_table_and_its_picture(
 
 
 def test_finer_steps_cost_more_and_keep_the_pins_as_tight() -> None:
-    coarse, fine = chain_steps((0.03,), repeats=1, steps=[(2e-3, 1), (0.5e-3, 4)])
-    assert (coarse.time_step, coarse.substeps) == (2e-3, 1)
+    coarse, fine = chain_steps((0.03,), repeats=1, accuracies=[1e-5, 1e-6])
+    assert (coarse.accuracy, fine.accuracy) == (1e-5, 1e-6)
+    assert coarse.step > fine.step
     assert coarse.cost < fine.cost
     for row in (coarse, fine):
         assert 0.0 < row.flat_gap < 2e-4
@@ -100,8 +95,8 @@ def test_finer_steps_cost_more_and_keep_the_pins_as_tight() -> None:
 
 def test_the_table_of_steps_has_its_units() -> None:
     row = ChainStep(
-        time_step=1e-3,
-        substeps=2,
+        accuracy=3e-7,
+        step=1.2e-4,
         flat_gap=6e-6,
         gap=43e-6,
         lowest=0.064,
@@ -111,7 +106,8 @@ def test_the_table_of_steps_has_its_units() -> None:
     )
     head, _, line = chain_steps_text([row], (0.05,)).splitlines()
     assert "gap, flat [um]" in head
-    assert line.split()[:4] == ["1", "2", "6.0", "43"]
+    assert "accuracy [um]" in head
+    assert line.split()[:4] == ["0.3", "0.12", "6.0", "43"]
     assert "64.00 to 64.48" in line
     assert "0.50 (0.40 to 0.60)" in line
     assert line.split()[-1] == "54"

@@ -14,7 +14,7 @@ from crawler2d.sweeps.axes import COLUMNS
 from crawler2d.sweeps.rates import rate
 from crawler2d.sweeps.sweep import sweep
 from tests.shared import ROBOT, VARIANTS
-from tests.sweeps.small import quiet
+from tests.sweeps.small import quiet, refusal
 
 BASE = Scenario(ROBOT, c2d.terrains.step(0.03), duration=0.05)
 
@@ -36,6 +36,23 @@ def test_objects_without_labels_are_labelled_in_short() -> None:
         "LineOfWheels(4, wheel_radius=0.06)",
     ]
     assert found["center_of_mass"].values.tolist() == ["(0.0, 0.02)", "(0.01, 0.02)"]
+    # What a default leads to is left out, too.
+    solvers = [c2d.Solver(), c2d.Solver(time_step=1e-3), c2d.Solver(accuracy=1e-5)]
+    labels = quiet(BASE, {"solver": solvers})["solver"].values.tolist()
+    assert labels == ["Solver()", "Solver(time_step=0.001)", "Solver(accuracy=1e-05)"]
+
+
+def test_the_accuracy_or_the_time_step_is_swept_on_any_scenario() -> None:
+    of_steps = BASE.replace({"solver.time_step": 1e-3})
+    for base in (BASE, of_steps):
+        steps = quiet(base, {"solver.time_step": [1e-3, 5e-4]}, vary={}, repeats=1)
+        assert steps["steps"].values.tolist() == [[50.0], [100.0]]
+        assert steps["time_step"].attrs["units"] == "s"
+        fine = quiet(base, {"solver.accuracy": [1e-6]}, vary={}, repeats=1)
+        assert Scenario.from_json(fine["scenario"].values.item()).solver == c2d.Solver()
+        assert fine["accuracy"].attrs["units"] == "m"
+    error = refusal(BASE, {"solver.accuracy": [1e-6], "solver.time_step": [1e-3]})
+    assert error.path.endswith(".solver.time_step")
 
 
 def test_labels_that_are_no_numbers_are_texts() -> None:

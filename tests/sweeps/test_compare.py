@@ -121,12 +121,13 @@ def test_models_in_a_sequence_are_labelled_in_short() -> None:
 
 def test_fields_are_compared_as_models_are() -> None:
     heavy = {"robot.mass": 30.0, "robot.center_of_mass[0]": -0.05}
-    step = c2d.Solver(time_step=5e-4)
+    fine = c2d.Solver(accuracy=1e-7)
     other = c2d.robots.absolem(flippers=None)
     models = {
         "as it is": {},
         "heavy": heavy,
-        "fine": step,
+        "fine": fine,
+        "of 1 ms": {"solver.time_step": 1e-3},
         "other": other,
         "skids": c2d.ForceTrack(),
     }
@@ -138,7 +139,8 @@ def test_fields_are_compared_as_models_are() -> None:
     assert first == BASE.replace(draws)
     replaced: dict[str, Any] = {
         "heavy": heavy,
-        "fine": {"solver": step},
+        "fine": {"solver": fine},
+        "of 1 ms": {"solver": c2d.Solver(time_step=1e-3)},
         "other": {"robot": other},
         "skids": {"robot.track": c2d.ForceTrack()},
     }

@@ -270,7 +270,7 @@ def test_a_whole_number_asks_for_its_own_distribution(distribution: Any) -> None
     for name, path in [
         ("line-flat", "robot.track.count"),
         ("segmental-step", "robot.track.return_roller_count"),
-        ("gears-diagonal-barrier", "solver.substeps"),
+        ("gears-diagonal-barrier", "solver.iterations"),
     ]:
         cell = VARIANTS[name]
         with pytest.raises(c2d.ScenarioError) as caught:

@@ -151,7 +151,8 @@ def test_a_run_that_diverged_is_named_in_a_note(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to itself")
 def test_ctrl_c_keeps_the_finished_runs() -> None:
-    long = Scenario(ROBOT, c2d.terrains.flat(length=900.0), goal=800.0)
+    solver = c2d.Solver(time_step=1e-3)  # steps of an accuracy would soon be at the end
+    long = Scenario(ROBOT, c2d.terrains.flat(length=900.0), goal=800.0, solver=solver)
     over = {"duration": [0.1, 10_000.0]}
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

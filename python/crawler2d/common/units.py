@@ -6,7 +6,7 @@ __all__ = ["FIELDS", "METRICS", "unit_of"]
 
 _FIELDS_BY_UNIT = {
     "m": (
-        "approach axle_distance barrier_height barrier_thickness base_thickness belly"
+        "accuracy approach axle_distance barrier_height barrier_thickness base_thickness belly"
         " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
         " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
         " plate_thickness points post prediction_distance"
@@ -32,7 +32,7 @@ _FIELDS_BY_UNIT = {
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
         " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
         " return_roller_count road_wheel_count shoe_count skid_friction"
-        " sliding_speed stationary_windows stop_pitches stop_progress substeps torque_limit"
+        " sliding_speed stationary_windows stop_pitches stop_progress torque_limit"
         " wheel_count"
     ),
 }
@@ -79,6 +79,8 @@ METRICS = {
     "max_pin_gap": "m",
     "max_guide_penetration": "m",
     "max_sprocket_slip": "m",
+    "steps": "1",
+    "repeated_steps": "1",
     "solves": "1",
     "solve_rounds": "1",
     "descents": "1",

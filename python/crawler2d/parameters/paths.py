@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 import reprlib
+from collections.abc import Collection
 from typing import Any, TypeVar
 
 from crawler2d.common.arrays import frozen_rows, real_number
@@ -17,8 +18,11 @@ P = TypeVar("P", bound=Parameters)
 _PART = re.compile(r"([^\[\]]*)((?:\[(?:0|-?[1-9][0-9]*)\])*)")
 
 
-def replace_path(parameters: P, path: str, value: Any) -> P:
+def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str] = ()) -> P:
     """Copy a parameter object, with the field or element at a path replaced.
+
+    Fields that exclude it are set to None, except those at the paths `given`: that both are there
+    is for the validator to refuse.
 
     Raises
     ------
@@ -29,6 +33,9 @@ def replace_path(parameters: P, path: str, value: Any) -> P:
     if not isinstance(path, str):
         raise ScenarioError("path", path, "must be a string")
     copy: P = _replaced(parameters, _steps(path), value, path)
+    for other in _excluded(copy, path):
+        if value is not None and other not in given:
+            copy = _replaced(copy, _steps(other), None, other)
     return copy
 
 
@@ -47,6 +54,14 @@ def is_whole(parameters: Parameters, path: str) -> bool:
     holder = read_path(parameters, parent) if parent else parameters
     kinds = alternatives(field_hints(type(holder)).get(name))
     return int in kinds and float not in kinds
+
+
+def _excluded(parameters: Parameters, path: str) -> list[str]:
+    """List the paths of the fields that exclude the one at a path."""
+    parent, _, name = path.rpartition(".")
+    either = type(read_path(parameters, parent) if parent else parameters).either
+    others = [other for other in either if other != name] if name in either else []
+    return [f"{path.removesuffix(name)}{other}" for other in others]
 
 
 def _steps(path: str) -> list[str | int]:

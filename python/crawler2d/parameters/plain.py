@@ -42,6 +42,8 @@ class Parameters:
     """Tag of the class in JSON; empty where a field has only one class."""
     place: ClassVar[str] = ""
     """Where objects of this class sit in a scenario, for messages."""
+    either: ClassVar[tuple[str, ...]] = ()
+    """Fields of which only one may be set: a path that sets one takes the others off."""
 
     def __post_init__(self) -> None:
         """Convert every field to its plain Python form."""

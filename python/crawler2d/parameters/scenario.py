@@ -64,7 +64,8 @@ class Scenario(Form):
         ----------
         fields : mapping of str to object
             New values by dotted path, such as ``{"robot.track.count": 5}``, set in order. Elements
-            have an index: ``{"terrain.points[3][1]": 0.06}``.
+            have an index: ``{"terrain.points[3][1]": 0.06}``. Of two fields that exclude each
+            other, the one that is given takes the other off.
 
         Returns
         -------
@@ -83,8 +84,9 @@ class Scenario(Form):
             If the flippers are removed but their mass stays on the robot.
         """
         variant = self
+        given = {path for path, value in fields.items() if value is not None}
         for path, value in fields.items():
-            variant = replace_path(variant, path, value)
+            variant = replace_path(variant, path, value, given=given)
         if _leaves_mass_of_arms(self.robot, variant.robot):
             reason = (
                 "leaves their mass on the robot if replaced alone; to remove the mass, too, replace"

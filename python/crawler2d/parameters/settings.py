@@ -62,9 +62,16 @@ class Start(Parameters):
     angle: float = 0.0
 
 
+_ACCURACY = 1e-6
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solver(Parameters):
     """How the equations of motion are solved; the defaults are from a convergence study.
+
+    The length of a step follows from an accuracy, or it is given; one excludes the other. A path
+    that sets one, as in ``scenario.replace({"solver.time_step": 1e-3})``, takes the other off.
+    `dataclasses.replace` does not: there, the other must be set to None, too.
 
     Parameters
     ----------
@@ -72,10 +79,14 @@ class Solver(Parameters):
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
         queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,
         and is there for comparison.
-    time_step : float
-        [s] Time between two searches for contacts.
-    substeps : int
-        Substeps per step. A substep in which a part strikes the ground is split at the impact.
+    accuracy : float, optional
+        [m] Local error of a step: the difference between its motion and the mean of the velocities
+        at its ends times its length, the largest over all points of the robot and all driven
+        surfaces. Steps are as long as it allows, 20 us to 16 ms. It limits what one step adds, and
+        promises nothing about the whole path. None takes 1 um, unless a time step is given.
+    time_step : float, optional
+        [s] The same length for every step, in place of an accuracy, for comparison. Steps are
+        shorter only where something strikes the ground, a command changes or a run ends.
     iterations : int, optional
         Largest number of rounds in the search for forces that satisfy all contacts; each is a
         few guesses and a descent. None takes 30; usually one is enough. A chain of shoes is
@@ -87,19 +98,32 @@ class Solver(Parameters):
     max_push_speed : float
         [m/s] Largest speed at which a penetration is pushed out.
     prediction_distance : float
-        [m] Gap up to which contacts are searched for.
+        [m] Gap up to which contacts are searched for, at least; in a fast or long step, as far as
+        the robot moves in it.
+
+    Examples
+    --------
+    >>> Solver(time_step=1e-3).accuracy is None
+    True
     """
 
     place: ClassVar[str] = "solver"
+    either: ClassVar[tuple[str, ...]] = ("accuracy", "time_step")
 
     contact: Literal["own", "reference"] = "own"
-    time_step: float = 1e-3
-    substeps: int = 2
+    accuracy: float | None = None
+    time_step: float | None = None
     iterations: int | None = None
     contact_frequency: float = 1000.0
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5
-    prediction_distance: float = 0.001
+    prediction_distance: float = 0.0002
+
+    def __post_init__(self) -> None:
+        """Take the default accuracy if nothing says how long steps are."""
+        Parameters.__post_init__(self)
+        if self.accuracy is None and self.time_step is None:
+            object.__setattr__(self, "accuracy", _ACCURACY)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -44,7 +44,7 @@ def simulate(
     record : {"full", "summary"}
         Whether to keep the history, or only outcome, metrics and events.
     sample_interval : float
-        [s] Time between samples of the history, rounded to whole time steps.
+        [s] Time between samples of the history: they fall on its multiples, and on the end.
     counterfactual : bool
         Whether to try a closed belt if the run ends in a stop; see `Run.counterfactual`.
     **fields : object
@@ -100,7 +100,7 @@ def simulate_many(
     record : {"full", "summary"}
         Whether to keep the histories, or only outcomes, metrics and events.
     sample_interval : float
-        [s] Time between samples of the histories, rounded to whole time steps.
+        [s] Time between samples of the histories: they fall on its multiples, and on the end.
     counterfactual : bool
         Whether to try a closed belt for every run that ends in a stop; see `Run.counterfactual`.
     progress : bool or callable

@@ -84,6 +84,8 @@ class Run(Record):
     `max_guide_penetration`  m      deepest overlap of a shoe with guide, wheels or teeth
     `max_sprocket_slip`      m      largest slip between a chain and its sprocket, ahead or behind;
                                     some hundredths of a pitch are the play of the teeth
+    `steps`                  -      steps of the solver
+    `repeated_steps`         -      steps tried that were too inaccurate, and taken again shorter
     `solves`                 -      searches for forces that satisfy all contacts, motors and pins
     `solve_rounds`           -      linear systems solved in them: one per solve if the first guess
                                     of what sticks and what slides is right
@@ -138,7 +140,8 @@ class Run(Record):
         Parameters
         ----------
         at : float or "stop"
-            [s] The instant; "stop" is that of the diagnosis.
+            [s] The instant; "stop" is that of the diagnosis. The branch begins with the end of the
+            step that reaches it.
         track : track model, optional
             Another model of the robot's track.
         friction : float, optional
@@ -150,7 +153,7 @@ class Run(Record):
         record : {"full", "summary"}
             Whether to keep the history, or only outcome, metrics and events.
         sample_interval : float
-            [s] Time between samples of the history, rounded to whole time steps.
+            [s] Time between samples of the history: they fall on its multiples, and on both ends.
 
         Returns
         -------
@@ -185,7 +188,8 @@ class Run(Record):
         Parameters
         ----------
         at : float or "stop"
-            [s] The instant; "stop" is that of the diagnosis.
+            [s] The instant; "stop" is that of the diagnosis. The belt begins with the end of the
+            step that reaches it.
         grousers : bool
             Whether the belt has grousers that travel with it, as `GrouserBeltTrack` has: as high as
             those of the track, at the pitch of the outline. For gear wheels and shoes that is the

@@ -42,7 +42,7 @@ class State:
     flipper_angles : ndarray, shape (k,)
         [rad] Of the flippers at each of k ends, front first, relative to the chassis, upwards > 0.
     contacts : Table
-        Contacts at this instant, with the forces of the last time step.
+        Contacts at this instant, with the forces of the last step.
     outcome : Outcome or None
         The outcome, once it is certain.
     """
@@ -104,7 +104,8 @@ class Simulation:
         Parameters
         ----------
         duration : float
-            [s] By how much, rounded to whole time steps.
+            [s] By how much; the last step ends there. In pieces of other lengths the steps are
+            others, and the state differs a little.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""How finely to step a chain of shoes: gaps, height and rates over time step and substeps."""
+"""How finely to step a chain of shoes: gaps, height and rates over accuracies."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from crawler2d.sweeps.sweep import sweep
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["HEIGHTS", "STEPS", "ChainStep", "chain_steps", "chain_steps_text"]
+__all__ = ["ACCURACIES", "HEIGHTS", "ChainStep", "chain_steps", "chain_steps_text"]
 
-STEPS = tuple((1e-3 * step, substeps) for step in (0.5, 1.0, 2.0) for substeps in (1, 2, 4))
-"""Time step [s] and substeps."""
+ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
+"""[m] Of the solver."""
 HEIGHTS = (0.11,)
 """[m] Heights of the steps; the chain of 22 shoes clears about half of the runs."""
 
@@ -34,11 +34,12 @@ _FLAT, _STEADY = 10.0, 3.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainStep:
-    """One time step and number of substeps."""
+    """How the chain does with one accuracy of the solver."""
 
-    time_step: float
-    """[s]"""
-    substeps: int
+    accuracy: float
+    """[m]"""
+    step: float
+    """[s] Mean length of a step, over all runs over the steps."""
     flat_gap: float
     """[m] Largest gap of a pin on flat ground."""
     gap: float
@@ -58,7 +59,7 @@ def chain_steps(
     repeats: int = 40,
     seed: int = 0,
     threads: int | None = None,
-    steps: Sequence[tuple[float, int]] = STEPS,
+    accuracies: Sequence[float] = ACCURACIES,
 ) -> list[ChainStep]:
     """Run the Engineer's chain of 22 shoes on flat ground and steps, with the same draws.
 
@@ -68,20 +69,20 @@ def chain_steps(
         [m] Heights of the steps.
     repeats, seed, threads : int
         See `sweep`.
-    steps : sequence of (float, int)
-        Time steps [s] and substeps.
+    accuracies : sequence of float
+        [m] Of the solver.
 
     Returns
     -------
     list of ChainStep
-        One for each of `steps`.
+        One for each of `accuracies`.
     """
     robot = engineer(flippers=None, track=SegmentalTrack(shoe_count=22))
     drive = Drive(speed=0.4)
     base = Scenario(robot, terrains.step(heights[0], friction=_FRICTION), drive=drive)
     table = sweep(
         base,
-        {("solver.time_step", "solver.substeps"): list(steps), "terrain.height": list(heights)},
+        {"solver.accuracy": list(accuracies), "terrain.height": list(heights)},
         repeats=repeats,
         seed=seed,
         wall_time=True,
@@ -89,40 +90,36 @@ def chain_steps(
     )
     level = Scenario(robot, terrains.flat(friction=_FRICTION), drive=drive, duration=_FLAT)
     rides = simulate_many(
-        [
-            level.replace({"solver.time_step": step, "solver.substeps": substeps})
-            for step, substeps in steps
-        ],
-        threads=threads,
+        [level.replace({"solver.accuracy": accuracy}) for accuracy in accuracies], threads=threads
     )
     rates = rate(table)
     found = []
-    for index, ((step, substeps), ride) in enumerate(zip(steps, rides, strict=True)):
-        own = table.isel(time_step_substeps=index)
-        cells = rates.isel(time_step_substeps=index)
+    for accuracy, ride in zip(accuracies, rides, strict=True):
+        own, cells = table.sel(accuracy=accuracy), rates.sel(accuracy=accuracy)
+        simulated = own["time"].sum().item()
         height = ride.position[ride.time > _STEADY, 1]
         figures = (cells[name].to_numpy().tolist() for name in ("rate", "low", "high"))
         found.append(
             ChainStep(
-                time_step=step,
-                substeps=substeps,
+                accuracy=accuracy,
+                step=simulated / own["steps"].sum().item(),
                 flat_gap=ride.metrics["max_pin_gap"],
                 gap=own["max_pin_gap"].max().item(),
                 lowest=float(np.min(height)),
                 highest=float(np.max(height)),
                 cleared=tuple(zip(*figures, strict=True)),
-                cost=own["wall_time"].sum().item() / own["time"].sum().item(),
+                cost=own["wall_time"].sum().item() / simulated,
             )
         )
     return found
 
 
 def chain_steps_text(found: Sequence[ChainStep], heights: Sequence[float] = HEIGHTS) -> str:
-    """Write one row per time step and number of substeps."""
+    """Write one row per accuracy."""
     rows = [
         (
-            f"{1e3 * row.time_step:g}",
-            str(row.substeps),
+            f"{1e6 * row.accuracy:g}",
+            f"{1e3 * row.step:.2f}",
             f"{1e6 * row.flat_gap:.1f}",
             f"{1e6 * row.gap:.0f}",
             f"{1e3 * row.lowest:.2f} to {1e3 * row.highest:.2f}",
@@ -132,7 +129,7 @@ def chain_steps_text(found: Sequence[ChainStep], heights: Sequence[float] = HEIG
         for row in found
     ]
     head = (
-        *("step [ms]", "substeps", "gap, flat [um]", "gap, steps [um]", "height, flat [mm]"),
+        *("accuracy [um]", "step [ms]", "gap, flat [um]", "gap, steps [um]", "height, flat [mm]"),
         *(f"cleared {1e3 * height:.0f} mm" for height in heights),
         "cost [ms/s]",
     )

@@ -97,17 +97,11 @@ def highest_steps(
     for name, robot in flipper_robots().items():
         drive = Drive(speed=0.4, gait=None if robot.flippers is None else Climb())
         base = Scenario(robot, terrains.step(heights[0], friction=_FRICTION), drive=drive)
-        default = base.solver.time_step
-        points = {
-            label: (model.track, model.time_step or default) for label, model in models.items()
-        }
         over: dict[Any, Any] = {
-            ("robot.track", "solver.time_step"): points,
+            "robot.track": {label: model.track for label, model in models.items()},
             "terrain.height": list(heights),
         }
-        table = sweep(
-            base, over, repeats=repeats, seed=seed, threads=threads, on_error="record"
-        ).rename({"track_time_step": "track"})
+        table = sweep(base, over, repeats=repeats, seed=seed, threads=threads, on_error="record")
         rates = rate(table)["rate"]
         for label, model in models.items():
             shares = rates.sel(track=label).to_numpy()

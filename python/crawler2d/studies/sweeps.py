@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FULL", "QUICK", "Design", "Study", "robots_of_the_study"]
 
-# The fields that a model of the study sets together.
-_TRACK_AND_STEP = ("robot.track", "solver.time_step")
 # [-] An estimate, like those of the robot; the same everywhere.
 _FRICTION = 0.9
 
@@ -167,12 +165,8 @@ class Study:
         )
 
     def _tracks(self) -> dict[Any, Any]:
-        """Return the axis of models, each with the time step that it needs."""
-        default = self.base.solver.time_step
-        points = {
-            name: (model.track, model.time_step or default) for name, model in self.models.items()
-        }
-        return {_TRACK_AND_STEP: points}
+        """Return the axis of models."""
+        return {"robot.track": {name: model.track for name, model in self.models.items()}}
 
     def _sweep(
         self,
@@ -182,7 +176,7 @@ class Study:
         *,
         counterfactual: bool = False,
     ) -> xarray.Dataset:
-        table = sweep(
+        return sweep(
             base,
             over,
             repeats=repeats,
@@ -193,4 +187,3 @@ class Study:
             counterfactual=counterfactual,
             wall_time=True,
         )
-        return table.rename({"track_time_step": "track"}) if _TRACK_AND_STEP in over else table

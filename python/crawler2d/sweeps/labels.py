@@ -99,7 +99,13 @@ def _text(value: Any) -> str:
     shown = []
     for field in dataclasses.fields(value):  # type: ignore[arg-type]
         inner = getattr(value, field.name)
-        if inner != field.default:
+        if inner != field.default and _counts(value, field):
             text = _text(inner)
             shown.append(f"{field.name}={text}" if field.kw_only else text)
     return f"{type(value).__name__}({', '.join(shown)})"
+
+
+def _counts(value: Any, field: dataclasses.Field[Any]) -> bool:
+    """Whether the value would be another one with the default of a field."""
+    is_required = field.default is dataclasses.MISSING
+    return is_required or dataclasses.replace(value, **{field.name: field.default}) != value

@@ -2,12 +2,12 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use super::Dynamics;
 use super::arm::Arm;
 use super::chain::{Chain, Stand};
 use super::phase::Phase;
 use super::row::{Link, Row};
 use super::state::{State, Twist};
+use super::{Dynamics, SetPoint};
 use crate::geometry::Vector;
 
 /// [m] A shoe this close to the guide may come to rest on it within a step.
@@ -91,15 +91,16 @@ impl Dynamics {
         }
     }
 
-    /// Advances by a piece of `h` [s].
+    /// Advances by a step of `h` [s].
     ///
     /// The solve uses a frame moving with the chassis: pins are so stiff that rounding errors of a velocity
     /// common to all bodies would act as forces.
-    pub(super) fn substep_of_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
+    pub(super) fn step_of_chains(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
+        self.place_flippers(state, 0.5 * h);
         let soft = self.softness(h);
         let frame = state.velocity;
         state.add_velocity(-frame);
-        let mut phase = self.start_phase(state, set_point, h);
+        let mut phase = self.start_phase(state, set_point.end, h);
         phase.frame = frame;
         self.start_chains(state, h);
         for row in &mut self.rows {
@@ -111,8 +112,9 @@ impl Dynamics {
         let lost = self.momentum_given(&phase) - self.momentum(state);
         self.end_phase(state, phase);
         state.add_velocity(frame + lost / self.model.total_mass());
+        self.moved.copy(state);
         self.move_on(state, h);
-        self.move_chains(state, set_point, h);
+        self.move_chains(state, set_point.end, h);
     }
 
     /// [N s] Momentum of the robot after a piece by the impulses of weight and ground.

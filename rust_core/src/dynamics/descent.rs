@@ -29,9 +29,11 @@ impl Dynamics {
     pub(super) fn descend(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.effort.descents += 1;
         self.freeze_limits();
+        self.set_servos(state, phase);
         let off = self.go_down(state, phase);
         self.obey_coulombs_law();
-        if self.switch_motors(state, phase) {
+        self.end_servos(state, phase);
+        if !self.chains.is_empty() && self.switch_motors(state, phase) {
             self.set_actions(state, phase);
             return false;
         }
@@ -40,23 +42,12 @@ impl Dynamics {
 
     /// Ends a search in which the limits never agreed: keeps the last impulses unless they gain energy.
     pub(super) fn end_search(&mut self, state: &mut State, phase: &Phase) {
-        if self.limit_motors(state, phase) {
-            self.set_actions(state, phase);
-        }
         // With chains or flippers the energy is not summed up; giving way is always safe.
         if self.model.is_one_body() {
             self.balance(state, phase);
         }
         if !self.model.is_one_body() || self.energy_of_contacts(state) > 0.0 {
             self.give_way(state, phase);
-            // Each round one more motor may reach its limit.
-            for _ in 0..self.motors.len() + self.flippers.len() {
-                if !self.limit_motors(state, phase) {
-                    break;
-                }
-                self.set_actions(state, phase);
-                self.give_way(state, phase);
-            }
         }
     }
 
@@ -64,6 +55,7 @@ impl Dynamics {
     /// than the law allows, but gain no energy.
     fn give_way(&mut self, state: &mut State, phase: &Phase) {
         self.freeze_limits();
+        self.set_servos(state, phase);
         for _ in 0..SHRINKINGS {
             self.go_down(state, phase);
             let mut fits = true;
@@ -80,6 +72,16 @@ impl Dynamics {
             }
         }
         self.obey_coulombs_law();
+        self.end_servos(state, phase);
+        // The drives of chains are no servos, and each round one more may reach its limit.
+        for _ in 0..self.chains.len() {
+            if !self.limit_motors(state, phase) {
+                break;
+            }
+            self.set_actions(state, phase);
+            self.go_down(state, phase);
+            self.obey_coulombs_law();
+        }
     }
 
     /// Limits friction by the normal impulses that the contacts had last.
@@ -130,7 +132,7 @@ impl Dynamics {
 
     /// Sets each contact's dampers for the current velocities; returns whether none has changed.
     fn choose_dampers(&mut self, state: &State) -> bool {
-        let mut same = true;
+        let mut same = self.choose_servos(state);
         for row in self.rows.iter_mut().filter(|row| row.bears) {
             let frozen = row.frozen_dampers(row.speeds(state));
             same &= frozen == row.frozen;
@@ -151,6 +153,7 @@ impl Dynamics {
             }
         }
         self.add_push();
+        self.add_servos();
     }
 
     /// The share of a change up to which the potential falls.
@@ -169,6 +172,11 @@ impl Dynamics {
                 }
             });
         }
+        self.kinks_of_servos(state, change, |share| {
+            if 0.0 < share && share < 1.0 {
+                kinks.push(share);
+            }
+        });
         kinks.sort_unstable_by(f64::total_cmp);
         let falls = |share: &f64| self.slope(state, change, phase, *share) <= 0.0;
         let next = kinks.partition_point(falls);
@@ -213,6 +221,7 @@ impl Dynamics {
         slope
             + self.slope_of_chains(state, change, phase, share)
             + self.slope_of_flippers(state, change, phase, share)
+            + self.slope_of_servos(state, change, share)
     }
 }
 

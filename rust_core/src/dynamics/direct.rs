@@ -31,14 +31,9 @@ impl Dynamics {
         for _ in 0..AT_ONCE {
             self.effort.rounds += 1;
             self.assemble(phase);
-            let Some((velocity, turn)) = self.solve_system() else {
+            if self.take_solution(state).is_none() {
                 return false;
-            };
-            (state.velocity, state.angular_velocity) = (velocity, turn);
-            for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
-                drive.spin = spin.value;
             }
-            self.take_flippers(state);
             let mut change = self.rows_follow_velocities(state);
             let fits = self.mend();
             if let Some(push) = &mut self.push {
@@ -59,6 +54,16 @@ impl Dynamics {
         }
         self.rows.iter_mut().for_each(Row::unsettle);
         false
+    }
+
+    /// Solves the system and sets the velocities; none if the constraints contradict each other.
+    pub(super) fn take_solution(&mut self, state: &mut State) -> Option<()> {
+        (state.velocity, state.angular_velocity) = self.solve_system()?;
+        for (drive, spin) in state.drives.iter_mut().zip(&self.system.spins) {
+            drive.spin = spin.value;
+        }
+        self.take_flippers(state);
+        Some(())
     }
 
     /// Updates the rows' impulses to match the velocities; returns the largest error of a velocity [m/s].

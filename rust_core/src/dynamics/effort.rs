@@ -7,7 +7,11 @@ use serde::{Deserialize, Serialize};
 /// Number of solves, and of their parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Effort {
-    /// Searches for impulses that satisfy all constraints: two per piece of a substep, one with chains.
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps taken again with a shorter one, because their error was too large.
+    pub repeated_steps: u64,
+    /// Searches for impulses that satisfy all constraints: two a step, one with chains.
     pub solves: u64,
     /// Linear systems solved in direct searches.
     pub rounds: u64,
@@ -21,6 +25,8 @@ impl Effort {
     /// The sum with further work.
     pub(crate) fn plus(self, more: Self) -> Self {
         Self {
+            steps: self.steps + more.steps,
+            repeated_steps: self.repeated_steps + more.repeated_steps,
             solves: self.solves + more.solves,
             rounds: self.rounds + more.rounds,
             descents: self.descents + more.descents,

@@ -20,14 +20,26 @@ use super::system::Acts;
 use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 
+/// [s] Time constant with which arms approach the commanded angle. If they aimed at it in each step, the commanded
+/// rate would be the rounding of the angle over the length of the step, and their motors would chase it.
+const APPROACH_TIME: f64 = 0.01;
+
 impl Dynamics {
-    /// Commands angles of the flippers [rad], upwards > 0, which they approach at their rate limit.
-    pub(crate) fn command_flippers(&mut self, state: &State, angles: [f64; 2]) {
-        let dt = self.solver.time_step;
+    /// Commands angles of the flippers [rad], upwards > 0, and their rates [rad/s], front and rear, for a step of
+    /// `h` [s].
+    pub(crate) fn command_flippers(
+        &mut self,
+        state: &State,
+        angles: [f64; 2],
+        rates: [f64; 2],
+        h: f64,
+    ) {
         for (k, arm) in self.flippers.iter_mut().enumerate() {
-            let target = angles[usize::from(arm.rule.end == End::Rear)];
-            let way = arm.rule.sign() * target - state.over_chassis(k);
-            arm.rate = (way / dt).clamp(-arm.rule.rate_limit, arm.rule.rate_limit);
+            let end = usize::from(arm.rule.end == End::Rear);
+            let sign = arm.rule.sign();
+            let way = sign * angles[end] - state.over_chassis(k);
+            let rate = way / h.max(APPROACH_TIME) + sign * rates[end];
+            arm.rate = rate.clamp(-arm.rule.rate_limit, arm.rule.rate_limit);
         }
     }
 
@@ -173,7 +185,7 @@ impl Dynamics {
         for k in 0..self.flippers.len() {
             let arm = &self.flippers[k];
             let next = match arm.motor {
-                Motor::Free => Motor::Free,
+                none @ (Motor::Free | Motor::Servo) => none,
                 Motor::Holds => {
                     let limit = arm.given(1.0, phase) * (1.0 + AT_LIMIT);
                     Motor::within(self.flipper_impulse(state, phase, k), limit)
@@ -194,10 +206,10 @@ impl Dynamics {
         switched
     }
 
-    /// Adds the impulses of a piece to the means of a step of `dt` [s].
-    pub(super) fn collect_flippers(&self, state: &mut State, phase: &Phase, dt: f64) {
+    /// Stores the mean torques of the motors over a step.
+    pub(super) fn collect_flippers(&self, state: &mut State, phase: &Phase) {
         for k in 0..self.flippers.len() {
-            state.flippers[k].torque += self.flipper_impulse(state, phase, k) / dt;
+            state.flippers[k].torque = self.flipper_impulse(state, phase, k) / phase.elapsed;
         }
     }
 

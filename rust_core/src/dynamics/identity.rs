@@ -36,9 +36,20 @@ pub(super) struct Identity {
     given: u64,
     /// Contacts that have opened, the oldest first.
     lost: Vec<Lost>,
-    /// Which contacts of the last step have been matched; used only within a step.
+    /// What a step has recognised; it counts once the step is kept.
     #[serde(skip)]
+    found: Found,
+}
+
+/// What was recognised in a step.
+#[derive(Clone, Debug, Default)]
+struct Found {
+    /// The last number given.
+    given: u64,
+    /// Which contacts of the last step are still there.
     taken: Vec<bool>,
+    /// Which contacts that had opened have closed again.
+    again: Vec<bool>,
 }
 
 /// A contact that has opened.
@@ -51,26 +62,45 @@ struct Lost {
 }
 
 impl Identity {
-    /// Numbers the contacts of a step, `dt` [s] after the `last` one; both are sorted by part and x.
-    pub(super) fn recognise(&mut self, last: &[LoadedContact], contacts: &mut [Contact], dt: f64) {
-        for lost in &mut self.lost {
-            lost.age += dt;
-        }
-        self.lost.retain(|lost| lost.age < REMEMBERED);
-        self.taken.clear();
-        self.taken.resize(last.len(), false);
+    /// Numbers the contacts of a step in which nothing moves farther than `travel` [m] after the `last` one; both are
+    /// sorted by part and x.
+    pub(super) fn recognise(
+        &mut self,
+        last: &[LoadedContact],
+        contacts: &mut [Contact],
+        travel: f64,
+    ) {
+        let near = SAME_PLACE.max(2.0 * travel);
+        let found = &mut self.found;
+        found.given = self.given;
+        found.taken.clear();
+        found.taken.resize(last.len(), false);
+        found.again.clear();
+        found.again.resize(self.lost.len(), false);
         let mut from = 0;
         for contact in contacts {
-            if let Some(known) = self.take_nearest(last, &mut from, contact) {
+            if let Some(known) = self.take_nearest(last, &mut from, contact, near) {
                 (contact.number, contact.began) = (known.number, known.began);
             } else {
                 contact.number = self.find_again(contact).unwrap_or_else(|| {
-                    self.given += 1;
-                    self.given
+                    self.found.given += 1;
+                    self.found.given
                 });
             }
         }
-        let opened = last.iter().zip(&self.taken).filter(|(_, taken)| !**taken);
+    }
+
+    /// Keeps what was recognised in a step of `h` [s] after the `last` one.
+    pub(super) fn keep(&mut self, last: &[LoadedContact], h: f64) {
+        let found = &self.found;
+        self.given = found.given;
+        for lost in &mut self.lost {
+            lost.age += h;
+        }
+        let mut again = found.again.iter();
+        self.lost
+            .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED);
+        let opened = last.iter().zip(&found.taken).filter(|(_, taken)| !**taken);
         self.lost.extend(opened.map(|(l, _)| Lost {
             contact: l.contact,
             age: 0.0,
@@ -86,26 +116,27 @@ impl Identity {
         last: &[LoadedContact],
         from: &mut usize,
         contact: &Contact,
+        near: f64,
     ) -> Option<Contact> {
         let place = (contact.part, contact.point.x);
-        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + SAME_PLACE) < place;
+        let behind = |l: &LoadedContact| (l.contact.part, l.contact.point.x + near) < place;
         while last.get(*from).is_some_and(behind) {
             *from += 1;
         }
         let within = (*from..last.len()).take_while(|i| {
             let known = &last[*i].contact;
-            (known.part, known.point.x - SAME_PLACE) <= place
+            (known.part, known.point.x - near) <= place
         });
-        let free = within.filter(|i| !self.taken[*i]);
-        let nearest = nearest(free.map(|i| (i, last[i].contact)), contact)?;
-        self.taken[nearest] = true;
+        let free = within.filter(|i| !self.found.taken[*i]);
+        let nearest = nearest(free.map(|i| (i, last[i].contact)), contact, near)?;
+        self.found.taken[nearest] = true;
         Some(last[nearest].contact)
     }
 
     /// Takes the number of the nearest contact that has opened, if it is near enough.
     fn find_again(&mut self, contact: &Contact) -> Option<u64> {
         let lost = self.lost.iter().map(|lost| lost.contact).enumerate();
-        let of_part = lost.filter(|(_, lost)| lost.part == contact.part);
+        let of_part = lost.filter(|(i, lost)| lost.part == contact.part && !self.found.again[*i]);
         let both_ends = of_part.flat_map(|(i, lost)| {
             let closed = Contact {
                 point: lost.began,
@@ -113,8 +144,9 @@ impl Identity {
             };
             [(i, lost), (i, closed)]
         });
-        let nearest = nearest(both_ends, contact)?;
-        Some(self.lost.remove(nearest).contact.number)
+        let nearest = nearest(both_ends, contact, SAME_PLACE)?;
+        self.found.again[nearest] = true;
+        Some(self.lost[nearest].contact.number)
     }
 
     /// Whether these can be the contacts of the last step; no two known contacts may share a number.
@@ -135,12 +167,16 @@ impl Identity {
     }
 }
 
-/// The nearest known contact of the same part, if it is at the same place.
-fn nearest(known: impl Iterator<Item = (usize, Contact)>, contact: &Contact) -> Option<usize> {
+/// The nearest known contact of the same part, if it is nearer than `near` [m].
+fn nearest(
+    known: impl Iterator<Item = (usize, Contact)>,
+    contact: &Contact,
+    near: f64,
+) -> Option<usize> {
     let alike = known.filter(|(_, c)| c.normal.dot(contact.normal) > SAME_NORMAL);
     alike
         .map(|(i, c)| (i, (c.point - contact.point).length()))
-        .filter(|(_, apart)| *apart < SAME_PLACE)
+        .filter(|(_, apart)| *apart < near)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)
 }

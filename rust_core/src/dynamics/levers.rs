@@ -22,6 +22,11 @@ pub(crate) struct Direction {
 }
 
 impl Carried {
+    /// Whether its drive moves it at all, other than along the surface.
+    pub(super) fn is_moving(&self) -> bool {
+        self.turn != 0.0 || self.along != Vector::ZERO
+    }
+
     /// [m] From the end of the arm to the contact, after the chassis has turned and the drive has run by `run`.
     pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
         let spoke = turned * self.spoke;

@@ -1,15 +1,16 @@
 //! The equations of motion: one body, drives that turn surfaces, and contacts with Coulomb friction.
 //!
-//! A substep is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
+//! A step is symmetric: half of the weight's impulse, the constraints, the motion, the other half, the
 //! constraints again. Free flight is therefore exact, and a constant load causes only a second-order error.
 //! Before the motion, constraints close gaps and push out of penetration; after it they do not: the soft step
 //! of Erin Catto's 2D solvers (2024). The speed of a surface is found together with the contact forces, so
 //! that its motor's force limit acts on the net traction within the step.
 //!
-//! The equations: docs/physics.md, "A substep".
+//! The equations: docs/physics.md, "A step".
 
 mod action;
 mod arm;
+mod between;
 mod chain;
 mod chains;
 mod change;
@@ -24,12 +25,16 @@ mod impulses;
 mod law;
 mod levers;
 mod loaded;
+mod local_error;
 mod motor;
 mod motors;
 mod newton;
 mod phase;
 mod push;
 mod row;
+mod servo;
+mod servos;
+mod set_point;
 mod softness;
 mod solve;
 mod state;
@@ -45,11 +50,11 @@ use motor::Motor;
 use phase::Phase;
 use push::Push;
 use row::Row;
+use servo::Servo;
 use softness::Softness;
 use system::System;
 
 use crate::contact::Contact;
-use crate::error::SimulationError;
 use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
@@ -61,6 +66,7 @@ pub(crate) use impulses::Impulses;
 pub(crate) use levers::{Direction, Levers};
 pub(crate) use loaded::LoadedContact;
 pub(crate) use push::push_axis;
+pub(crate) use set_point::SetPoint;
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
@@ -68,16 +74,6 @@ pub(crate) use state::{
 /// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
 /// sustain. Friction that balance does not require fades with this time constant.
 const SELF_STRESS_TIME: f64 = 0.1;
-/// Pieces of a substep at most; a part that strikes the ground takes three.
-const MOST_PIECES: u32 = 50;
-/// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
-/// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
-const COLLISION_SPEED: f64 = 0.001;
-/// [s] Length of the piece with a collision. What motor and weight do in the piece in which a wheel strikes an
-/// edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which a robot just
-/// climbs by 1 %, this value shifts it by less than 0.1 %.
-const COLLISION_SUBSTEP: f64 = 2e-5;
-
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
     model: Model,
@@ -89,6 +85,8 @@ pub(crate) struct Dynamics {
     /// The push of a track that is modelled as a force only.
     push: Option<Push>,
     motors: Vec<Motor>,
+    /// The motors in a descent.
+    servos: Vec<Servo>,
     /// [N m s] Angular impulse of the contacts on each drive in this piece.
     torques: Vec<f64>,
     /// [kg m^2] Moment of inertia of the chassis with the drives that turn with it.
@@ -99,8 +97,12 @@ pub(crate) struct Dynamics {
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
     shoes_a_chain: usize,
+    /// Speed of the fastest tip relative to the chassis, in units of the surface speed.
+    tip_speed: f64,
     phase: Phase,
     loaded: Vec<LoadedContact>,
+    /// The state of the last step with the velocities of its motion.
+    moved: State,
     identity: Identity,
     /// The solver's work in the last step.
     effort: Effort,
@@ -110,6 +112,7 @@ pub(crate) struct Dynamics {
 
 impl Dynamics {
     pub(crate) fn new(model: Model, frictions: Vec<f64>, gravity: f64, solver: Solver) -> Self {
+        let moved = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
         let has_motor = |k| k < model.motors && model.drive_force > 0.0;
         let motor = |k| {
             if has_motor(k) {
@@ -120,10 +123,12 @@ impl Dynamics {
         };
         Self {
             motors: (0..model.drives).map(motor).collect(),
+            servos: Vec::new(),
             torques: vec![0.0; model.drives],
             inertia: model.moment_of_inertia,
             system: System::new(model.drives, model.flippers.len()),
             kinks: Vec::new(),
+            tip_speed: model.tip_speed(),
             shoes_a_chain: model.chains.first().map_or(1, |chain| chain.path.count),
             flippers: model.flippers.iter().cloned().map(Arm::new).collect(),
             chains: model.chains.iter().cloned().map(Chain::new).collect(),
@@ -135,6 +140,7 @@ impl Dynamics {
             solver,
             rows: Vec::new(),
             loaded: Vec::new(),
+            moved,
             identity: Identity::default(),
             effort: Effort::default(),
             outer_force: Vector::ZERO,
@@ -155,118 +161,135 @@ impl Dynamics {
         &self.model
     }
 
-    /// Gives the contacts of the next step their numbers.
-    pub(crate) fn recognise(&mut self, contacts: &mut [Contact]) {
-        let dt = self.solver.time_step;
-        self.identity.recognise(&self.loaded, contacts, dt);
+    /// Gives the contacts of a step in which nothing moves farther than `travel` [m] their numbers.
+    pub(crate) fn recognise(&mut self, contacts: &mut [Contact], travel: f64) {
+        self.identity.recognise(&self.loaded, contacts, travel);
     }
 
     /// Numbers contacts that another model of the robot takes over; the next step continues them, without
     /// forces.
     pub(crate) fn take_over(&mut self, contacts: &mut [Contact]) {
-        self.recognise(contacts);
+        self.recognise(contacts, 0.0);
+        self.identity.keep(&self.loaded, 0.0);
         self.loaded = contacts.iter().copied().map(LoadedContact::open).collect();
     }
 
-    /// Advances the state by one step towards the surface speed `set_point`.
-    ///
-    /// The contacts are those in the middle of the step ([`State::pose_after`] half of it), numbered by
-    /// [`Dynamics::recognise`].
-    pub(crate) fn advance(
-        &mut self,
-        state: &mut State,
-        contacts: &[Contact],
-        set_point: f64,
-        step: u64,
-    ) -> Result<(), SimulationError> {
-        let dt = self.solver.time_step;
-        self.effort = Effort::default();
-        self.prepare(state, contacts);
-        for drive in &mut state.drives {
-            (drive.force, drive.traction) = (0.0, 0.0);
-        }
-        for flipper in &mut state.flippers {
-            flipper.torque = 0.0;
-        }
-        let substep = dt / f64::from(self.solver.substeps);
-        for _ in 0..self.solver.substeps {
-            let (mut left, mut pieces) = (substep, 0);
-            while left > 0.0 {
-                pieces += 1;
-                let (h, strikes) = if pieces < MOST_PIECES {
-                    self.piece(state, left)
-                } else {
-                    (left, false)
-                };
-                self.substep(state, set_point, h);
-                if !strikes {
-                    self.remember(h);
+    /// Prepares a step of `h` [s]. The contacts are those in its middle ([`State::pose_after`] half of it), numbered
+    /// by [`Dynamics::recognise`].
+    pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], h: f64) {
+        let half = 0.5 * h;
+        let fading = libm::exp(-h / SELF_STRESS_TIME);
+        self.rows.clear();
+        let mut last = Numbered::new(&self.loaded);
+        for contact in contacts {
+            let last = last.get(contact.number);
+            let mut row = match self.model.parts[contact.part].mount {
+                Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
+                Mount::Chassis | Mount::Flipper(_) => {
+                    Row::new(contact, last, state, &self.model, half)
                 }
-                left -= h;
-            }
+            };
+            let lane = self.model.parts[contact.part].lane;
+            row.friction = row.friction.min(self.frictions[lane]);
+            row.friction_guess *= fading;
+            self.rows.push(row);
         }
-        self.report(state, contacts, dt);
-        if state.is_finite() {
-            Ok(())
+        self.rest_on_guides(state, half);
+    }
+
+    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if nothing changes
+    /// until then; infinite if none does, and with chains: their shoes hit the guide all the time, but are light and
+    /// so are their impacts.
+    pub(crate) fn next_strike(&self, state: &State, (h, speed): (f64, f64)) -> f64 {
+        if !self.chains.is_empty() {
+            return f64::INFINITY;
+        }
+        let strike = |row: &Row| row.strike(state, &self.model, (h, speed));
+        let times = self.rows.iter().filter_map(strike);
+        times.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Advances the state by the prepared step of `h` [s].
+    pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
+        self.effort = Effort::default();
+        if self.chains.is_empty() {
+            self.symmetric_step(state, set_point, h);
         } else {
-            Err(SimulationError {
-                step,
-                body: "the robot".to_owned(),
-            })
+            self.step_of_chains(state, set_point, h);
         }
     }
 
-    /// [s] Length of the next piece, at most `left`, and whether something strikes the ground in it.
-    ///
-    /// A piece ends just before a part strikes the ground; the next, with the impact, is short.
-    fn piece(&self, state: &State, left: f64) -> (f64, bool) {
-        // A chain hits its guide all the time, but its shoes are light and so are their impacts.
-        if !self.chains.is_empty() {
-            return (left, false);
+    /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that
+    /// starts from the forces before it.
+    pub(crate) fn keep(&mut self, state: &State, contacts: &[Contact], h: f64, strikes: bool) {
+        self.identity.keep(&self.loaded, h);
+        if !strikes {
+            self.remember(h);
         }
-        let until_contact = |row: &Row| {
-            let speed = -row.opening_speed(state);
-            (speed > COLLISION_SPEED).then(|| row.gap / speed)
-        };
-        let times = self.rows.iter().filter_map(until_contact);
-        let first = times.fold(f64::INFINITY, f64::min);
-        if first > left {
-            return (left, false);
-        }
-        let before = first - 0.5 * COLLISION_SUBSTEP;
-        let (h, strikes) = if before > COLLISION_SUBSTEP {
-            (before, false)
-        } else {
-            (COLLISION_SUBSTEP, true)
-        };
-        // Leaves no remainder shorter than a collision.
-        if left - h < COLLISION_SUBSTEP {
-            (left, strikes)
-        } else {
-            (h, strikes)
-        }
+        self.report(state, contacts, h);
     }
 
-    /// Advances by a piece of `h` [s].
-    fn substep(&mut self, state: &mut State, set_point: f64, h: f64) {
-        if !self.chains.is_empty() {
-            self.substep_of_chains(state, set_point, h);
-            return;
-        }
+    fn symmetric_step(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
         let (soft, half) = (self.softness(h), 0.5 * h);
-        let mut phase = self.start_phase(state, set_point, half);
+        let before = self.momentum_at(state);
+        self.place_flippers(state, half);
+        let mut phase = self.start_phase(state, set_point.middle, half);
         for row in &mut self.rows {
             row.close(h, soft, self.solver.max_push_speed);
         }
         self.guess(half);
         self.solve(state, &phase);
+        self.moved.copy(state);
         self.move_on(state, h);
         phase.velocity += self.kick(half);
         self.pull_flippers(state, phase.angular_velocity, half);
-        phase.elapsed = h;
+        (phase.set_point, phase.elapsed) = (set_point.end, h);
         self.guess_more(half);
         self.solve(state, &phase);
         self.end_phase(state, phase);
+        if !self.flippers.is_empty() {
+            // The solve has the arms where they are in the middle of the step; what that loses, a third-order
+            // error, is returned, so that forces and change of momentum agree to the last digit.
+            let mass = self.model.total_mass();
+            let of_weight = Vector::new(0.0, -mass * self.gravity);
+            let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground();
+            let lost = given - self.momentum_at(state);
+            state.velocity += lost / mass;
+        }
+    }
+
+    /// [N s] Momentum of a robot without chains, with its arms where they are now.
+    fn momentum_at(&mut self, state: &State) -> Vector {
+        self.place_flippers(state, 0.0);
+        self.momentum(state)
+    }
+
+    /// [N s] Impulse of the ground in this step.
+    fn impulse_of_ground(&self) -> Vector {
+        let of_row = |row: &Row| {
+            let [n, t] = &row.actions;
+            n.unit * row.normal_impulse + t.unit * row.friction_impulse
+        };
+        let of_push = |push: &Push| push.action.unit * push.impulse;
+        self.rows.iter().map(of_row).sum::<Vector>()
+            + self.push.as_ref().map_or(Vector::ZERO, of_push)
+    }
+
+    /// Goes back to before a step that was not kept.
+    pub(crate) fn rewind(&mut self) {
+        self.chains.iter_mut().for_each(Chain::rewind);
+    }
+
+    /// [m/s] Upper bound of the speed of any point of the outline; `reach` is the farthest from the centre of mass [m].
+    pub(crate) fn fastest(&self, state: &State, reach: f64) -> f64 {
+        let speeds = (0..state.drives.len()).map(|k| state.track_speed(&self.model, k).abs());
+        let surface = speeds.fold(0.0, f64::max);
+        let shoes = state.shoes.iter().map(|shoe| {
+            let pitch = self.model.chains[0].path.pitch;
+            shoe.twist.velocity.length() + pitch * shoe.twist.turn.abs()
+        });
+        let body = state.fastest(reach) + self.tip_speed * surface;
+        shoes.fold(body, f64::max)
     }
 
     fn softness(&self, h: f64) -> Softness {
@@ -310,34 +333,11 @@ impl Dynamics {
     }
 
     fn end_phase(&mut self, state: &mut State, phase: Phase) {
-        self.collect(state, &phase, self.solver.time_step);
+        self.collect(state, &phase);
         self.phase = phase;
     }
 
-    /// Turns contacts into rows, with the impulses that they had in the last step.
-    fn prepare(&mut self, state: &State, contacts: &[Contact]) {
-        let half = 0.5 * self.solver.time_step;
-        let fading = 1.0 - self.solver.time_step / SELF_STRESS_TIME;
-        self.rows.clear();
-        let mut last = Numbered::new(&self.loaded);
-        for contact in contacts {
-            let last = last.get(contact.number);
-            let mut row = match self.model.parts[contact.part].mount {
-                Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
-                Mount::Chassis | Mount::Flipper(_) => {
-                    Row::new(contact, last, state, &self.model, half)
-                }
-            };
-            let lane = self.model.parts[contact.part].lane;
-            row.friction = row.friction.min(self.frictions[lane]);
-            row.friction_guess *= fading;
-            self.rows.push(row);
-        }
-        self.rest_on_guides(state, half);
-        self.place_flippers(state, half);
-    }
-
-    fn report(&mut self, state: &State, contacts: &[Contact], dt: f64) {
+    fn report(&mut self, state: &State, contacts: &[Contact], h: f64) {
         let mut loaded = std::mem::take(&mut self.loaded);
         loaded.clear();
         for (row, contact) in self.rows.iter().zip(contacts) {
@@ -346,8 +346,8 @@ impl Dynamics {
                     distance: row.gap,
                     ..*contact
                 },
-                normal_force: row.normal_total / dt,
-                friction_force: row.friction_total / dt,
+                normal_force: row.normal_impulse / h,
+                friction_force: row.friction_impulse / h,
                 surface_speed: row.slip(state),
                 normal_guess: row.normal_guess,
                 friction_guess: row.friction_guess,

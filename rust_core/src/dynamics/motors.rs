@@ -17,7 +17,7 @@ impl Dynamics {
         let mut switched = self.switch_flippers(state, phase, true);
         for k in 0..self.motors.len() {
             let next = match self.motors[k] {
-                Motor::Free => Motor::Free,
+                none @ (Motor::Free | Motor::Servo) => none,
                 Motor::Holds => self.at_limit(state, phase, k),
                 at_limit => {
                     let ahead = self.ahead(state, phase, k);

@@ -1,6 +1,6 @@
 //! The starting point of a solve.
 //!
-//! The equations: docs/physics.md, "A substep".
+//! The equations: docs/physics.md, "A step".
 
 use crate::geometry::Vector;
 use crate::robot::Model;

@@ -81,8 +81,6 @@ pub(super) struct Row {
     /// [N] Normal force to start from, the last one.
     pub normal_guess: f64,
     pub friction_guess: f64,
-    pub normal_total: f64,
-    pub friction_total: f64,
     /// [m] Current gap.
     pub gap: f64,
     /// Index among the shoe's rests.
@@ -95,6 +93,8 @@ pub(super) struct Row {
 struct Place {
     /// [m] Gap.
     gap: f64,
+    /// [m] Gap in the middle of the step, where the contact was found.
+    middle: f64,
     /// Its carrier.
     carrier: Carrier,
     /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
@@ -103,6 +103,17 @@ struct Place {
     carried: Carried,
     /// [m] Position of the drive.
     drive_position: f64,
+}
+
+impl Place {
+    /// [m] How far the touching point has moved, once its carrier is there and its drive has run to `run` [m].
+    fn moved(&self, now: &Carrier, run: f64) -> Vector {
+        let turned = Rotation::new(now.angle - self.carrier.angle);
+        let offset = self.carried.offset(turned, run - self.drive_position);
+        now.center - self.carrier.center + turned * self.arm + offset
+            - self.arm
+            - self.carried.spoke
+    }
 }
 
 impl Row {
@@ -134,6 +145,7 @@ impl Row {
         let turned = Rotation::new(middle.angle - now.angle);
         let mut start = Place {
             gap: contact.distance,
+            middle: contact.distance,
             carrier: now,
             arm: turned.inverse() * (arm - carried.spoke),
             carried: carried.before(turned, advance),
@@ -186,8 +198,6 @@ impl Row {
             center: (0.0, 0.0),
             normal_guess: 0.0,
             friction_guess: 0.0,
-            normal_total: 0.0,
-            friction_total: 0.0,
             gap: 0.0,
             place: 0,
             start: Place::default(),
@@ -284,12 +294,61 @@ impl Row {
             }
         };
         let s = &self.start;
-        let (now, then) = (state.carrier(mount, 0.0, model), &s.carrier);
-        let position = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
-        let turned = Rotation::new(now.angle - then.angle);
-        let offset = s.carried.offset(turned, position - s.drive_position);
-        let moved = now.center - then.center + turned * s.arm + offset - s.arm - s.carried.spoke;
-        self.gap = s.gap + self.normal.unit.dot(moved);
+        let now = state.carrier(mount, 0.0, model);
+        let run = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
+        self.gap = s.gap + self.normal.unit.dot(s.moved(&now, run));
+    }
+
+    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.
+    ///
+    /// A tip that a drive carries comes down and goes up again within a step: its gap is taken as a parabola through
+    /// those at the beginning, in the middle and at the end.
+    pub(super) fn strike(
+        &self,
+        state: &State,
+        model: &Model,
+        (h, speed): (f64, f64),
+    ) -> Option<f64> {
+        if !self.start.carried.is_moving() {
+            let closing = -self.opening_speed(state);
+            return (closing > speed).then(|| self.gap / closing);
+        }
+        let (start, middle) = (self.start.gap, self.start.middle);
+        let end = start + self.gained(state, model, h);
+        // gap = start - closing t + bend t^2
+        let bend = 2.0 * (start + end - 2.0 * middle) / (h * h);
+        let closing = (start - end) / h + bend * h;
+        if start <= 0.0 {
+            return (closing > speed).then_some(0.0);
+        }
+        let root = (closing * closing - 4.0 * bend * start).max(0.0).sqrt();
+        // At the root the gap closes by that much.
+        (root > speed && closing + root > 0.0).then(|| 2.0 * start / (closing + root))
+    }
+
+    /// [m] By how much the gap changes in a time [s] at the present velocities.
+    fn gained(&self, state: &State, model: &Model, time: f64) -> f64 {
+        let mount = match self.link {
+            Link::Flipper(k) => Mount::Flipper(k),
+            _ => Mount::Chassis,
+        };
+        let s = &self.start;
+        let then = state.carrier(mount, time, model);
+        let run = self.drive.map_or(0.0, |k| {
+            state.run_over(mount, k, model) + state.speed_over(mount, k, model) * time
+        });
+        self.normal.unit.dot(s.moved(&then, run))
+    }
+
+    /// [m] How much deeper in the ground the place was in the middle of the step than at either end, if nothing
+    /// bore there: the tip of a wheel that turns fast may come and go within a step.
+    pub(super) fn dip(&self) -> f64 {
+        let ends = self.start.gap.min(self.gap).min(0.0);
+        if self.normal_impulse > 0.0 {
+            0.0
+        } else {
+            (ends - self.start.middle).max(0.0)
+        }
     }
 
     /// Sets it up for the end of the motion: an open gap may just close, softly; a penetration is pushed out.

@@ -6,11 +6,13 @@
 use super::Dynamics;
 use super::action::Action;
 use super::chain::Chain;
+use super::damper::Damper;
 use super::motor::Motor;
 use super::phase::Phase;
 use super::push::push_axis;
 use super::row::{Admittance, Link, Row};
 use super::state::State;
+use super::system::Acts;
 use crate::geometry::Vector;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
@@ -37,9 +39,11 @@ impl Dynamics {
             self.effort.unresolved += 1;
             self.end_search(state, phase);
         }
+        // From the impulses, so that momentum is conserved to the last digit; with pins, the pins matter more.
         if self.model.is_one_body() {
-            // From the impulses, so that momentum is conserved to the last digit; with pins, the pins matter more.
             self.balance(state, phase);
+        } else if self.chains.is_empty() {
+            self.balance_with_flippers(state, phase);
         }
     }
 
@@ -123,6 +127,30 @@ impl Dynamics {
                 state.drives[k].spin =
                     phase.spins[k] + (self.torques[k] - of_motor) / self.model.drive_inertia(k);
             }
+        }
+    }
+
+    /// The same for a robot with flippers, whose rates hang together with the velocities.
+    fn balance_with_flippers(&mut self, state: &mut State, phase: &Phase) {
+        self.assemble_bodies(phase);
+        for i in 0..self.rows.len() {
+            let row = &self.rows[i];
+            let impulses = [row.normal_impulse, row.friction_impulse];
+            for (action, impulse) in row.actions.into_iter().zip(impulses) {
+                self.add(i, &action, &action, Damper::constant(impulse));
+            }
+        }
+        if let Some(push) = &mut self.push {
+            push.center = push.impulse;
+            let acts = Acts {
+                drive: Some(0),
+                ..Acts::default()
+            };
+            let impulse = Damper::constant(push.impulse);
+            self.system.add(&push.action, &push.action, acts, impulse);
+        }
+        if self.take_solution(state).is_some() {
+            self.turn_with_chassis(state, phase);
         }
     }
 
@@ -243,17 +271,14 @@ impl Dynamics {
         }
     }
 
-    /// Adds the impulses of a piece to the means of a step of `dt` [s].
-    pub(super) fn collect(&mut self, state: &mut State, phase: &Phase, dt: f64) {
-        for row in &mut self.rows {
-            row.normal_total += row.normal_impulse;
-            row.friction_total += row.friction_impulse;
-        }
+    /// Stores the mean forces of the motors over a step.
+    pub(super) fn collect(&mut self, state: &mut State, phase: &Phase) {
+        let h = phase.elapsed;
         for k in 0..state.drives.len() {
             let impulse = self.motor_impulse(state, phase, k);
-            state.drives[k].force += impulse / dt;
-            state.drives[k].traction += self.torques[k] / (self.model.drive_radius * dt);
+            state.drives[k].force = impulse / h;
+            state.drives[k].traction = self.torques[k] / (self.model.drive_radius * h);
         }
-        self.collect_flippers(state, phase, dt);
+        self.collect_flippers(state, phase);
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
 use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
 
 /// The state of motion.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct State {
     /// [m] Centre of mass.
     pub center: Vector,
@@ -171,6 +171,16 @@ impl State {
             idlers: idlers_at_rest(model, track_phase),
             flippers: flippers_at_rest(model, angle),
         }
+    }
+
+    /// Makes this state equal to another, without asking for memory.
+    pub(crate) fn copy(&mut self, other: &Self) {
+        (self.center, self.angle) = (other.center, other.angle);
+        (self.velocity, self.angular_velocity) = (other.velocity, other.angular_velocity);
+        self.drives.clone_from(&other.drives);
+        self.shoes.clone_from(&other.shoes);
+        self.idlers.clone_from(&other.idlers);
+        self.flippers.clone_from(&other.flippers);
     }
 
     /// Velocity of the chassis.
@@ -336,7 +346,7 @@ impl State {
             })
     }
 
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let body = self.center.is_finite() && self.velocity.is_finite();
         let turn = self.angle.is_finite() && self.angular_velocity.is_finite();
         body && turn

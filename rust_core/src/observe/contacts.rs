@@ -1,18 +1,24 @@
-//! Contact forces averaged over a sample interval.
+//! Contact forces averaged over an interval.
+
+use serde::{Deserialize, Serialize};
 
 use crate::contact::Contact;
 use crate::dynamics::LoadedContact;
+use crate::geometry::plausible;
+use crate::robot::Model;
+use crate::terrain::Profile;
 
-/// Contacts since the last sample, each with the sum of its forces.
-#[derive(Default)]
-pub(crate) struct Readings {
-    steps: u32,
-    seen: Vec<Reading>,
+/// The contacts of an interval, each with the sum of its impulses.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Loads {
+    /// [s] Length of the interval so far.
+    time: f64,
+    seen: Vec<Load>,
 }
 
 /// One contact during the interval.
-#[derive(Clone, Copy)]
-pub(crate) struct Reading {
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Load {
     /// Its last state.
     pub contact: Contact,
     /// [N] Mean over the interval.
@@ -23,42 +29,57 @@ pub(crate) struct Reading {
     pub surface_speed: f64,
 }
 
-impl Readings {
-    /// Adds one step.
-    pub(crate) fn add(&mut self, loaded: &[LoadedContact]) {
-        self.steps += 1;
+impl Loads {
+    /// Adds a part of a step, `dt` [s] long.
+    pub(crate) fn add(&mut self, loaded: &[LoadedContact], dt: f64) {
+        self.time += dt;
+        // Contacts come in the same order in each step.
+        let mut next = 0;
         for l in loaded.iter().filter(|l| l.normal_force > 0.0) {
-            let mut seen = self.seen.iter_mut();
-            match seen.find(|r| r.contact.number == l.contact.number) {
-                Some(reading) => {
-                    reading.contact = l.contact;
-                    reading.normal_force += l.normal_force;
-                    reading.friction_force += l.friction_force;
-                    reading.surface_speed = l.surface_speed;
-                }
-                None => self.seen.push(Reading {
-                    contact: l.contact,
-                    normal_force: l.normal_force,
-                    friction_force: l.friction_force,
-                    surface_speed: l.surface_speed,
-                }),
+            let mut all = (next..self.seen.len()).chain(0..next);
+            let known = all.find(|i| self.seen[*i].contact.number == l.contact.number);
+            let new = Load {
+                contact: l.contact,
+                normal_force: l.normal_force * dt,
+                friction_force: l.friction_force * dt,
+                surface_speed: l.surface_speed,
+            };
+            if let Some(i) = known {
+                let sum = self.seen[i];
+                self.seen[i] = Load {
+                    normal_force: sum.normal_force + new.normal_force,
+                    friction_force: sum.friction_force + new.friction_force,
+                    ..new
+                };
+                next = i + 1;
+            } else {
+                self.seen.push(new);
             }
         }
     }
 
-    /// Number of contacts since the last sample.
+    /// Number of contacts in the interval so far.
     pub(crate) fn count(&self) -> usize {
         self.seen.len()
     }
 
     /// Returns the means, in the order in which contacts first appeared, and starts a new interval.
-    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Reading> + '_ {
-        let share = 1.0 / f64::from(self.steps.max(1));
-        self.steps = 0;
-        self.seen.drain(..).map(move |r| Reading {
-            normal_force: r.normal_force * share,
-            friction_force: r.friction_force * share,
-            ..r
+    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Load> + '_ {
+        let time = std::mem::take(&mut self.time);
+        let share = if time > 0.0 { 1.0 / time } else { 0.0 };
+        self.seen.drain(..).map(move |l| Load {
+            normal_force: l.normal_force * share,
+            friction_force: l.friction_force * share,
+            ..l
         })
+    }
+
+    /// Whether a robot on these lanes can have produced them.
+    pub(crate) fn fits(&self, model: &Model, lanes: &[Profile]) -> bool {
+        let fits = |l: &Load| {
+            let numbers = [l.normal_force, l.friction_force, l.surface_speed];
+            l.contact.fits(model, lanes) && plausible(&numbers)
+        };
+        plausible(&[self.time]) && self.time >= 0.0 && self.seen.iter().all(fits)
     }
 }

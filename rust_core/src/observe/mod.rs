@@ -10,7 +10,7 @@ mod reading;
 mod shaking;
 mod signals;
 
-pub(crate) use contacts::Readings;
+pub(crate) use contacts::{Load, Loads};
 pub(crate) use events::IntrusionWatch;
 pub use events::{Event, EventKind};
 pub(crate) use monitor::{Monitor, Seen};

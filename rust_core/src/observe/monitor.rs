@@ -8,7 +8,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
-use super::{Event, IntrusionWatch, Outcome, Reading, Shaking, Signals, Stance, bearing};
+use super::{
+    Event, IntrusionWatch, Load, Loads, Outcome, Reading, Shaking, Signals, Stance, bearing,
+};
 use crate::contact::TrackEnvelope;
 use crate::dynamics::{ChainReading, DriveState, Effort, LoadedContact};
 use crate::geometry::Pose;
@@ -48,9 +50,13 @@ pub(crate) struct Seen {
     last_time: f64,
     progress: Progress,
     signals: Signals,
+    /// Forces since the last check.
+    loads: Loads,
     intrusions: IntrusionWatch,
     anchor: Option<Anchor>,
     goal_since: Option<f64>,
+    /// [m] How far the robot was beyond the goal at the last reading.
+    beyond: f64,
     ended: Option<Outcome>,
     stays: bool,
     /// [s] When the goal was first held, if ever.
@@ -87,9 +93,11 @@ impl Seen {
             last_time: time,
             progress: Progress::default(),
             signals: Signals::default(),
+            loads: Loads::default(),
             intrusions: IntrusionWatch::default(),
             anchor: None,
             goal_since: None,
+            beyond: 0.0,
             ended: None,
             stays: false,
             time_to_clear: f64::INFINITY,
@@ -133,6 +141,7 @@ impl Seen {
             && self.progress.fits(parts, lanes)
             && self.intrusions.fits(parts, lanes)
             && self.signals.fits(model, lanes)
+            && self.loads.fits(model, lanes)
     }
 }
 
@@ -172,11 +181,16 @@ impl Monitor {
         }
     }
 
-    /// Takes one step: the state of the robot, the contact forces, the drives with their speeds, and the
-    /// flipper positions.
+    /// [s] When it checks the progress next; a step is taken in parts that end there.
+    pub(crate) fn next_look(&self) -> f64 {
+        self.seen.looks as f64 * LOOK
+    }
+
+    /// Takes a step, or a part of one: the state of the robot at its end, and during it the mean speed [m/s] along the
+    /// chassis, the contact forces, and the drives with their mean speeds; and the flipper positions.
     pub(crate) fn observe(
         &mut self,
-        now: &Reading,
+        (now, forward_speed): (&Reading, f64),
         command: f64,
         loaded: &[LoadedContact],
         drives: impl Iterator<Item = (DriveState, f64)> + Clone,
@@ -185,12 +199,13 @@ impl Monitor {
         let seen = &mut self.seen;
         let dt = now.time - seen.last_time;
         seen.last_time = now.time;
+        seen.loads.add(loaded, dt);
         let work_rate: f64 = drives
             .clone()
             .map(|(drive, speed)| drive.force * speed)
             .sum();
         seen.drive_work += work_rate * dt;
-        seen.path_length += now.forward_speed() * dt;
+        seen.path_length += forward_speed * dt;
         seen.max_angle = seen.max_angle.max(now.chassis_angle);
         seen.min_angle = seen.min_angle.min(now.chassis_angle);
         for l in loaded {
@@ -200,15 +215,15 @@ impl Monitor {
         seen.progress.advance(now, command, length, dt);
         let window = self.window(command);
         if self.seen.progress.falters() {
-            self.seen.signals.add(now, loaded, drives, window);
+            self.seen.signals.add((now, dt), loaded, drives, window);
         }
         if self.seen.ended.is_none() {
-            self.seen.ended = self.ended(now);
+            self.seen.ended = self.ended(now, dt);
         }
-        if now.time >= self.seen.looks as f64 * LOOK {
+        if now.time >= self.next_look() {
             self.seen.looks += 1;
             self.seen.shaking.look(now);
-            self.look_inside(now, loaded, running);
+            self.look_inside(now, running);
             self.look(now, command, window);
             if !self.has_grousers && !self.may_change {
                 self.watch_stationary(now, window, loaded);
@@ -234,7 +249,7 @@ impl Monitor {
     }
 
     /// Checks for outcomes that need no stop window.
-    fn ended(&mut self, now: &Reading) -> Option<Outcome> {
+    fn ended(&mut self, now: &Reading, dt: f64) -> Option<Outcome> {
         if now.chassis_angle.abs() > self.criteria.tip_over_angle {
             return Some(Outcome::TippedOver);
         }
@@ -248,8 +263,12 @@ impl Monitor {
         }
         let level = (now.chassis_angle - self.ground.angle_at(now.position.x)).abs()
             < self.criteria.clear_angle;
-        if rear > self.goal + self.rear_radius && level {
-            let since = *self.seen.goal_since.get_or_insert(now.time);
+        let beyond = rear - self.goal - self.rear_radius;
+        let before = std::mem::replace(&mut self.seen.beyond, beyond);
+        if beyond > 0.0 && level {
+            // It has passed the goal within the step.
+            let over = beyond / (beyond - before.min(0.0));
+            let since = *self.seen.goal_since.get_or_insert(now.time - over * dt);
             if now.time - since >= self.criteria.clear_time {
                 self.seen.time_to_clear = since;
                 return Some(Outcome::Cleared);
@@ -261,7 +280,7 @@ impl Monitor {
     }
 
     /// Tracks what is inside the track.
-    fn look_inside(&mut self, now: &Reading, loaded: &[LoadedContact], running: &Running) {
+    fn look_inside(&mut self, now: &Reading, running: &Running) {
         let pose = Pose::new(now.position, now.chassis_angle);
         let lanes = &self.ground.lanes;
         let inside = self.envelopes.iter().flat_map(|envelope| {
@@ -272,9 +291,10 @@ impl Monitor {
                 Vec::new()
             }
         });
+        let loads: Vec<Load> = self.seen.loads.drain().collect();
         let with_force = inside.filter(|i| i.edge >= 0).map(|i| {
-            let bears = |l: &&LoadedContact| i.bears(lanes, &self.parts, &l.contact);
-            let force = loaded.iter().filter(bears).map(|l| l.normal_force).sum();
+            let bears = |l: &&Load| i.bears(lanes, &self.parts, &l.contact);
+            let force = loads.iter().filter(bears).map(|l| l.normal_force).sum();
             (i, force)
         });
         self.seen.intrusions.look(now.time, with_force);

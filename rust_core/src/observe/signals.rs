@@ -28,7 +28,8 @@ pub(crate) struct Signals {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Block {
     start: f64,
-    steps: f64,
+    /// [s] Time that it covers.
+    time: f64,
     contacts: Vec<Summed>,
     drives: Vec<DriveMean>,
     place: [f64; 3],
@@ -89,10 +90,10 @@ pub(crate) struct Stance {
 }
 
 impl Signals {
-    /// Takes one step; `window` [s] is the stop window.
+    /// Takes a part of a step, `dt` [s] long; `window` [s] is the stop window.
     pub(crate) fn add(
         &mut self,
-        now: &Reading,
+        (now, dt): (&Reading, f64),
         loaded: &[LoadedContact],
         drives: impl Iterator<Item = (DriveState, f64)>,
         window: f64,
@@ -101,7 +102,7 @@ impl Signals {
             self.older = std::mem::take(&mut self.newer);
             self.newer.start = now.time;
         }
-        self.newer.add(now, loaded, drives);
+        self.newer.add((now, dt), loaded, drives);
     }
 
     /// Whether a robot on these lanes can have produced them.
@@ -110,7 +111,7 @@ impl Signals {
             let numbers = [block.place, block.low, block.high].concat();
             block.drives.len() <= model.drives
                 && block.start.is_finite()
-                && (0.0..1e15).contains(&block.steps)
+                && (0.0..1e15).contains(&block.time)
                 && numbers.iter().all(|number| number.is_finite())
                 && block.contacts.iter().all(|c| c.fits(model, lanes))
                 && block.numbers_differ()
@@ -121,7 +122,7 @@ impl Signals {
     pub(crate) fn stance(&self) -> Stance {
         let mut sum = self.older.clone();
         sum.absorb(&self.newer);
-        let share = 1.0 / sum.steps.max(1.0);
+        let share = if sum.time > 0.0 { 1.0 / sum.time } else { 0.0 };
         Stance {
             position: Vector::new(sum.place[0], sum.place[1]) * share,
             angle: sum.place[2] * share,
@@ -148,17 +149,17 @@ impl Block {
 
     fn add(
         &mut self,
-        now: &Reading,
+        (now, dt): (&Reading, f64),
         loaded: &[LoadedContact],
         drives: impl Iterator<Item = (DriveState, f64)>,
     ) {
         let here = [now.position.x, now.position.y, now.chassis_angle];
-        if self.steps == 0.0 {
+        if self.time == 0.0 {
             (self.low, self.high) = (here, here);
         }
-        self.steps += 1.0;
+        self.time += dt;
         for (i, value) in here.into_iter().enumerate() {
-            self.place[i] += value;
+            self.place[i] += value * dt;
             self.low[i] = self.low[i].min(value);
             self.high[i] = self.high[i].max(value);
         }
@@ -166,12 +167,12 @@ impl Block {
             if k == self.drives.len() {
                 self.drives.push(DriveMean::default());
             }
-            self.drives[k].force += drive.force;
-            self.drives[k].speed += speed;
+            self.drives[k].force += drive.force * dt;
+            self.drives[k].speed += speed * dt;
         }
         let bears = |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES;
         for l in loaded.iter().filter(bears) {
-            self.gather(&Summed::new(l));
+            self.gather(&Summed::new(l, dt));
         }
     }
 
@@ -186,14 +187,14 @@ impl Block {
     }
 
     fn absorb(&mut self, later: &Self) {
-        if later.steps == 0.0 {
+        if later.time == 0.0 {
             return;
         }
-        if self.steps == 0.0 {
+        if self.time == 0.0 {
             *self = later.clone();
             return;
         }
-        self.steps += later.steps;
+        self.time += later.time;
         for i in 0..3 {
             self.place[i] += later.place[i];
             self.low[i] = self.low[i].min(later.low[i]);
@@ -224,18 +225,18 @@ impl Summed {
             && sums.iter().all(|sum| sum.is_finite())
     }
 
-    fn new(l: &LoadedContact) -> Self {
+    fn new(l: &LoadedContact, dt: f64) -> Self {
         // A contact without a force has a position all the same.
-        let weight = l.normal_force.max(1e-9);
+        let weight = l.normal_force.max(1e-9) * dt;
         Self {
             last: l.contact,
-            normal_force: l.normal_force,
-            friction_force: l.friction_force,
+            normal_force: l.normal_force * dt,
+            friction_force: l.friction_force * dt,
             point: l.contact.point * weight,
             normal: l.contact.normal * weight,
             slip: l.surface_speed * weight,
             weight,
-            loaded: f64::from(u8::from(l.normal_force > 0.0)),
+            loaded: if l.normal_force > 0.0 { dt } else { 0.0 },
         }
     }
 

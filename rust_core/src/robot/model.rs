@@ -178,6 +178,23 @@ impl Model {
         })
     }
 
+    /// Speed of the fastest tip that a drive carries, relative to its carrier and in units of the surface speed; 0
+    /// if surfaces only run along themselves.
+    pub(crate) fn tip_speed(&self) -> f64 {
+        let of_part = |part: &Part| match &part.shape {
+            Shape::Gear { .. } => 1.0,
+            Shape::Hull {
+                discs,
+                grouser_height,
+            } if *grouser_height > 0.0 => {
+                let least = discs.iter().map(|d| d.radius).fold(f64::INFINITY, f64::min);
+                1.0 + grouser_height / least
+            }
+            _ => 0.0,
+        };
+        self.parts.iter().map(of_part).fold(0.0, f64::max)
+    }
+
     /// [m] Largest distance of any part from the centre of mass.
     pub(crate) fn reach(&self) -> f64 {
         let from_center = |p: &Vector| (*p - self.center_of_mass).length();

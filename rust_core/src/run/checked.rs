@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::needs;
+use super::simulation::FARTHEST_TURN;
 use crate::error::Error;
 use crate::geometry::Vector;
 use crate::robot::{Model, Part, start_position};
@@ -146,23 +147,18 @@ impl Scenario {
 
 /// Rules that relate the sizes of a track model's parts to speeds, time step and criteria.
 fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError> {
-    let smallest = (f64::INFINITY, f64::INFINITY);
-    let (tip, root) =
-        parts
-            .iter()
-            .flat_map(Part::discs)
-            .fold(smallest, |(tip, root), (circumscribed, inner)| {
-                (tip.min(circumscribed.radius), root.min(inner.radius))
-            });
-    let robot = &scenario.robot;
-    let rate_of_arms = robot.flippers.as_ref().map_or(0.0, |f| f.rate_limit);
-    let time_step = scenario.solver.time_step;
-    check_turn(
-        time_step,
-        "max_speed / radius",
-        robot.drivetrain.max_speed / tip,
-    )?;
-    check_turn(time_step, "robot.flippers.rate_limit", rate_of_arms)?;
+    let radii = parts.iter().flat_map(Part::discs);
+    let root = radii.fold(f64::INFINITY, |root, (_, inner)| root.min(inner.radius));
+    if let Some(step) = scenario.solver.time_step {
+        let turn = fastest_turn(scenario, parts) * step;
+        // Larger turns would pass over corners without contact.
+        if turn > FARTHEST_TURN {
+            let rule = format!(
+                "must be so short that no wheel or flipper turns by more than {FARTHEST_TURN} rad (here {turn:.3} rad)"
+            );
+            return Err(ScenarioError::new("solver.time_step", step, rule));
+        }
+    }
     let depth = scenario.criteria.intrusion_depth;
     if depth >= root {
         let rule = format!("must be less than the smallest radius of the track model, {root} m");
@@ -171,15 +167,16 @@ fn check_sizes(scenario: &Scenario, parts: &[Part]) -> Result<(), ScenarioError>
     Ok(())
 }
 
-/// Checks a turning rate: larger turns per step would pass over corners without contact.
-fn check_turn(time_step: f64, name: &str, rate: f64) -> Result<(), ScenarioError> {
-    const FARTHEST: f64 = 0.7; // [rad]
-    let turn = rate * time_step;
-    if turn <= FARTHEST {
-        return Ok(());
-    }
-    let rule = format!("must keep {name} x time_step <= {FARTHEST} rad (here {turn:.3} rad)");
-    Err(ScenarioError::new("solver.time_step", time_step, rule))
+/// [rad/s] Fastest rate at which a wheel or flipper of these parts can be driven.
+pub(super) fn fastest_turn(scenario: &Scenario, parts: &[Part]) -> f64 {
+    let radii = parts.iter().flat_map(Part::discs);
+    let tip = radii.fold(f64::INFINITY, |tip, (outer, _)| tip.min(outer.radius));
+    let of_flippers = scenario
+        .robot
+        .flippers
+        .as_ref()
+        .map_or(0.0, |f| f.rate_limit);
+    of_flippers.max(scenario.robot.drivetrain.max_speed / tip)
 }
 
 #[cfg(test)]

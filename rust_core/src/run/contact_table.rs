@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 
 use super::Simulation;
 use crate::limits::memory::reserve;
-use crate::observe::Readings;
+use crate::observe::Loads;
 
 /// Contacts of all samples.
 #[derive(Clone, Debug, Default)]
@@ -30,10 +30,10 @@ pub struct ContactTable {
 impl Simulation {
     /// Contacts of the last step.
     pub fn contact_table(&self) -> ContactTable {
-        let mut readings = Readings::default();
-        readings.add(self.loaded());
+        let mut loads = Loads::default();
+        loads.add(self.loaded(), 1.0);
         let mut table = ContactTable::default();
-        table.append(self, &mut readings);
+        table.append(self, self.time(), &mut loads);
         table
     }
 }
@@ -77,10 +77,10 @@ impl ContactTable {
         codes.into_iter().for_each(Vec::shrink_to_fit);
     }
 
-    /// Appends the readings of the interval that ends now.
-    pub(crate) fn append(&mut self, simulation: &Simulation, readings: &mut Readings) {
-        for r in readings.drain() {
-            self.time.push(simulation.time());
+    /// Appends the loads of the interval that ends at `time` [s].
+    pub(crate) fn append(&mut self, simulation: &Simulation, time: f64, loads: &mut Loads) {
+        for r in loads.drain() {
+            self.time.push(time);
             self.contact.push(r.contact.number as i64);
             self.lane.push(simulation.side(r.contact.part) as i64);
             self.body.push(r.contact.part as i64);

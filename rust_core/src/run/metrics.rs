@@ -55,6 +55,10 @@ pub struct Metrics {
     pub max_guide_penetration: f64,
     /// [m] Largest slip between a chain and its sprocket, ahead or behind; 0 without a sprocket.
     pub max_sprocket_slip: f64,
+    /// Steps taken.
+    pub steps: f64,
+    /// Steps taken again with a shorter one, because their error was too large.
+    pub repeated_steps: f64,
     /// Searches for forces that satisfy all contacts, motors and pins.
     pub solves: f64,
     /// Linear systems solved in them; one per solve if every first guess is right.
@@ -100,6 +104,8 @@ impl Metrics {
             max_pin_gap: seen.max_pin_gap,
             max_guide_penetration: seen.max_guide_penetration,
             max_sprocket_slip: seen.max_sprocket_slip,
+            steps: seen.effort.steps as f64,
+            repeated_steps: seen.effort.repeated_steps as f64,
             solves: seen.effort.solves as f64,
             solve_rounds: seen.effort.rounds as f64,
             descents: seen.effort.descents as f64,
@@ -108,7 +114,7 @@ impl Metrics {
     }
 
     /// Names and values, in the order of the tables.
-    pub fn entries(&self) -> [(&'static str, f64); 28] {
+    pub fn entries(&self) -> [(&'static str, f64); 30] {
         [
             ("time", self.time),
             ("time_to_clear", self.time_to_clear),
@@ -134,6 +140,8 @@ impl Metrics {
             ("max_pin_gap", self.max_pin_gap),
             ("max_guide_penetration", self.max_guide_penetration),
             ("max_sprocket_slip", self.max_sprocket_slip),
+            ("steps", self.steps),
+            ("repeated_steps", self.repeated_steps),
             ("solves", self.solves),
             ("solve_rounds", self.solve_rounds),
             ("descents", self.descents),

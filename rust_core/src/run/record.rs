@@ -6,7 +6,7 @@ use crate::scenario::Scenario;
 /// What to keep of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
-    /// [s] Time between two samples, rounded to whole steps.
+    /// [s] Time between two samples.
     pub sample_interval: f64,
     /// Keep the trace and the contact table; without it only outcome, metrics and events.
     pub history: bool,
@@ -33,14 +33,9 @@ impl Record {
         }
     }
 
-    /// Number of time steps `dt` [s] between two samples.
-    pub(super) fn steps_a_sample(&self, dt: f64) -> u64 {
-        (self.sample_interval / dt).round().max(1.0) as u64
-    }
-
     /// Number of samples of a run of full duration.
     pub(crate) fn samples(&self, scenario: &Scenario) -> u64 {
-        scenario.step_count() / self.steps_a_sample(scenario.solver.time_step) + 2
+        (scenario.duration / self.sample_interval).ceil() as u64 + 2
     }
 }
 

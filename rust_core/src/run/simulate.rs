@@ -13,6 +13,9 @@ use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
 use crate::terrain::Edge;
 
+/// [s] Times closer than this are the same.
+const SAME_TIME: f64 = 1e-9;
+
 /// The results of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -57,8 +60,8 @@ pub(crate) fn simulate_within(
     limits: Limits,
 ) -> Result<Run, Error> {
     let begin = Instant::now();
-    let last = checked.scenario().step_count();
-    advance(&mut Simulation::new(checked), last, record, limits, begin)
+    let end = checked.scenario().duration;
+    advance(&mut Simulation::new(checked), end, record, limits, begin)
 }
 
 /// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration.
@@ -76,8 +79,8 @@ pub fn branch(
     let budget = budget::of_batch(std::slice::from_ref(variant), record, 1)?;
     let trunk = replay(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant);
-    let last = simulation.steps() + variant.scenario().step_count();
-    advance(&mut simulation, last, record, (&budget, cancel), begin)
+    let end = simulation.time() + variant.scenario().duration;
+    advance(&mut simulation, end, record, (&budget, cancel), begin)
 }
 
 /// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
@@ -99,12 +102,12 @@ pub fn counterfactual(
     }
 }
 
-/// The simulation of a scenario at a time [s].
+/// The simulation of a scenario at the end of its first step that reaches a time [s].
 fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
     let mut simulation = Simulation::new(scenario);
-    let steps = (at / simulation.time_step()).round() as u64;
-    while simulation.steps() < steps {
-        simulation.step()?;
+    let end = scenario.scenario().duration.max(at);
+    while simulation.time() < at - SAME_TIME {
+        simulation.step_until(end)?;
         cancel.check()?;
     }
     Ok(simulation)
@@ -113,10 +116,10 @@ fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Er
 /// Limits of a run: memory, and a request to end.
 type Limits<'a> = (&'a Budget, &'a Cancel);
 
-/// Simulates up to the step `last`, or until the outcome is certain.
+/// Simulates up to the time `end` [s], or until the outcome is certain.
 fn advance(
     simulation: &mut Simulation,
-    last: u64,
+    end: f64,
     record: Record,
     (budget, cancel): Limits,
     begin: Instant,
@@ -126,8 +129,8 @@ fn advance(
         .history
         .then(|| Recorder::new(simulation, record, budget));
     let mut recorder = recorder.transpose()?;
-    while simulation.steps() < last && !simulation.is_over() {
-        simulation.step()?;
+    while simulation.time() < end && !simulation.is_over() {
+        simulation.step_until(end)?;
         if let Some(recorder) = &mut recorder {
             recorder.step(simulation)?;
         }

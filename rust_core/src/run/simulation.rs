@@ -4,20 +4,26 @@ mod branch;
 mod command;
 mod drive;
 mod gait;
+mod moment;
+mod pace;
 mod snapshot;
+mod step;
 #[cfg(test)]
 mod tests;
 mod whole;
 
 use std::sync::Arc;
 
-use self::gait::Driver;
+use self::gait::{Driver, Target};
+pub(super) use self::pace::FARTHEST_TURN;
+use self::pace::{Pace, Rule};
 use super::Checked;
+use super::checked::fastest_turn;
 use super::record::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Diagnosis, Scene};
-use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
-use crate::error::{Error, SimulationError};
+use crate::dynamics::{ChainReading, DriveState, Dynamics, Effort, LoadedContact, Shoe, State};
+use crate::error::Error;
 #[cfg(test)]
 use crate::geometry::Pose;
 use crate::geometry::Vector;
@@ -34,14 +40,34 @@ pub struct Simulation {
     dynamics: Dynamics,
     monitor: Monitor,
     state: State,
-    step: u64,
+    /// [s] Simulated time.
+    time: f64,
+    /// The state at the beginning of the last step, and when that was [s].
+    before: State,
+    began: f64,
+    rule: Rule,
+    pace: Pace,
+    steps: u64,
     command: f64,
     driver: Driver,
+    /// Where the driver wants the flippers.
+    targets: [Target; 2],
     set_point: f64,
+    set_point_before: f64,
     dents: Dents,
+    /// The same for the step that is being tried.
+    dents_now: Dents,
     contacts: Vec<Contact>,
     /// Positions of the moving parts for the search for contacts.
     then: Running,
+    /// [m] How far the last search for contacts saw beyond the present pose, and that of the step being tried.
+    seen_ahead: f64,
+    seen_now: f64,
+    /// Scratch of the monitor: a state within a step, and speeds of the drives.
+    seen_state: State,
+    speeds: Vec<f64>,
+    /// The solver's work in the last step, with what was tried in vain.
+    effort: Effort,
     /// [m] Distance of the robot's farthest point from its centre of mass.
     reach: f64,
 }
@@ -76,6 +102,7 @@ impl Simulation {
         let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
         let reach = model.reach();
         let monitor = Monitor::new(scenario, &ground, &model);
+        let rule = rule_of(scenario, &model);
         let dynamics = Dynamics::new(
             model,
             ground.lanes.iter().map(|lane| lane.friction).collect(),
@@ -85,52 +112,32 @@ impl Simulation {
         Self {
             command: scenario.drive.speed,
             driver: Driver::default(),
+            targets: [Target::default(); 2],
             scenario: scenario.clone(),
             ground,
             contact,
             dynamics,
             monitor,
+            before: state.clone(),
+            seen_state: state.clone(),
             state,
-            step: 0,
+            time: 0.0,
+            began: 0.0,
+            rule,
+            pace: Pace::default(),
+            steps: 0,
             set_point: 0.0,
+            set_point_before: 0.0,
             dents: Dents::default(),
+            dents_now: Dents::default(),
             contacts: Vec::new(),
             then: Running::default(),
+            seen_ahead: 0.0,
+            seen_now: 0.0,
+            speeds: Vec::new(),
+            effort: Effort::default(),
             reach,
         }
-    }
-
-    /// Advances by one time step.
-    ///
-    /// # Errors
-    /// [`Error::Simulation`] if the state has become non-finite; the simulation cannot go on then.
-    pub fn step(&mut self) -> Result<(), Error> {
-        self.step += 1;
-        self.command();
-        self.find_contacts();
-        self.advance()?;
-        self.observe();
-        Ok(())
-    }
-
-    fn find_contacts(&mut self) {
-        // A fast body finds a contact one step before it closes.
-        let speed = self.state.fastest(self.reach);
-        let prediction = self
-            .scenario
-            .solver
-            .prediction_distance
-            .max(2.0 * speed * self.time_step());
-        // In the middle of the step: with normals from its beginning, the error would be as large as the angle that
-        // a wheel turns round an edge in half a step.
-        let (half, model) = (0.5 * self.time_step(), self.dynamics.model());
-        let middle = self.state.pose_after(half, model);
-        self.state.running_after(half, model, &mut self.then);
-        self.contact
-            .find(middle, &self.then, prediction, &mut self.contacts);
-        self.dynamics.recognise(&mut self.contacts);
-        let last = self.dynamics.loaded().iter().map(|l| &l.contact);
-        self.dents.forgive(&mut self.contacts, &last);
     }
 
     /// Contacts at the current instant.
@@ -158,87 +165,34 @@ impl Simulation {
         (model, self.running(), self.state.pose(model))
     }
 
-    fn advance(&mut self) -> Result<(), SimulationError> {
-        self.dynamics
-            .advance(&mut self.state, &self.contacts, self.set_point, self.step)?;
-        let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
-        self.dents.heal(contacts);
-        Ok(())
-    }
-
-    fn observe(&mut self) {
-        let reading = self.reading();
-        let model = self.dynamics.model();
-        if !model.flippers.is_empty() {
-            self.state.running_after(0.0, model, &mut self.then);
-        }
-        // First, because a chain that has come off takes precedence over all other outcomes of the same step.
-        if !model.chains.is_empty() {
-            self.monitor.observe_chains(self.dynamics.chain_reading());
-        }
-        self.monitor.observe_effort(self.dynamics.effort());
-        let speeds = (0..self.state.drives.len()).map(|k| self.state.track_speed(model, k));
-        let drives = self.state.drives.iter().copied().zip(speeds);
-        self.monitor.observe(
-            &reading,
-            self.command,
-            self.dynamics.loaded(),
-            drives,
-            &self.then,
-        );
-    }
-
     /// The current state.
     pub fn reading(&self) -> Reading {
-        let pose = self.state.pose(self.dynamics.model());
-        let model = self.dynamics.model();
-        let driven = 0..model.motors;
-        let motors = model.motors as f64;
-        Reading {
-            time: self.time(),
-            position: pose.translation,
-            velocity: self.state.velocity_at(pose.translation),
-            chassis_angle: self.state.angle,
-            angular_velocity: self.state.angular_velocity,
-            commanded_speed: self.set_point,
-            track_speed: driven.clone().map(|k| self.drive_speed(k)).sum::<f64>() / motors,
-            track_position: driven.map(|k| self.state.drives[k].position).sum::<f64>() / motors,
-        }
+        self.now().reading()
     }
 
     /// [rad] Angles of the flippers relative to the chassis, the front first, upwards > 0.
     pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
-        let flippers = self.dynamics.model().flippers.iter().enumerate();
-        flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
+        self.now().flipper_angles().collect::<Vec<_>>().into_iter()
     }
 
     /// [rad/s] Rates of these angles.
     pub fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
-        let flippers = self.dynamics.model().flippers.iter();
-        let turns = flippers.zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
+        self.now().flipper_rates().collect::<Vec<_>>().into_iter()
     }
 
     /// [N m] Torques of the flipper motors, means over the last step, upwards > 0.
     pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
-        let flippers = self.dynamics.model().flippers.iter();
-        let turns = flippers.zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign() * turn.torque)
+        self.now().flipper_torques().collect::<Vec<_>>().into_iter()
     }
 
     /// [s] Simulated time.
     pub fn time(&self) -> f64 {
-        self.step as f64 * self.time_step()
-    }
-
-    /// [s] Length of one step.
-    pub fn time_step(&self) -> f64 {
-        self.scenario.solver.time_step
+        self.time
     }
 
     /// Steps taken so far.
     pub fn steps(&self) -> u64 {
-        self.step
+        self.steps
     }
 
     /// The scenario.
@@ -378,5 +332,14 @@ impl Simulation {
 
     pub(crate) fn monitor(&self) -> &Monitor {
         &self.monitor
+    }
+}
+
+/// How long the steps of a scenario are.
+fn rule_of(scenario: &Scenario, model: &Model) -> Rule {
+    let solver = &scenario.solver;
+    match (solver.accuracy, solver.time_step) {
+        (Some(accuracy), _) => Rule::accurate(accuracy, fastest_turn(scenario, &model.parts)),
+        (None, step) => Rule::Fixed(step.unwrap_or_default()),
     }
 }

@@ -3,9 +3,10 @@
 use super::Simulation;
 use super::contact_table::ContactTable;
 use super::record::{Columns, Record};
+use crate::dynamics::State;
 use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};
-use crate::observe::Readings;
+use crate::observe::Loads;
 
 /// Samples of the state; every column has one entry per sample (two for x, y pairs).
 #[derive(Clone, Debug, Default)]
@@ -44,7 +45,7 @@ pub struct Trace {
     pub shoe_poses: Vec<f64>,
     /// [rad] Angle of the flippers at each end relative to the chassis, upwards > 0.
     pub flipper_angles: Vec<f64>,
-    /// [N m] Torque of their motors, mean of the last step.
+    /// [N m] Torque of their motors, mean of the interval.
     pub flipper_torques: Vec<f64>,
 }
 
@@ -94,20 +95,52 @@ impl Columns {
 
 /// Collects samples during a run.
 pub(crate) struct Recorder<'a> {
-    every: u64,
-    steps: u64,
-    readings: Readings,
-    forces: Vec<f64>,
-    traction: f64,
+    /// [s] Time between two samples.
+    every: f64,
+    /// Number of samples at multiples of that, the first included.
+    taken: u64,
+    /// [s] Time up to which forces have been added.
+    until: f64,
+    sums: Sums,
     columns: Columns,
     trace: Trace,
     samples: Rows<'a>,
     contacts: ContactTable,
     contact_rows: Rows<'a>,
+    /// A state within a step.
+    state: State,
+}
+
+/// Integrals of forces over an interval between two samples.
+struct Sums {
+    /// [s] Its length so far.
+    time: f64,
+    loads: Loads,
+    /// [N s] Of each motor.
+    forces: Vec<f64>,
+    /// [N s] Of the ground along the driven surfaces.
+    traction: f64,
+    /// [N m s] Of the motors of the flippers.
+    torques: Vec<f64>,
 }
 
 /// [m/s] Below this, the track counts as standing and has no slip.
 const STANDS: f64 = 1e-3;
+
+impl Sums {
+    /// Adds a part of the last step, `dt` [s] long.
+    fn add(&mut self, simulation: &Simulation, dt: f64) {
+        self.time += dt;
+        self.loads.add(simulation.loaded(), dt);
+        for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
+            *sum += drive.force * dt;
+            self.traction += drive.traction * dt;
+        }
+        for (sum, torque) in self.torques.iter_mut().zip(simulation.flipper_torques()) {
+            *sum += torque * dt;
+        }
+    }
+}
 
 impl<'a> Recorder<'a> {
     pub(crate) fn new(
@@ -117,33 +150,41 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, LimitError> {
         let columns = simulation.columns();
         let mut recorder = Self {
-            every: record.steps_a_sample(simulation.time_step()),
-            steps: 0,
-            readings: Readings::default(),
-            forces: vec![0.0; simulation.drives()],
-            traction: 0.0,
+            every: record.sample_interval,
+            taken: 0,
+            until: simulation.time(),
+            sums: Sums {
+                time: 0.0,
+                loads: Loads::default(),
+                forces: vec![0.0; columns.drives],
+                traction: 0.0,
+                torques: vec![0.0; columns.flippers],
+            },
             columns,
             trace: Trace::default(),
             samples: Rows::new(budget, columns.bytes()),
             contacts: ContactTable::default(),
             contact_rows: Rows::new(budget, Columns::BYTES_A_CONTACT),
+            state: simulation.now().state.clone(),
         };
-        recorder.sample(simulation)?;
+        recorder.taken = (recorder.until / recorder.every).floor() as u64;
+        recorder.sample(simulation, simulation.time())?;
         Ok(recorder)
     }
 
-    /// Takes in one step and writes a sample at the end of each interval.
+    /// Takes in the last step and writes the samples that fall into it.
     pub(crate) fn step(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
-        self.steps += 1;
-        self.readings.add(simulation.loaded());
-        for (sum, drive) in self.forces.iter_mut().zip(simulation.drive_states()) {
-            *sum += drive.force;
-            self.traction += drive.traction;
+        loop {
+            let next = (self.taken + 1) as f64 * self.every;
+            let end = next.min(simulation.time());
+            self.sums.add(simulation, end - self.until);
+            self.until = end;
+            if end < next {
+                return Ok(());
+            }
+            self.taken += 1;
+            self.sample(simulation, next)?;
         }
-        if self.steps.is_multiple_of(self.every) {
-            self.sample(simulation)?;
-        }
-        Ok(())
     }
 
     /// The record, including the interval that the end of the run cut short.
@@ -151,8 +192,8 @@ impl<'a> Recorder<'a> {
         mut self,
         simulation: &Simulation,
     ) -> Result<(Trace, ContactTable), LimitError> {
-        if !self.steps.is_multiple_of(self.every) {
-            self.sample(simulation)?;
+        if self.trace.time.last() != Some(&simulation.time()) {
+            self.sample(simulation, simulation.time())?;
         }
         for (column, _) in self.trace.columns(self.columns) {
             column.shrink_to_fit();
@@ -169,19 +210,18 @@ impl<'a> Recorder<'a> {
             let mut all = trace.columns(columns).into_iter();
             all.try_for_each(|(column, entries)| reserve(column, entries * room))
         })?;
-        let rows = contacts.time.len() + self.readings.count();
+        let rows = contacts.time.len() + self.sums.loads.count();
         self.contact_rows.make(rows, |room| contacts.reserve(room))
     }
 
-    fn sample(&mut self, simulation: &Simulation) -> Result<(), LimitError> {
+    fn sample(&mut self, simulation: &Simulation, time: f64) -> Result<(), LimitError> {
         self.make_room()?;
-        let reading = simulation.reading();
-        let steps = match self.steps % self.every {
-            0 => self.every,
-            cut_short => cut_short,
-        } as f64;
+        let now = simulation.at(time, &mut self.state);
+        let reading = now.reading();
+        let length = std::mem::take(&mut self.sums.time);
+        let share = if length > 0.0 { 1.0 / length } else { 0.0 };
         let t = &mut self.trace;
-        t.time.push(reading.time);
+        t.time.push(time);
         t.position.extend([reading.position.x, reading.position.y]);
         t.velocity.extend([reading.velocity.x, reading.velocity.y]);
         t.chassis_angle.push(reading.chassis_angle);
@@ -196,24 +236,27 @@ impl<'a> Recorder<'a> {
             1.0 - forward / reading.track_speed
         };
         t.slip_ratio.push(slip);
-        t.tractive_effort.push(self.traction / steps);
-        t.drive_force.push(self.forces.iter().sum::<f64>() / steps);
-        for (k, force) in self.forces.iter_mut().enumerate() {
-            t.drive_speeds.push(simulation.drive_speed(k));
-            t.drive_positions
-                .push(simulation.drive_states()[k].position);
-            t.drive_forces.push(*force / steps);
+        t.tractive_effort.push(self.sums.traction * share);
+        t.drive_force
+            .push(self.sums.forces.iter().sum::<f64>() * share);
+        for (k, force) in self.sums.forces.iter_mut().enumerate() {
+            t.drive_speeds.push(now.drive_speed(k));
+            t.drive_positions.push(now.state.drives[k].position);
+            t.drive_forces.push(*force * share);
             *force = 0.0;
         }
         t.track_tension.push(simulation.chain().tension);
-        for shoe in simulation.shoes() {
+        for shoe in &now.state.shoes {
             t.shoe_poses
                 .extend([shoe.center.x, shoe.center.y, shoe.angle]);
         }
-        t.flipper_angles.extend(simulation.flipper_angles());
-        t.flipper_torques.extend(simulation.flipper_torques());
-        self.traction = 0.0;
-        self.contacts.append(simulation, &mut self.readings);
+        t.flipper_angles.extend(now.flipper_angles());
+        for torque in &mut self.sums.torques {
+            t.flipper_torques.push(*torque * share);
+            *torque = 0.0;
+        }
+        self.sums.traction = 0.0;
+        self.contacts.append(simulation, time, &mut self.sums.loads);
         Ok(())
     }
 }

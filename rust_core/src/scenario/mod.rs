@@ -79,14 +79,6 @@ impl Scenario {
             .fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
     }
 
-    /// Number of steps of the whole run; a remainder counts as one more step.
-    pub fn step_count(&self) -> u64 {
-        // The tolerance makes 15 s / 1 ms 15,000 steps, although 1 ms is not exact in binary.
-        (self.duration / self.solver.time_step - 1e-9)
-            .ceil()
-            .max(0.0) as u64
-    }
-
     /// Reads the fields; rules that need the built robot and ground are checked elsewhere.
     pub(crate) fn read(value: &Value) -> Result<Self, ScenarioError> {
         let mut f = Fields::new("", value)?;

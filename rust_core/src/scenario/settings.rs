@@ -31,12 +31,12 @@ pub enum ContactMethod {
 pub struct Solver {
     /// How contacts are found.
     pub contact: ContactMethod,
-    /// [s] Time between two searches for contacts.
-    pub time_step: f64,
-    /// Substeps per step.
-    pub substeps: u32,
-    /// Largest number of rounds in the search for forces that satisfy all constraints of half a substep; each is a
-    /// few guesses and a descent. `None` takes the solver's own. A chain of shoes always has one round of its own kind.
+    /// [m] Local error of a step; `None` if steps are of a given length.
+    pub accuracy: Option<f64>,
+    /// [s] Length of a step; `None` if its accuracy is given.
+    pub time_step: Option<f64>,
+    /// Largest number of rounds in the search for forces that satisfy all constraints of a step; each is a few
+    /// guesses and a descent. `None` takes the solver's own. A chain of shoes always has one round of its own kind.
     pub iterations: Option<u32>,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,
@@ -115,8 +115,8 @@ impl Solver {
                     ("reference", ContactMethod::Reference),
                 ],
             )?,
-            time_step: f.number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
-            substeps: f.integer("substeps", 1, 64)?,
+            accuracy: f.optional_number("accuracy", Range::between(1e-10, 1e-2, "m"))?,
+            time_step: f.optional_number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
             iterations: f.optional_integer("iterations", 1, 1000)?,
             contact_frequency: f.number("contact_frequency", Range::between(1.0, 1e5, "Hz"))?,
             contact_damping_ratio: f
@@ -125,7 +125,17 @@ impl Solver {
             prediction_distance: f.number("prediction_distance", Range::between(1e-5, 0.1, "m"))?,
         };
         f.finish()?;
-        Ok(solver)
+        match (solver.accuracy, solver.time_step) {
+            (None, None) => {
+                let rule = "must be given if time_step is not";
+                Err(ScenarioError::new("solver.accuracy", "null", rule))
+            }
+            (Some(_), Some(step)) => {
+                let rule = "must not be given together with accuracy, which decides the length of each step";
+                Err(ScenarioError::new("solver.time_step", step, rule))
+            }
+            _ => Ok(solver),
+        }
     }
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn follow(scenario: &Scenario, duration: f64) -> Account {
         simulation.step().expect("the state stays finite");
         let now = Motors::of(&simulation);
         for ((effort, a), b) in now.efforts.iter().zip(before).zip(now.speeds) {
-            let done = 0.5 * effort * (a + b) * simulation.time_step();
+            let done = 0.5 * effort * (a + b) * simulation.last_step();
             work += done;
             account.moved += done.abs();
         }

@@ -115,12 +115,12 @@ fn arms_held_level_do_not_lag_behind_a_chassis_that_turns() {
     scenario.drive.gait = Some(climb());
     let mut simulation = Simulation::new(&checked(&scenario));
     let mut lags = Vec::new();
-    for _ in 0..6000 {
+    while simulation.time() < 6.0 {
         simulation.step().expect("it runs");
         let now = simulation.reading();
         let over_chassis = simulation.flipper_angles().next().expect("it has one");
         let off = (over_chassis + now.chassis_angle).abs();
-        let turns = now.angular_velocity.abs() * simulation.time_step();
+        let turns = now.angular_velocity.abs() * 1e-3;
         // Within reach of the level, above the tenth of a radian that starts it.
         if off < 5e-3 && now.chassis_angle > 0.1 && turns > 1e-4 {
             lags.push(off / turns);
@@ -155,27 +155,32 @@ fn contact_forces_bear_weight_and_inertia_while_arms_move() {
             })),
         };
         let mut simulation = after(&scenario, 0.1);
-        let (mut worst, dt, weight) = (0.0_f64, simulation.time_step(), scenario.robot.mass * G);
-        let (mut raised, mut sum, mut steps) = (0.0_f64, [0.0; 2], 0.0);
+        let (mut worst, mut hardest, weight) = (0.0_f64, 0.0_f64, scenario.robot.mass * G);
+        let (mut raised, mut sum) = (0.0_f64, [0.0; 2]);
         let begin = simulation.momentum();
         while simulation.time() < 2.5 {
             let before = simulation.momentum();
             simulation.step().expect("finite");
+            let dt = simulation.last_step();
             let gained = (simulation.momentum() - before) / dt;
             let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
             worst = worst.max((fx - gained.x).abs().max((fy - weight - gained.y).abs()));
+            // A blow of 20 us is a large force.
+            hardest = hardest.max(fx.hypot(fy));
             sum = [sum[0] + fx * dt, sum[1] + (fy - weight) * dt];
-            steps += 1.0;
             raised = raised.max(simulation.reading().position.y);
         }
         let gained = simulation.momentum() - begin;
-        let mean = (sum[0] - gained.x).abs().max((sum[1] - gained.y).abs()) / (steps * dt);
+        let mean = (sum[0] - gained.x).abs().max((sum[1] - gained.y).abs()) / 2.4;
         println!(
             "{name}: {:.1e} of the weight at worst, {:.1e} in the mean, raised to {raised:.3} m",
             worst / weight,
             mean / weight
         );
         assert!(raised > 0.1, "{name} was raised to {raised} m");
+        if !name.starts_with("chain") {
+            assert!(worst < 1e-10 * hardest, "{name}: {worst} N in a step");
+        }
         assert!(mean < 1e-3 * weight, "{name}: {mean} N in the mean");
     }
 }

@@ -35,7 +35,7 @@ fn drive_for(seconds: u32, scenario: &Scenario, ground: Ground) -> (Vec<[f64; 3]
     let mut simulation = Simulation::on_ground(scenario, ground).expect("it fits");
     let (mut path, mut upward) = (Vec::new(), f64::NEG_INFINITY);
     for step in 1..=1000 * seconds {
-        simulation.step().expect("finite");
+        advance(&mut simulation, 1e-3);
         let r = simulation.reading();
         if step > 500 {
             upward = upward.max(r.velocity.y);
@@ -145,7 +145,7 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
             let mut path = Vec::new();
             // At 0.2 m/s^2 up to 0.4 m/s, three seconds end 0.2 m before the edge.
             for _ in 0..3000 {
-                simulation.step().expect("finite");
+                advance(&mut simulation, 1e-3);
                 let r = simulation.reading();
                 path.push([r.position.x - x, r.position.y, 0.1825 * r.chassis_angle]);
             }

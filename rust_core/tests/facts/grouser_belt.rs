@@ -10,18 +10,17 @@ fn lugged() -> Scenario {
     scenario
 }
 
-/// Sum of the contact forces along x and y [N], the mean over so many steps.
-fn ground_force(simulation: &mut Simulation, steps: u32) -> [f64; 2] {
+/// Sum of the contact forces along x and y [N], the mean over a duration [s].
+fn ground_force(simulation: &mut Simulation, duration: f64) -> [f64; 2] {
     let mut sum = [0.0; 2];
-    for _ in 0..steps {
-        simulation.step().expect("finite");
-        let t = simulation.contact_table();
-        for i in 0..t.time.len() {
-            sum[0] += t.normal_force[i] * t.normal_x[i] + t.friction_force[i] * t.normal_y[i];
-            sum[1] += t.normal_force[i] * t.normal_y[i] - t.friction_force[i] * t.normal_x[i];
-        }
+    let end = simulation.time() + duration;
+    while simulation.time() < end {
+        simulation.step_until(end).expect("finite");
+        let (fx, fy, _) = contact_sums(simulation, 0.0, 0.0);
+        sum[0] += fx * simulation.last_step();
+        sum[1] += fy * simulation.last_step();
     }
-    sum.map(|s| s / f64::from(steps))
+    sum.map(|s| s / duration)
 }
 
 #[test]
@@ -40,7 +39,7 @@ fn on_level_ground_it_goes_as_fast_as_its_belt_and_stands_on_its_tips() {
     let mut simulation = after(&scenario, 3.0);
     let (mut speed, mut lowest, mut highest) = (0.0, f64::INFINITY, 0.0_f64);
     for _ in 0..4000 {
-        simulation.step().expect("finite");
+        advance(&mut simulation, 1e-3);
         let r = simulation.reading();
         speed += r.velocity.x / 4000.0;
         lowest = lowest.min(r.position.y);
@@ -60,15 +59,14 @@ fn the_ground_bears_its_weight_on_the_level_and_on_a_ramp() {
         scenario.start.angle = angle;
         scenario.robot.drivetrain.max_torque = 20.0;
         let mut simulation = after(&scenario, 3.0);
-        let steps = 1000;
         let before = simulation.reading();
-        let sum = ground_force(&mut simulation, steps);
+        let sum = ground_force(&mut simulation, 1.0);
         let now = simulation.reading();
         let inertia = [
             now.velocity.x - before.velocity.x,
             now.velocity.y - before.velocity.y,
         ]
-        .map(|change| scenario.robot.mass * change / (f64::from(steps) * 1e-3));
+        .map(|change| scenario.robot.mass * change);
         let weight = scenario.robot.mass * G;
         println!("slope {angle}: {sum:?} N, inertia {inertia:?} N, weight {weight:.3} N");
         assert!((sum[0] - inertia[0]).abs() < 2e-3 * weight);
@@ -143,14 +141,10 @@ fn a_flank_against_a_rail_pulls_with_all_the_motors_have() {
     let force = 2.0 * 2.0 / 0.052;
     for (share, holds) in [(0.97, true), (1.05, false)] {
         let mut simulation = Simulation::new(&checked(&scenario));
-        for _ in 0..2000 {
-            simulation.step().expect("finite");
-        }
+        advance(&mut simulation, 2.0);
         simulation.set_push(-share * force).expect("a push");
         let before = simulation.reading().position.x;
-        for _ in 0..6000 {
-            simulation.step().expect("finite");
-        }
+        advance(&mut simulation, 6.0);
         let gained = simulation.reading().position.x - before;
         println!(
             "pull {:.1} N of {force:.1} N: {gained:+.4} m in 6 s",

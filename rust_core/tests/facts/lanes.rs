@@ -91,9 +91,7 @@ fn the_higher_lane_bears_all_of_the_weight() {
     scenario.terrain = lanes(level(0.0, 0.9), level(0.02, 0.9));
     scenario.drive.speed = 0.0;
     let mut simulation = Simulation::new(&checked(&scenario));
-    for _ in 0..1000 {
-        simulation.step().expect("finite");
-    }
+    advance(&mut simulation, 1.0);
     let [[left, _], [right, _], [belly, _]] = shares(&simulation);
     let weight = scenario.robot.mass * G;
     assert!(left == 0.0 && belly == 0.0);
@@ -114,9 +112,7 @@ fn each_lane_has_its_own_friction() {
     scenario.start.approach = 0.0;
     scenario.start.angle = angle;
     let mut simulation = Simulation::new(&checked(&scenario));
-    for _ in 0..1000 {
-        simulation.step().expect("finite");
-    }
+    advance(&mut simulation, 1.0);
     let table = simulation.contact_table();
     let weight = scenario.robot.mass * G;
     let sum = |lane: i64, column: &[f64]| -> f64 {
@@ -144,9 +140,7 @@ fn each_track_has_half_of_the_force() {
             simulation
                 .set_push(-share * motors * force)
                 .expect("a push");
-            for _ in 0..1000 {
-                simulation.step().expect("finite");
-            }
+            advance(&mut simulation, 1.0);
             let speed = simulation.reading().velocity.x;
             assert_eq!(speed > 0.0, forwards, "{speed} m/s at {share} of the force");
         }

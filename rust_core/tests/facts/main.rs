@@ -11,6 +11,7 @@ mod common;
 mod engine_world;
 mod judge;
 
+mod accuracy;
 mod another_engine;
 mod basics;
 mod belt;

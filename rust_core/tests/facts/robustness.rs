@@ -107,7 +107,7 @@ fn wrong_json_gets_an_error_that_names_the_place_or_runs() {
             let mut changed = base.clone();
             *changed.pointer_mut(place).unwrap() = value.clone();
             let text = changed.to_string();
-            let result = catch_unwind(|| Scenario::from_json(&text).map(|s| s.step_count()));
+            let result = catch_unwind(|| Scenario::from_json(&text).map(|s| s.duration));
             let Ok(result) = result else {
                 panic!("panic at {place} = {value}")
             };

@@ -8,8 +8,10 @@ use crate::common::*;
 
 fn ends_in_a_stop(scenario: &Scenario) -> Simulation {
     let mut simulation = Simulation::new(&checked(scenario));
-    while !simulation.is_over() && simulation.steps() < scenario.step_count() {
-        simulation.step().expect("the state stays finite");
+    while !simulation.is_over() && simulation.time() < scenario.duration {
+        simulation
+            .step_until(scenario.duration)
+            .expect("the state stays finite");
     }
     simulation
 }
@@ -106,7 +108,8 @@ fn gain_when_braked(mut belt: Simulation) -> f64 {
     belt.set_speed(0.0).unwrap();
     let (start, weight) = (energy(&belt), 21.2 * G);
     let mut most = f64::NEG_INFINITY;
-    for _ in 0..2000 {
+    let end = belt.time() + 2.0;
+    while belt.time() < end {
         belt.step().unwrap();
         most = most.max((energy(&belt) - start) / weight);
     }
@@ -301,7 +304,7 @@ fn moves_under(stopped: &Simulation, force: f64) -> f64 {
         pushed
             .set_push(force * f64::from(i).min(5000.0) / 5000.0)
             .unwrap();
-        pushed.step().unwrap();
+        advance(&mut pushed, 1e-3);
         farthest = farthest.max((pushed.reading().position - start).length());
     }
     farthest

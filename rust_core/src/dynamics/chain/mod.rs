@@ -51,6 +51,8 @@ pub(super) struct Chain {
     free_spin: f64,
     /// The spring and damper of the idler in this piece.
     idler: Damper,
+    /// [m] How far it lagged behind its drive when the step began.
+    lagged: f64,
     /// Whether a shoe was too far off the guide to come back when last checked.
     pub is_off: bool,
 }
@@ -87,6 +89,7 @@ impl Chain {
             spin: 0.0,
             free_spin: 0.0,
             idler: Damper::default(),
+            lagged: 0.0,
             is_off: false,
             rule,
         }
@@ -287,6 +290,7 @@ impl Chain {
     /// Integrates how far the chain lags behind its sprocket or, while the motor holds the set-point, behind
     /// that.
     pub(super) fn count(&mut self, state: &State, set_point: f64, holds: bool, h: f64) {
+        self.lagged = self.pull.impulses.behind;
         let speed = match self.pull.lever {
             Some(lever) => lever * (state.angular_velocity - state.drives[self.rule.number].spin),
             None => set_point,
@@ -294,6 +298,11 @@ impl Chain {
         if holds || self.has_sprocket() {
             self.pull.impulses.behind += (speed - self.speed(state)) * h;
         }
+    }
+
+    /// Forgets the last count.
+    pub(super) fn rewind(&mut self) {
+        self.pull.impulses.behind = self.lagged;
     }
 
     pub(super) fn has_sprocket(&self) -> bool {

@@ -35,7 +35,8 @@ impl Steps {
     /// Takes a step with these contacts, sorted by part and x; returns their numbers.
     fn step(&mut self, contacts: &[Contact]) -> Vec<u64> {
         let mut contacts = contacts.to_vec();
-        self.identity.recognise(&self.last, &mut contacts, STEP);
+        self.identity.recognise(&self.last, &mut contacts, 0.0);
+        self.identity.keep(&self.last, STEP);
         self.last = contacts.iter().copied().map(LoadedContact::open).collect();
         contacts.iter().map(|contact| contact.number).collect()
     }

@@ -114,8 +114,13 @@ impl Watched {
         self.now.time = f64::from(self.steps) * STEP;
         self.now.commanded_speed = self.command;
         let drives = self.drives.iter().copied();
-        self.monitor
-            .observe(&self.now, self.command, &self.loaded, drives, &self.running);
+        self.monitor.observe(
+            (&self.now, self.now.forward_speed()),
+            self.command,
+            &self.loaded,
+            drives,
+            &self.running,
+        );
     }
 
     /// Moves at a velocity [m/s] and an angular velocity [rad/s] until a time [s].

@@ -29,6 +29,8 @@ impl Simulation {
             branch.state = self.state.clone();
             branch.dynamics.start_from(self.dynamics.impulses());
             branch.dents = self.dents.clone();
+            branch.pace = self.pace;
+            branch.seen_ahead = self.seen_ahead;
         }
         branch
     }
@@ -121,10 +123,10 @@ impl Simulation {
         };
         state.run_shoes(&model, now.track_speed);
         let mut branch = Self::of(scenario, ground, model, state);
-        branch.step = (self.time() / branch.time_step()).round() as u64;
+        (branch.time, branch.began) = (self.time, self.time);
         branch.command = self.command;
         branch.driver = self.driver;
-        branch.set_point = self.set_point;
+        (branch.set_point, branch.set_point_before) = (self.set_point, self.set_point);
         branch.dynamics.outer_force = self.dynamics.outer_force;
         branch.monitor.seen = Seen::from(branch.time());
         let mut contacts = branch.contacts_now();

@@ -3,14 +3,16 @@
 use super::Simulation;
 use super::drive;
 use super::gait::Sight;
+use super::pace::SAME_TIME;
 use crate::error::Error;
 use crate::geometry::{Vector, direction};
 use crate::robot::Mount;
-use crate::scenario::{Drive, End, Flippers, ScenarioError};
+use crate::scenario::{Drive, End, Flippers, Gait, ScenarioError};
 
 impl Simulation {
-    pub(super) fn command(&mut self) {
-        let (drive, time) = (&self.scenario.drive, self.step as f64 * self.time_step());
+    /// Decides what the drives and the flippers are to do from now on.
+    pub(super) fn decide(&mut self) {
+        let (drive, time) = (&self.scenario.drive, self.time);
         if let Some(speed) = self.driver.speed(drive, time) {
             self.command = speed;
         }
@@ -18,14 +20,41 @@ impl Simulation {
             let sight = Sight {
                 time,
                 chassis_angle: self.state.angle,
-                angle_ahead: self.state.moved(self.time_step()).1,
+                angular_velocity: self.state.angular_velocity,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
-            let angles = self.driver.angles(drive, flippers.angle, sight);
-            self.dynamics.command_flippers(&self.state, angles);
+            self.targets = self.driver.targets(drive, flippers.angle, sight);
         }
+    }
+
+    /// [s] When a command changes next, or the set-point reaches its command; infinite if neither does.
+    pub(super) fn next_change(&self) -> f64 {
+        let drive = &self.scenario.drive;
+        let of_flippers = match &drive.gait {
+            Some(Gait::Hold(hold)) => hold.schedule.as_deref(),
+            _ => None,
+        };
+        let entries = [drive.schedule.as_deref(), of_flippers];
+        let next = |entries: &[[f64; 2]]| {
+            let past = entries.partition_point(|[from, _]| *from <= self.time);
+            entries.get(past).map(|[from, _]| *from)
+        };
+        let next = entries.into_iter().flatten().filter_map(next);
         let limits = &self.scenario.robot.drivetrain;
-        self.set_point = drive::set_point(self.set_point, self.command, limits, self.time_step());
+        let ramp = drive::ramp_time(self.set_point, self.command, limits);
+        // A remainder that is only rounding is no ramp.
+        let ramp = if ramp > SAME_TIME {
+            ramp
+        } else {
+            f64::INFINITY
+        };
+        next.fold(self.time + ramp, f64::min)
+    }
+
+    /// [m/s] The set-point of the drivetrain after a time [s].
+    pub(super) fn set_point_after(&self, time: f64) -> f64 {
+        let limits = &self.scenario.robot.drivetrain;
+        drive::set_point(self.set_point, self.command, limits, time)
     }
 
     /// Whether the flipper at an end bears on something beyond its root.

@@ -2,8 +2,24 @@
 
 use crate::scenario::Drivetrain;
 
-/// [m/s] The next set-point; its magnitude rises and falls at the drivetrain's rates.
+/// [m/s] The set-point after `dt` [s]; its magnitude rises and falls at the drivetrain's rates.
 pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) -> f64 {
+    let (target, rate) = ramp(now, command, limits);
+    now + (target - now).clamp(-rate * dt, rate * dt)
+}
+
+/// [s] How long the set-point changes at the same rate; infinite if it has its command.
+pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
+    let (target, rate) = ramp(now, command, limits);
+    if target == now {
+        f64::INFINITY
+    } else {
+        (target - now).abs() / rate
+    }
+}
+
+/// [m/s] Where the set-point goes, and [m/s^2] its rate.
+fn ramp(now: f64, command: f64, limits: &Drivetrain) -> (f64, f64) {
     let slowing = now * command < 0.0 || command.abs() < now.abs();
     let target = if now * command < 0.0 { 0.0 } else { command };
     let rate = if slowing {
@@ -11,7 +27,7 @@ pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) ->
     } else {
         limits.max_acceleration
     };
-    now + (target - now).clamp(-rate * dt, rate * dt)
+    (target, rate)
 }
 
 #[cfg(test)]
@@ -32,6 +48,13 @@ mod tests {
         assert!((set_point(0.1, 0.4, &LIMITS, 0.1) - 0.12).abs() < 1e-15);
         assert!((set_point(0.4, 0.0, &LIMITS, 0.05) - 0.2).abs() < 1e-15);
         assert!((set_point(-0.1, -0.4, &LIMITS, 0.1) + 0.12).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_ramp_lasts_until_the_command_or_a_stand() {
+        assert!((ramp_time(0.1, 0.4, &LIMITS) - 1.5).abs() < 1e-12);
+        assert!((ramp_time(0.1, -0.4, &LIMITS) - 0.025).abs() < 1e-12);
+        assert!(ramp_time(0.4, 0.4, &LIMITS).is_infinite());
     }
 
     #[test]

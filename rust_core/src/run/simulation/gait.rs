@@ -11,10 +11,25 @@ pub(crate) struct Sight {
     pub time: f64,
     /// [rad] Chassis angle, nose up > 0.
     pub chassis_angle: f64,
-    /// [rad] The same at the end of the next step, if it keeps turning at the same rate.
-    pub angle_ahead: f64,
+    /// [rad/s] Its rate.
+    pub angular_velocity: f64,
     /// Whether the front and the rear flippers bear on something beyond their roots.
     pub touches: [bool; 2],
+}
+
+/// Where a driver wants the flippers at one end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Target {
+    /// [rad] Angle relative to the chassis, upwards > 0.
+    pub angle: f64,
+    /// [rad/s] Rate at which this angle changes.
+    pub rate: f64,
+}
+
+impl Target {
+    fn fixed(angle: f64) -> Self {
+        Self { angle, rate: 0.0 }
+    }
 }
 
 /// What a driver remembers.
@@ -61,18 +76,18 @@ impl Driver {
         self.by_hand[end] = Some(angle);
     }
 
-    /// [rad] Commanded angles of the front and rear flippers, upwards > 0; `start` is their angle at time 0.
-    pub(crate) fn angles(&mut self, drive: &Drive, start: f64, sight: Sight) -> [f64; 2] {
+    /// Where it wants the front and rear flippers; `start` is their angle at time 0 [rad].
+    pub(crate) fn targets(&mut self, drive: &Drive, start: f64, sight: Sight) -> [Target; 2] {
         let of_gait = match &drive.gait {
-            None => [start; 2],
-            Some(Gait::Hold(hold)) => [hold.angle_at(sight.time); 2],
+            None => [Target::fixed(start); 2],
+            Some(Gait::Hold(hold)) => [Target::fixed(hold.angle_at(sight.time)); 2],
             Some(Gait::Climb(climb)) => self.climb(climb, start, sight),
         };
-        std::array::from_fn(|end| self.by_hand[end].unwrap_or(of_gait[end]))
+        std::array::from_fn(|end| self.by_hand[end].map_or(of_gait[end], Target::fixed))
     }
 
-    /// [rad] Commanded angles of the flippers during a climb.
-    fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [f64; 2] {
+    /// Where the flippers are to be during a climb.
+    fn climb(&mut self, climb: &Climb, start: f64, sight: Sight) -> [Target; 2] {
         let [front, rear] = sight.touches;
         let raised = sight.chassis_angle > climb.level_angle;
         self.phase = match self.phase {
@@ -83,11 +98,19 @@ impl Driver {
             Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
-        // With the present chassis angle, the arms would lag by the turn of one step.
-        let swept = climb.sweep_angle - sight.angle_ahead;
-        let pushed = climb.push_angle + sight.angle_ahead;
+        // Level arms turn against the chassis as fast as it turns; otherwise they would lag behind.
+        let (angle, rate) = (sight.chassis_angle, sight.angular_velocity);
+        let swept = Target {
+            angle: climb.sweep_angle - angle,
+            rate: -rate,
+        };
+        let pushed = Target {
+            angle: climb.push_angle + angle,
+            rate,
+        };
+        let (reach, start) = (Target::fixed(climb.reach_angle), Target::fixed(start));
         match self.phase {
-            Phase::Reach => [climb.reach_angle, start],
+            Phase::Reach => [reach, start],
             Phase::Sweep => [swept, start],
             Phase::Lift => [swept, pushed],
         }

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::Simulation;
 use super::gait::Driver;
+use super::pace::Pace;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
@@ -33,7 +34,10 @@ struct Image {
 #[derive(Serialize, Deserialize)]
 struct Moment {
     scenario: String,
-    step: u64,
+    time: f64,
+    steps: u64,
+    pace: Pace,
+    seen_ahead: f64,
     command: f64,
     driver: Driver,
     set_point: f64,
@@ -49,7 +53,10 @@ impl Simulation {
     pub fn snapshot(&self) -> Vec<u8> {
         let moment = Moment {
             scenario: self.scenario.to_json(),
-            step: self.step,
+            time: self.time,
+            steps: self.steps,
+            pace: self.pace,
+            seen_ahead: self.seen_ahead,
             command: self.command,
             driver: self.driver,
             set_point: self.set_point,
@@ -103,10 +110,13 @@ impl Simulation {
             let rule = "must hold a state that its own robot and ground can reach";
             return Err(refused("an impossible state", rule));
         }
-        simulation.step = moment.step;
+        (simulation.time, simulation.began) = (moment.time, moment.time);
+        simulation.steps = moment.steps;
+        simulation.pace = moment.pace;
+        simulation.seen_ahead = moment.seen_ahead;
         simulation.command = moment.command;
         simulation.driver = moment.driver;
-        simulation.set_point = moment.set_point;
+        (simulation.set_point, simulation.set_point_before) = (moment.set_point, moment.set_point);
         simulation.set_push(moment.push)?;
         simulation.state = moment.state;
         simulation.dynamics.start_from(moment.impulses);
@@ -119,17 +129,22 @@ impl Simulation {
 impl Simulation {
     /// Whether the simulation can have reached a moment, because a snapshot may come from a stranger.
     fn fits(&self, moment: &Moment) -> bool {
-        /// Number of steps in more than a day.
-        const MOST_STEPS: u64 = 1 << 40;
+        /// [s] More than any run lasts.
+        const LATEST: f64 = 1e9;
+        /// Number of steps that no run comes near.
+        const MOST_STEPS: u64 = 1 << 50;
         /// [m] Largest distance beyond the ground and above it; a falling robot may be anywhere below.
         const FAR: f64 = 1e6;
 
         let (model, lanes) = (self.dynamics.model(), &self.ground.lanes);
-        let time = moment.step as f64 * self.time_step();
+        let time = moment.time;
         let (low, high) = self.ground.extent();
         let (x, y) = (moment.state.center.x, moment.state.center.y);
         let fastest = self.scenario.robot.drivetrain.max_speed;
-        moment.step <= MOST_STEPS
+        (0.0..LATEST).contains(&time)
+            && moment.steps <= MOST_STEPS
+            && moment.pace.fits()
+            && (0.0..FAR).contains(&moment.seen_ahead)
             && (low - FAR..=high + FAR).contains(&x)
             && y < FAR + self.ground.highest()
             && moment.command.abs() <= fastest

@@ -57,11 +57,13 @@ fn end_by_core(scenario: &Scenario) -> Reading {
     let mut simulation = Simulation::new(&checked(scenario));
     loop {
         let reading = simulation.reading();
-        let is_last = simulation.is_over() || simulation.steps() >= scenario.step_count();
+        let is_last = simulation.is_over() || simulation.time() >= scenario.duration;
         if reading.position.x > goal || is_last {
             return reading;
         }
-        simulation.step().expect("the state stays finite");
+        simulation
+            .step_until(scenario.duration)
+            .expect("the state stays finite");
     }
 }
 

@@ -64,7 +64,7 @@ fn what_was_seen_with_one_thing_spoilt_does_not_fit() {
             // A facet that this ground does not have.
             let contact = on_facet(99, 10.0);
             let signals = &mut r.monitor.seen.signals;
-            signals.add(&r.now, &[contact], std::iter::empty(), 1.0);
+            signals.add((&r.now, STEP), &[contact], std::iter::empty(), 1.0);
         }),
     ];
     for (what, spoil) in all {

@@ -141,6 +141,9 @@ fn what_is_remembered_of_a_stop_is_its_own() {
 fn an_edge_inside_the_track_is_an_event_with_the_force_on_it() {
     let mut robot = astride();
     robot.loaded = vec![on_top(60.0), on_top(40.0), on_facet(0, 500.0)];
+    for (number, loaded) in (1..).zip(&mut robot.loaded) {
+        loaded.contact.number = number;
+    }
     robot.stands_until(0.5);
     let events = robot.monitor.events(0.5);
     let kinds: Vec<EventKind> = events.iter().map(|event| event.kind).collect();

@@ -51,8 +51,9 @@ fn of_nobody() -> Contact {
 type Spoil = fn(&mut Moment);
 
 /// Each spoils one thing.
-const SPOILS: [(&str, Spoil); 13] = [
-    ("step", |m| m.step += 1000),
+const SPOILS: [(&str, Spoil); 14] = [
+    ("time", |m| m.time += 1.0),
+    ("pace", |m| m.pace = Pace::never()),
     ("x", |m| m.state.center.x = f64::NAN),
     ("y", |m| m.state.center.y = f64::NAN),
     ("endless height", |m| m.state.center.y = f64::INFINITY),
@@ -96,19 +97,19 @@ fn a_snapshot_of_a_moment_that_does_not_fit_is_refused() {
 }
 
 #[test]
-fn a_moment_fits_up_to_the_most_steps() {
+fn a_moment_fits_up_to_the_latest_time_and_the_most_steps() {
     let genuine = Genuine::new();
-    let time_step = genuine.simulation.time_step();
-    let fits = |step: u64| {
+    let at = |time: f64| {
         genuine.fits(|m| {
-            m.step = step;
-            m.seen = Seen::from(step as f64 * time_step);
+            m.time = time;
+            m.seen = Seen::from(time);
         })
     };
-    let most = 1 << 40;
-    assert!(fits(0));
-    assert!(fits(most));
-    assert!(!fits(most + 1));
+    assert!(at(0.0) && at(1e9_f64.next_down()));
+    assert!(!at(1e9) && !at(-1.0) && !at(f64::NAN));
+    let after = |steps: u64| genuine.fits(|m| m.steps = steps);
+    assert!(after(1 << 50));
+    assert!(!after((1 << 50) + 1));
 }
 
 #[test]

@@ -1,0 +1,43 @@
+//! The local error of a step: by how much its motion differs from the mean of the velocities at its ends.
+//!
+//! The motion takes the velocities of the closing solve, a rule of the middle; the mean of the velocities before and
+//! after is the rule of the trapezoid. Both are of second order, and they differ most where velocities jump.
+//!
+//! The equations: docs/physics.md, "Length of a step".
+
+use super::Dynamics;
+use super::row::Row;
+use super::state::{State, Twist};
+
+impl Dynamics {
+    /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
+    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface.
+    pub(crate) fn local_error(&self, before: &State, after: &State, h: f64, reach: f64) -> f64 {
+        let moved = &self.moved;
+        let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;
+        let off_twist = |ends: [Twist; 2], middle: Twist| Twist {
+            velocity: (ends[0].velocity + ends[1].velocity) * 0.5 - middle.velocity,
+            turn: off(ends.map(|twist| twist.turn), middle.turn),
+        };
+        let chassis = off_twist([before.twist(), after.twist()], moved.twist());
+        let of_chassis = chassis.velocity.length();
+        let mut most = of_chassis + reach * chassis.turn.abs();
+        for (k, drive) in moved.drives.iter().enumerate() {
+            let spin = off([before.drives[k].spin, after.drives[k].spin], drive.spin);
+            most = most.max(self.model.drive_radius * (spin - chassis.turn).abs());
+        }
+        for (k, flipper) in moved.flippers.iter().enumerate() {
+            let rate = off(
+                [before.flippers[k].rate, after.flippers[k].rate],
+                flipper.rate,
+            );
+            most = most.max(of_chassis + reach * rate.abs());
+        }
+        for (k, shoe) in moved.shoes.iter().enumerate() {
+            let shoe = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
+            most = most.max(shoe.velocity.length());
+        }
+        let dips = self.rows.iter().map(Row::dip);
+        dips.fold(h * most, f64::max)
+    }
+}

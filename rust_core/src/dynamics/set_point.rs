@@ -1,0 +1,23 @@
+//! The set-point of the drives in a step.
+//!
+//! The equations: docs/physics.md, "Motors".
+
+/// [m/s] Set-points of the surfaces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SetPoint {
+    /// In the middle of the step, for its motion.
+    pub middle: f64,
+    /// At its end.
+    pub end: f64,
+}
+
+#[cfg(test)]
+impl SetPoint {
+    /// One that does not change.
+    pub(super) fn constant(speed: f64) -> Self {
+        Self {
+            middle: speed,
+            end: speed,
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What is seen of a simulation at an instant: at the end of a step, or within the last one.
+
+use super::Simulation;
+use crate::dynamics::State;
+use crate::geometry::Pose;
+use crate::observe::Reading;
+use crate::robot::{Model, Running};
+
+/// A simulation at an instant.
+#[derive(Clone, Copy)]
+pub(crate) struct Moment<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    /// [s] Simulated time.
+    pub time: f64,
+    /// [m/s] Set-point of the drivetrain.
+    pub set_point: f64,
+}
+
+impl Moment<'_> {
+    /// Pose of the chassis frame.
+    pub(crate) fn pose(&self) -> Pose {
+        self.state.pose(self.model)
+    }
+
+    /// The state as users see it.
+    pub(crate) fn reading(&self) -> Reading {
+        let (state, pose) = (self.state, self.pose());
+        let driven = 0..self.model.motors;
+        let motors = self.model.motors as f64;
+        Reading {
+            time: self.time,
+            position: pose.translation,
+            velocity: state.velocity_at(pose.translation),
+            chassis_angle: state.angle,
+            angular_velocity: state.angular_velocity,
+            commanded_speed: self.set_point,
+            track_speed: driven.clone().map(|k| self.drive_speed(k)).sum::<f64>() / motors,
+            track_position: driven.map(|k| state.drives[k].position).sum::<f64>() / motors,
+        }
+    }
+
+    /// Positions of the moving parts.
+    pub(crate) fn running(&self, running: &mut Running) {
+        self.state.running_after(0.0, self.model, running);
+    }
+
+    /// [m/s] Surface speed of one drive.
+    pub(crate) fn drive_speed(&self, drive: usize) -> f64 {
+        self.state.track_speed(self.model, drive)
+    }
+
+    /// [rad] Angles of the flippers relative to the chassis, the front first, upwards > 0.
+    pub(crate) fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
+        let flippers = self.model.flippers.iter().enumerate();
+        flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
+    }
+
+    /// [rad/s] Rates of these angles.
+    pub(crate) fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
+        let turns = self.model.flippers.iter().zip(&self.state.flippers);
+        turns.map(|(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
+    }
+
+    /// [N m] Torques of the flipper motors, means over the last step, upwards > 0.
+    pub(crate) fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
+        let turns = self.model.flippers.iter().zip(&self.state.flippers);
+        turns.map(|(flipper, turn)| flipper.sign() * turn.torque)
+    }
+}
+
+impl Simulation {
+    /// The present instant.
+    pub(crate) fn now(&self) -> Moment<'_> {
+        Moment {
+            model: self.dynamics.model(),
+            state: &self.state,
+            time: self.time,
+            set_point: self.set_point,
+        }
+    }
+
+    /// An instant of the last step, whose state is written to `state`.
+    pub(crate) fn at<'a>(&'a self, time: f64, state: &'a mut State) -> Moment<'a> {
+        if time >= self.time {
+            return self.now();
+        }
+        let h = self.time - self.began;
+        let share = (time - self.began) / h;
+        let model = self.dynamics.model();
+        state.set_between([&self.before, &self.state], model, (h, share));
+        Moment {
+            model,
+            state,
+            time,
+            set_point: self.set_point_before + (self.set_point - self.set_point_before) * share,
+        }
+    }
+
+    /// Shows the last step to the monitor, in parts that end when it looks.
+    pub(super) fn observe(&mut self) {
+        // First, because a chain that has come off takes precedence over all other outcomes of the same step.
+        if !self.dynamics.model().chains.is_empty() {
+            self.monitor.observe_chains(self.dynamics.chain_reading());
+        }
+        self.monitor.observe_effort(self.effort);
+        let mut state = std::mem::take(&mut self.seen_state);
+        let mut from = self.began;
+        while from < self.time {
+            let look = self.monitor.next_look();
+            let to = if look > from {
+                look.min(self.time)
+            } else {
+                self.time
+            };
+            self.observe_part(from, to, &mut state);
+            from = to;
+        }
+        self.seen_state = state;
+    }
+
+    fn observe_part(&mut self, from: f64, to: f64, state: &mut State) {
+        let mut speeds = std::mem::take(&mut self.speeds);
+        let mut running = std::mem::take(&mut self.then);
+        let middle = self.at(0.5 * (from + to), state);
+        speeds.clear();
+        speeds.extend((0..middle.state.drives.len()).map(|k| middle.drive_speed(k)));
+        let forward_speed = middle.reading().forward_speed();
+        let end = self.at(to, state);
+        let reading = end.reading();
+        if !end.model.flippers.is_empty() {
+            end.running(&mut running);
+        }
+        let drives = self
+            .state
+            .drives
+            .iter()
+            .copied()
+            .zip(speeds.iter().copied());
+        self.monitor.observe(
+            (&reading, forward_speed),
+            self.command,
+            self.dynamics.loaded(),
+            drives,
+            &running,
+        );
+        (self.speeds, self.then) = (speeds, running);
+    }
+}

@@ -1,0 +1,197 @@
+//! One step: tried, judged by its local error, and kept or tried again with a shorter one.
+
+use super::Simulation;
+use super::pace::arrive;
+use crate::dynamics::{Effort, SetPoint};
+use crate::error::{Error, SimulationError};
+
+/// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
+/// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
+const COLLISION_SPEED: f64 = 0.001;
+/// [s] Length of the step with a collision. What motor and weight do in the step in which a wheel strikes an
+/// edge adds to the impact in proportion to its length: 0.25 ms would shift the friction at which a robot just
+/// climbs by 1 %, this value shifts it by less than 0.1 %.
+const COLLISION_STEP: f64 = 2e-5;
+/// [m] Depth up to which new contacts are found; half of what counts as sinking in.
+const UNSEEN: f64 = 5e-4;
+/// A step that is cut short by more than this share looks for its contacts again.
+const CUT: f64 = 0.1;
+
+/// A step that was tried.
+struct Tried {
+    /// [s] Its length.
+    h: f64,
+    /// Whether something strikes the ground in it.
+    strikes: bool,
+    set_point: SetPoint,
+}
+
+impl Simulation {
+    /// Advances by one step.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`] if the state has become non-finite; the simulation cannot go on then.
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.step_until(f64::INFINITY)
+    }
+
+    /// Advances by a duration [s]; the last step ends with it.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn advance(&mut self, duration: f64) -> Result<(), Error> {
+        let end = self.time + duration;
+        while self.time < end {
+            self.step_until(end)?;
+        }
+        Ok(())
+    }
+
+    /// [s] Length of the last step.
+    pub fn last_step(&self) -> f64 {
+        self.time - self.began
+    }
+
+    /// Advances by one step that ends at `limit` [s] at the latest.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn step_until(&mut self, limit: f64) -> Result<(), Error> {
+        self.decide();
+        let limit = limit.min(self.next_change());
+        self.effort = Effort {
+            steps: 1,
+            ..Effort::default()
+        };
+        self.before.copy(&self.state);
+        let limit = limit.min(self.time + self.known());
+        let mut h = self.pace.next(self.rule, self.time, limit);
+        let tried = loop {
+            let tried = self.attempt(h);
+            self.effort = self.effort.plus(self.dynamics.effort());
+            if tried.strikes && self.state.is_finite() {
+                break tried;
+            }
+            let error = self.local_error(tried.h);
+            match self.pace.judge(self.rule, tried.h, error) {
+                Ok(()) => break tried,
+                Err(shorter) => {
+                    self.state.copy(&self.before);
+                    self.dynamics.rewind();
+                    self.effort.repeated_steps += 1;
+                    h = shorter;
+                }
+            }
+        };
+        self.steps += 1;
+        if !self.state.is_finite() {
+            let body = "the robot".to_owned();
+            let step = self.steps;
+            return Err(SimulationError { step, body }.into());
+        }
+        self.keep(&tried, limit);
+        self.observe();
+        Ok(())
+    }
+
+    /// [m] The local error of the step that was tried; not a number if the state is none.
+    fn local_error(&self, h: f64) -> f64 {
+        if self.state.is_finite() {
+            self.dynamics
+                .local_error(&self.before, &self.state, h, self.reach)
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// Tries a step of `h` [s]. It ends just before a part strikes the ground; the next, with the impact, is short.
+    fn attempt(&mut self, h: f64) -> Tried {
+        let mut h = h;
+        let strikes = loop {
+            self.find_contacts(h);
+            let (piece, strikes) = self.piece(h);
+            let is_cut = piece < (1.0 - CUT) * h;
+            h = piece;
+            // The middle of a shorter step is elsewhere.
+            if !is_cut {
+                break strikes;
+            }
+        };
+        let set_point = SetPoint {
+            middle: self.set_point_after(0.5 * h),
+            end: self.set_point_after(h),
+        };
+        let [angles, rates] = [
+            self.targets.map(|target| target.angle),
+            self.targets.map(|target| target.rate),
+        ];
+        self.dynamics
+            .command_flippers(&self.state, angles, rates, h);
+        self.dynamics.advance(&mut self.state, set_point, h);
+        Tried {
+            h,
+            strikes,
+            set_point,
+        }
+    }
+
+    /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
+    fn piece(&self, h: f64) -> (f64, bool) {
+        let strike = self.dynamics.next_strike(&self.state, (h, COLLISION_SPEED));
+        if strike > h {
+            return (h, false);
+        }
+        let before = strike - 0.5 * COLLISION_STEP;
+        let (piece, strikes) = if before > COLLISION_STEP {
+            (before, false)
+        } else {
+            (COLLISION_STEP, true)
+        };
+        // Leaves no remainder shorter than a collision.
+        if h - piece < COLLISION_STEP {
+            (h, strikes)
+        } else {
+            (piece, strikes)
+        }
+    }
+
+    /// [s] For how long the last search for contacts holds: nothing that it could not see may get deeper into the
+    /// robot than the next one looks, which is in the middle of the next step.
+    fn known(&self) -> f64 {
+        2.0 * (self.seen_ahead + UNSEEN) / self.dynamics.fastest(&self.state, self.reach)
+    }
+
+    fn find_contacts(&mut self, h: f64) {
+        let speed = self.dynamics.fastest(&self.state, self.reach);
+        let travel = speed * h;
+        // A fast body finds a contact one step before it closes.
+        let prediction = self.scenario.solver.prediction_distance.max(travel);
+        self.seen_now = prediction - 0.5 * travel;
+        // In the middle of the step: with normals from its beginning, the error would be as large as the angle that
+        // a wheel turns round an edge in half a step.
+        let (half, model) = (0.5 * h, self.dynamics.model());
+        let middle = self.state.pose_after(half, model);
+        self.state.running_after(half, model, &mut self.then);
+        self.contact
+            .find(middle, &self.then, prediction, &mut self.contacts);
+        self.dynamics.recognise(&mut self.contacts, travel);
+        self.dents_now.clone_from(&self.dents);
+        let last = self.dynamics.loaded().iter().map(|l| &l.contact);
+        self.dents_now.forgive(&mut self.contacts, &last);
+        self.dynamics.prepare(&self.state, &self.contacts, h);
+    }
+
+    fn keep(&mut self, tried: &Tried, limit: f64) {
+        self.seen_ahead = self.seen_now;
+        self.began = self.time;
+        self.time = arrive(self.time + tried.h, limit);
+        self.set_point_before = self.set_point;
+        self.set_point = tried.set_point.end;
+        let h = tried.h;
+        self.dynamics
+            .keep(&self.state, &self.contacts, h, tried.strikes);
+        std::mem::swap(&mut self.dents, &mut self.dents_now);
+        let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
+        self.dents.heal(contacts);
+    }
+}
