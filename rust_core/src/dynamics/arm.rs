@@ -14,7 +14,9 @@ use crate::robot::Flipper;
 pub(super) struct Arm {
     pub rule: Flipper,
     pub motor: Motor,
-    /// [rad/s] Rate relative to the chassis that is commanded in this step.
+    /// [rad/s] Rates relative to the chassis that are commanded for the motion of the step and at its end.
+    pub rates: [f64; 2],
+    /// [rad/s] The one that this solve aims at.
     pub rate: f64,
     /// [m] From the chassis' centre of mass to the pivot, in the middle of the step.
     pub pivot: Vector,
@@ -30,6 +32,7 @@ impl Arm {
         Self {
             rule,
             motor: if has_motor { Motor::Holds } else { Motor::Free },
+            rates: [0.0; 2],
             rate: 0.0,
             pivot: Vector::ZERO,
             center: Vector::ZERO,

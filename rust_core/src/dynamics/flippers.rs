@@ -20,10 +20,6 @@ use super::system::Acts;
 use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 
-/// [s] Time constant with which arms approach the commanded angle. If they aimed at it in each step, the commanded
-/// rate would be the rounding of the angle over the length of the step, and their motors would chase it.
-const APPROACH_TIME: f64 = 0.01;
-
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, and their rates [rad/s], front and rear, for a step of
     /// `h` [s].
@@ -36,10 +32,20 @@ impl Dynamics {
     ) {
         for (k, arm) in self.flippers.iter_mut().enumerate() {
             let end = usize::from(arm.rule.end == End::Rear);
-            let sign = arm.rule.sign();
+            let (sign, limit) = (arm.rule.sign(), arm.rule.rate_limit);
             let way = sign * angles[end] - state.over_chassis(k);
-            let rate = way / h.max(APPROACH_TIME) + sign * rates[end];
-            arm.rate = rate.clamp(-arm.rule.rate_limit, arm.rule.rate_limit);
+            let (needed, kept) = (way / h + sign * rates[end], sign * rates[end]);
+            // What it reaches in this step it does not pass.
+            let end = if needed.abs() <= limit { kept } else { needed };
+            arm.rates = [needed, end].map(|rate| rate.clamp(-limit, limit));
+            arm.rate = arm.rates[0];
+        }
+    }
+
+    /// Has the motors aim at what they are to do at the end of the step.
+    pub(super) fn aim_at_end(&mut self) {
+        for arm in &mut self.flippers {
+            arm.rate = arm.rates[1];
         }
     }
 

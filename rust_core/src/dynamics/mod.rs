@@ -244,6 +244,7 @@ impl Dynamics {
         phase.velocity += self.kick(half);
         self.pull_flippers(state, phase.angular_velocity, half);
         (phase.set_point, phase.elapsed) = (set_point.end, h);
+        self.aim_at_end();
         self.guess_more(half);
         self.solve(state, &phase);
         self.end_phase(state, phase);
