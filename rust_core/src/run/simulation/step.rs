@@ -1,7 +1,7 @@
 //! One step: tried, judged by its local error, and kept or tried again with a shorter one.
 
 use super::Simulation;
-use super::pace::arrive;
+use super::pace::{SAME_TIME, arrive};
 use crate::dynamics::{Effort, SetPoint};
 use crate::error::{Error, SimulationError};
 
@@ -59,6 +59,11 @@ impl Simulation {
     pub fn step_until(&mut self, limit: f64) -> Result<(), Error> {
         self.decide();
         let limit = limit.min(self.next_change());
+        if limit - self.time < SAME_TIME {
+            // Only rounding is left.
+            self.time = limit;
+            return Ok(());
+        }
         self.effort = Effort {
             steps: 1,
             ..Effort::default()
@@ -67,7 +72,7 @@ impl Simulation {
         let limit = limit.min(self.time + self.known());
         let mut h = self.pace.next(self.rule, self.time, limit);
         let tried = loop {
-            let tried = self.attempt(h);
+            let tried = self.attempt(h, limit - self.time);
             self.effort = self.effort.plus(self.dynamics.effort());
             if tried.strikes && self.state.is_finite() {
                 break tried;
@@ -104,12 +109,12 @@ impl Simulation {
         }
     }
 
-    /// Tries a step of `h` [s]. It ends just before a part strikes the ground; the next, with the impact, is short.
-    fn attempt(&mut self, h: f64) -> Tried {
+    /// Tries a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the ground; the next, with the impact, is short.
+    fn attempt(&mut self, h: f64, left: f64) -> Tried {
         let mut h = h;
         let strikes = loop {
             self.find_contacts(h);
-            let (piece, strikes) = self.piece(h);
+            let (piece, strikes) = self.piece(h, left);
             let is_cut = piece < (1.0 - CUT) * h;
             h = piece;
             // The middle of a shorter step is elsewhere.
@@ -136,7 +141,7 @@ impl Simulation {
     }
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
-    fn piece(&self, h: f64) -> (f64, bool) {
+    fn piece(&self, h: f64, left: f64) -> (f64, bool) {
         let strike = self.dynamics.next_strike(&self.state, (h, COLLISION_SPEED));
         if strike > h {
             return (h, false);
@@ -148,8 +153,8 @@ impl Simulation {
             (COLLISION_STEP, true)
         };
         // Leaves no remainder shorter than a collision.
-        if h - piece < COLLISION_STEP {
-            (h, strikes)
+        if left - piece < COLLISION_STEP {
+            (left, strikes)
         } else {
             (piece, strikes)
         }
