@@ -164,19 +164,16 @@ impl Dynamics {
         // The slope rises, linearly between two kinks.
         let mut kinks = std::mem::take(&mut self.kinks);
         kinks.clear();
-        for row in self.rows.iter().filter(|row| row.bears) {
-            let changes = self.changes_of(row, change);
-            row.kinks(state, changes, |share| {
-                if 0.0 < share && share < 1.0 {
-                    kinks.push(share);
-                }
-            });
-        }
-        self.kinks_of_servos(state, change, |share| {
+        let mut keep = |share: f64| {
             if 0.0 < share && share < 1.0 {
                 kinks.push(share);
             }
-        });
+        };
+        for row in self.rows.iter().filter(|row| row.bears) {
+            let changes = self.changes_of(row, change);
+            row.kinks(state, changes, &mut keep);
+        }
+        self.kinks_of_servos(state, change, keep);
         kinks.sort_unstable_by(f64::total_cmp);
         let falls = |share: &f64| self.slope(state, change, phase, *share) <= 0.0;
         let next = kinks.partition_point(falls);
@@ -230,20 +227,13 @@ impl Row {
     /// constant impulse.
     fn frozen_dampers(&self, [approach, slip]: [f64; 2]) -> [Damper; 2] {
         let [normal, tangent] = self.dampers;
-        let stuck = tangent.at(slip);
         [
             if normal.at(approach) > 0.0 {
                 normal
             } else {
                 Damper::default()
             },
-            if stuck.abs() <= self.limit {
-                tangent
-            } else if self.limit > 0.0 {
-                Damper::constant(self.limit.copysign(stuck))
-            } else {
-                Damper::default()
-            },
+            tangent.up_to(self.limit, slip),
         ]
     }
 

@@ -46,12 +46,7 @@ impl Servo {
 
     /// Its damper at a speed: beyond a limit, a constant impulse.
     pub(super) fn damper_at(&self, speed: f64) -> Damper {
-        let impulse = self.holding.at(speed);
-        if impulse.abs() <= self.limit {
-            self.holding
-        } else {
-            Damper::constant(self.limit.copysign(impulse))
-        }
+        self.holding.up_to(self.limit, speed)
     }
 
     /// The state of a motor with this impulse.

@@ -173,16 +173,6 @@ impl State {
         }
     }
 
-    /// Makes this state equal to another, without asking for memory.
-    pub(crate) fn copy(&mut self, other: &Self) {
-        (self.center, self.angle) = (other.center, other.angle);
-        (self.velocity, self.angular_velocity) = (other.velocity, other.angular_velocity);
-        self.drives.clone_from(&other.drives);
-        self.shoes.clone_from(&other.shoes);
-        self.idlers.clone_from(&other.idlers);
-        self.flippers.clone_from(&other.flippers);
-    }
-
     /// Velocity of the chassis.
     pub(crate) fn twist(&self) -> Twist {
         Twist {

@@ -172,17 +172,17 @@ impl Simulation {
 
     /// [rad] Angles of the flippers relative to the chassis, the front first, upwards > 0.
     pub fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
-        self.now().flipper_angles().collect::<Vec<_>>().into_iter()
+        self.now().flipper_angles()
     }
 
     /// [rad/s] Rates of these angles.
     pub fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
-        self.now().flipper_rates().collect::<Vec<_>>().into_iter()
+        self.now().flipper_rates()
     }
 
     /// [N m] Torques of the flipper motors, means over the last step, upwards > 0.
     pub fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
-        self.now().flipper_torques().collect::<Vec<_>>().into_iter()
+        self.now().flipper_torques()
     }
 
     /// [s] Simulated time.

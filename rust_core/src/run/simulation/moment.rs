@@ -17,7 +17,7 @@ pub(crate) struct Moment<'a> {
     pub set_point: f64,
 }
 
-impl Moment<'_> {
+impl<'a> Moment<'a> {
     /// Pose of the chassis frame.
     pub(crate) fn pose(&self) -> Pose {
         self.state.pose(self.model)
@@ -51,21 +51,21 @@ impl Moment<'_> {
     }
 
     /// [rad] Angles of the flippers relative to the chassis, the front first, upwards > 0.
-    pub(crate) fn flipper_angles(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn flipper_angles(self) -> impl Iterator<Item = f64> + 'a {
         let flippers = self.model.flippers.iter().enumerate();
-        flippers.map(|(k, flipper)| flipper.sign() * self.state.over_chassis(k))
+        flippers.map(move |(k, flipper)| flipper.sign() * self.state.over_chassis(k))
     }
 
     /// [rad/s] Rates of these angles.
-    pub(crate) fn flipper_rates(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn flipper_rates(self) -> impl Iterator<Item = f64> + 'a {
         let turns = self.model.flippers.iter().zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
+        turns.map(move |(flipper, turn)| flipper.sign() * (turn.rate - self.state.angular_velocity))
     }
 
     /// [N m] Torques of the flipper motors, means over the last step, upwards > 0.
-    pub(crate) fn flipper_torques(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn flipper_torques(self) -> impl Iterator<Item = f64> + 'a {
         let turns = self.model.flippers.iter().zip(&self.state.flippers);
-        turns.map(|(flipper, turn)| flipper.sign() * turn.torque)
+        turns.map(move |(flipper, turn)| flipper.sign() * turn.torque)
     }
 }
 

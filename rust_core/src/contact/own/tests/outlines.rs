@@ -21,6 +21,18 @@ pub(super) struct Outline {
 
 pub(super) const KINDS: usize = 5;
 
+/// A part of this shape on the chassis, with a drive.
+pub(super) fn driven(shape: Shape) -> Part {
+    Part {
+        kind: BodyKind::Wheel,
+        shape,
+        drive: Some(0),
+        friction_limit: f64::INFINITY,
+        lane: 0,
+        mount: Mount::Chassis,
+    }
+}
+
 impl Outline {
     pub(super) fn random(kind: usize, draw: &mut Draw) -> Self {
         let center = Vector::new(draw.between(-0.3, 0.3), draw.between(-0.1, 0.1));
@@ -56,16 +68,8 @@ impl Outline {
             Shape::Gear { gear, .. } => gear.tip_thickness,
             _ => reach,
         };
-        let part = Part {
-            kind: BodyKind::Wheel,
-            shape,
-            drive: Some(0),
-            friction_limit: f64::INFINITY,
-            lane: 0,
-            mount: Mount::Chassis,
-        };
         Self {
-            part,
+            part: driven(shape),
             reach,
             thinnest,
             curves,

@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 
 use super::super::OwnContact;
 use super::judge::Approach;
+use super::outlines::driven;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
 use crate::draw::Draw;
 use crate::geometry::{Disc, Pose, Vector, cross, left_of};
-use crate::robot::{BodyKind, Mount, Part, Running, Shape};
+use crate::robot::{Running, Shape};
 use crate::terrain::Profile;
 
 /// [m] Tolerance of the comparison.
@@ -32,8 +33,8 @@ fn reached(approach: &Approach, contacts: &[Contact], far: f64) -> f64 {
     corners.map(at_corner).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two others with the same normal and is no nearer than
-/// these.
+/// Whether the place is a contact, or, on finely divided ground, others keep the part off it, or it lies between two
+/// others with the same normal and is no nearer than these.
 fn is_told(approach: &Approach, contacts: &[Contact], scene: &Scene, prediction: f64) -> bool {
     let [p, q] = approach.ends;
     let (middle, distance) = (0.5 * (p + q), approach.distance());
@@ -112,17 +113,10 @@ fn a_rounded_edge_is_a_true_arc() {
         let (edge_radius, radius) = (draw.size(0.5e-3, 20e-3), draw.size(1e-3, 0.12));
         let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]];
         let profile = Profile::new("terrain", &corners, edge_radius, 0.9, true).unwrap();
-        let part = Part {
-            kind: BodyKind::Wheel,
-            shape: Shape::Disc {
-                center: Vector::ZERO,
-                radius,
-            },
-            drive: Some(0),
-            friction_limit: f64::INFINITY,
-            lane: 0,
-            mount: Mount::Chassis,
-        };
+        let part = driven(Shape::Disc {
+            center: Vector::ZERO,
+            radius,
+        });
         let contact = OwnContact::new(&[part], &[profile]);
         let angle = draw.between(0.25, 0.5) * TAU;
         let outward = Vector::new(angle.cos(), angle.sin());
@@ -166,15 +160,7 @@ fn a_part_on_rough_ground_has_few_contacts_however_finely_it_is_cut() {
                 grouser_height: 0.0,
             },
         ] {
-            let part = Part {
-                kind: BodyKind::Wheel,
-                shape,
-                drive: Some(0),
-                friction_limit: f64::INFINITY,
-                lane: 0,
-                mount: Mount::Chassis,
-            };
-            let contact = OwnContact::new(&[part], std::slice::from_ref(&profile));
+            let contact = OwnContact::new(&[driven(shape)], std::slice::from_ref(&profile));
             for prediction in [2e-4, 1e-3, 6e-3] {
                 for _ in 0..20 {
                     let place = Vector::new(draw.between(-0.01, 0.01), 0.064 + jitter);

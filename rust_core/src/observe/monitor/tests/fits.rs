@@ -2,6 +2,7 @@
 
 use super::stops::astride;
 use super::*;
+use crate::terrain::Profile;
 
 /// [s] Time of the check of a snapshot.
 const TIME: f64 = 1.0;
