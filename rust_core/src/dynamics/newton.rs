@@ -170,8 +170,9 @@ mod tests {
         let (dynamics, _) = spinning_up();
         let effort = dynamics.effort();
         assert_eq!(effort.solves, u64::from(dynamics.solver.substeps));
-        assert!(effort.rounds > effort.solves);
-        assert!(effort.rounds <= u64::from(STEPS) * effort.solves);
+        // Nothing strikes and pins are exact, so most first guesses are right.
+        assert!(effort.rounds >= effort.solves);
+        assert!(effort.rounds <= 3 * effort.solves);
         assert_eq!((effort.descents, effort.unresolved), (0, 0));
     }
 

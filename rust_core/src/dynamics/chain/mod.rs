@@ -129,9 +129,8 @@ impl Chain {
                 pair.map(|i| self.alongs[i]),
                 pitch,
             );
-            pin.close(h, masses, pitch);
         }
-        self.system.link(masses, &self.free, &self.pins);
+        self.system.link(masses, &self.free, &self.pins, h);
         let axle = chassis.transform_point(self.rule.ends[0].center);
         self.pull
             .follow(&self.rule, (shoes, &self.alongs), state, axle);
@@ -183,7 +182,7 @@ impl Chain {
     /// Assembles the system of shoes, pins and drive; the drive gives the impulse `given` [N s] if it does not
     /// hold the speed `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
-        self.system.start(&self.pins, self.idler);
+        self.system.start(self.idler);
         let damper = self.pull.damper().shifted(self.pull.aim(set_point));
         if let (Some(sprocket), Some(lever)) = (&self.rule.sprocket, self.pull.lever) {
             self.system.add_sprocket(sprocket.inertia, self.free_spin);
@@ -246,25 +245,16 @@ impl Chain {
         [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
-    /// Updates the impulses to match the velocities; returns the largest error of a velocity [m/s].
+    /// Updates the drive's impulse to match the velocities; returns the error of its speed [m/s].
     pub(super) fn follow_velocities(
         &mut self,
         state: &State,
         set_point: f64,
         given: Option<f64>,
     ) -> f64 {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let mut off: f64 = 0.0;
-        for (i, pin) in self.pins.iter_mut().enumerate() {
-            let next = shoes[(i + 1) % shoes.len()].twist;
-            off = off.max(pin.follow_velocities(shoes[i].twist, next));
-        }
         let ahead = self.ahead(state, set_point);
         self.pull.impulses.impulse = given.unwrap_or_else(|| self.pull.damper().at(ahead));
-        if given.is_none() {
-            off = off.max(ahead.abs());
-        }
-        off
+        if given.is_none() { ahead.abs() } else { 0.0 }
     }
 
     /// [m/s] How much faster the drive is than it aims to be.
@@ -315,7 +305,8 @@ impl Chain {
         sprocket.map_or(0.0, |sprocket| lever * lever / sprocket.inertia)
     }
 
-    /// The slope of the potential of shoes, pins and drive along the change `solved`, at a share of it.
+    /// The slope of the potential of shoes and drive along the change `solved`, at a share of it. The pins hold in
+    /// every solution of the system, so they have no part in the change from one to another.
     pub(super) fn slope(
         &self,
         state: &State,
@@ -330,10 +321,6 @@ impl Chain {
             let gained = shoes[i].twist.plus(*change, share).less(self.free[i]);
             slope +=
                 mass * gained.velocity.dot(change.velocity) + inertia * gained.turn * change.turn;
-            let (next, next_change) = ((i + 1) % shoes.len(), self.solved[(i + 1) % shoes.len()]);
-            let speed = self.pins[i].speed(shoes[i].twist, shoes[next].twist);
-            let of_pin = self.pins[i].speed(*change, next_change);
-            slope -= self.pins[i].at(speed + of_pin * share).dot(of_pin);
         }
         if let Some(sprocket) = &self.rule.sprocket {
             let gained = state.drives[self.rule.number].spin + spin * share - self.free_spin;
@@ -363,23 +350,19 @@ impl Chain {
     }
 
     pub(super) fn settle(&mut self) {
-        self.pins.iter_mut().for_each(Pin::settle);
         self.pull.impulses.center = self.pull.impulses.impulse;
     }
 
     /// Starts a piece of `h` [s] from the forces of the last one.
     pub(super) fn guess(&mut self, h: f64) {
-        for pin in &mut self.pins {
-            pin.guess(h);
-        }
         let pull = &mut self.pull.impulses;
         pull.impulse = pull.force * h;
     }
 
     /// Stores the forces of a piece of `h` [s].
     pub(super) fn remember(&mut self, h: f64) {
-        for pin in &mut self.pins {
-            pin.remember(h);
+        for (pin, impulse) in self.pins.iter_mut().zip(self.system.impulses()) {
+            pin.force = impulse / h;
         }
         self.pull.impulses.force = self.pull.impulses.impulse / h;
     }
