@@ -3,7 +3,6 @@
 //! The equations: docs/physics.md, "Chains".
 
 use super::Dynamics;
-use super::arm::Arm;
 use super::chain::{Chain, Stand};
 use super::phase::Phase;
 use super::row::{Link, Row};
@@ -92,46 +91,18 @@ impl Dynamics {
     }
 
     /// Advances by a piece of `h` [s].
-    ///
-    /// The solve uses a frame moving with the chassis: pins are so stiff that rounding errors of a velocity
-    /// common to all bodies would act as forces.
     pub(super) fn substep_of_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         let soft = self.softness(h);
-        let frame = state.velocity;
-        state.add_velocity(-frame);
-        let mut phase = self.start_phase(state, set_point, h);
-        phase.frame = frame;
+        let phase = self.start_phase(state, set_point, h);
         self.start_chains(state, h);
         for row in &mut self.rows {
             row.close_softly(h, soft, self.solver.max_push_speed);
         }
         self.guess(h);
         self.solve(state, &phase);
-        // The pins cost eight digits; the common velocity is corrected by the momentum balance of the robot.
-        let lost = self.momentum_given(&phase) - self.momentum(state);
         self.end_phase(state, phase);
-        state.add_velocity(frame + lost / self.model.total_mass());
         self.move_on(state, h);
         self.move_chains(state, set_point, h);
-    }
-
-    /// [N s] Momentum of the robot after a piece by the impulses of weight and ground.
-    fn momentum_given(&self, phase: &Phase) -> Vector {
-        let of_chain = |chain: &Chain| {
-            let velocities = chain.free.iter().map(|shoe| shoe.velocity);
-            velocities.sum::<Vector>() * chain.rule.shoe_mass
-        };
-        let of_shoes: Vector = self.chains.iter().map(of_chain).sum();
-        let of_row = |row: &Row| match row.link {
-            Link::Guide { .. } | Link::Tooth { .. } => Vector::ZERO,
-            Link::Chassis | Link::Flipper(_) | Link::Shoe(_) => {
-                let [n, t] = &row.actions;
-                n.unit * row.normal_impulse + t.unit * row.friction_impulse
-            }
-        };
-        let of_ground: Vector = self.rows.iter().map(of_row).sum();
-        let of_arms: Vector = self.flippers.iter().map(Arm::free_momentum).sum();
-        phase.velocity * self.model.mass + of_shoes + of_arms + of_ground
     }
 
     /// Moves shoes and idlers by `h` [s] at their velocities.
