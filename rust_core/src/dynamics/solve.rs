@@ -232,7 +232,7 @@ impl Dynamics {
     pub(super) fn remember(&mut self, h: f64) {
         for row in &mut self.rows {
             row.normal_guess = row.normal_impulse / h;
-            row.friction_guess = row.friction_impulse / h;
+            row.friction_guess = row.friction_kept() / h;
         }
         if let Some(push) = &mut self.push {
             push.force = push.impulse / h;

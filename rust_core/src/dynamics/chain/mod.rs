@@ -3,6 +3,8 @@
 //! The equations: docs/physics.md, "Chains".
 
 mod contacts;
+mod elimination;
+mod motion;
 mod pin;
 mod pull;
 mod rest;
@@ -21,7 +23,7 @@ use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
 use crate::geometry::{Pose, Vector, plausible};
-use crate::robot::{ChainOfShoes, Tensioner};
+use crate::robot::ChainOfShoes;
 
 pub(super) use rest::Stand;
 
@@ -35,8 +37,14 @@ pub(super) struct Chain {
     pins: Vec<Pin>,
     pull: Pull,
     system: ChainSystem,
-    /// Unit vectors along the shoes in this piece.
+    /// The shoes in the middle of this piece, and unit vectors along them.
+    middle: Vec<Shoe>,
     alongs: Vec<Vector>,
+    /// [kg m^2] Moments of inertia of the shoes in this solve.
+    inertias: Vec<f64>,
+    /// Velocities of the shoes before this piece and in its motion.
+    began: Vec<Twist>,
+    moved: Vec<Twist>,
     /// Poses of the shoes, in the world and in the chassis frame, when rests were last searched for.
     places: Vec<[Pose; 2]>,
     /// The last forces and grips of the rests, shoe by shoe.
@@ -51,6 +59,8 @@ pub(super) struct Chain {
     free_spin: f64,
     /// The spring and damper of the idler in this piece.
     idler: Damper,
+    /// [m] Estimated error of the last piece.
+    pub error: f64,
     /// Whether a shoe was too far off the guide to come back when last checked.
     pub is_off: bool,
 }
@@ -78,7 +88,11 @@ impl Chain {
             pins: vec![Pin::default(); count],
             pull: Pull::default(),
             system: ChainSystem::new(count),
+            middle: Vec::with_capacity(count),
             alongs: Vec::with_capacity(count),
+            inertias: vec![rule.shoe_inertia; count],
+            began: Vec::with_capacity(count),
+            moved: Vec::with_capacity(count),
             places: Vec::with_capacity(count),
             memory: vec![RestMemory::default(); count * of_a_shoe(&rule)],
             free: vec![Twist::default(); count],
@@ -87,6 +101,7 @@ impl Chain {
             spin: 0.0,
             free_spin: 0.0,
             idler: Damper::default(),
+            error: 0.0,
             is_off: false,
             rule,
         }
@@ -116,46 +131,6 @@ impl Chain {
         self.memory = impulses.memory;
     }
 
-    /// Moves pins and drive to the current shoes; the pins are to close their gaps in `h` [s].
-    pub(super) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let (pitch, masses) = (self.rule.path.pitch, self.masses());
-        self.alongs.clear();
-        self.alongs.extend(shoes.iter().map(Shoe::along));
-        for (i, pin) in self.pins.iter_mut().enumerate() {
-            let pair = [i, (i + 1) % shoes.len()];
-            pin.follow(
-                pair.map(|i| shoes[i].center),
-                pair.map(|i| self.alongs[i]),
-                pitch,
-            );
-        }
-        self.system.link(masses, &self.free, &self.pins, h);
-        let axle = chassis.transform_point(self.rule.ends[0].center);
-        self.pull
-            .follow(&self.rule, (shoes, &self.alongs), state, axle);
-        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h);
-        self.free_spin = state.drives[self.rule.number].spin;
-    }
-
-    /// Spring and damper of the idler at a travel [m], for `h` [s]; its stops are stiff.
-    fn tensioner(&self, travel: f64, h: f64) -> Damper {
-        let Tensioner {
-            pre_tension,
-            stiffness,
-            damping,
-            stop,
-        } = self.rule.tensioner;
-        let force = pre_tension - stiffness * travel;
-        let beyond = -travel - stop;
-        if beyond <= 0.0 {
-            return Damper::new(h * force, h * (damping + h * stiffness));
-        }
-        let hard = STOP_STIFFNESS * stiffness;
-        let force = force + hard * beyond;
-        Damper::new(h * force, h * (damping + h * (stiffness + hard)))
-    }
-
     /// The last force and grip of a rest.
     pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
         self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.place]
@@ -173,10 +148,6 @@ impl Chain {
             force: row.normal_guess,
             grip: row.grip,
         };
-    }
-
-    fn masses(&self) -> (f64, f64) {
-        (self.rule.shoe_mass, self.rule.shoe_inertia)
     }
 
     /// Assembles the system of shoes, pins and drive; the drive gives the impulse `given` [N s] if it does not
@@ -315,12 +286,12 @@ impl Chain {
         share: f64,
     ) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
-        let (mass, inertia) = self.masses();
+        let mass = self.rule.shoe_mass;
         let mut slope = 0.0;
         for (i, change) in self.solved.iter().enumerate() {
             let gained = shoes[i].twist.plus(*change, share).less(self.free[i]);
-            slope +=
-                mass * gained.velocity.dot(change.velocity) + inertia * gained.turn * change.turn;
+            slope += mass * gained.velocity.dot(change.velocity)
+                + self.inertias[i] * gained.turn * change.turn;
         }
         if let Some(sprocket) = &self.rule.sprocket {
             let gained = state.drives[self.rule.number].spin + spin * share - self.free_spin;
@@ -357,6 +328,12 @@ impl Chain {
     pub(super) fn guess(&mut self, h: f64) {
         let pull = &mut self.pull.impulses;
         pull.impulse = pull.force * h;
+    }
+
+    /// The same for the rest of the piece, another `h` [s].
+    pub(super) fn guess_more(&mut self, h: f64) {
+        let pull = &mut self.pull.impulses;
+        pull.impulse += pull.force * h;
     }
 
     /// Stores the forces of a piece of `h` [s].

@@ -23,10 +23,20 @@ impl Pin {
         plausible_vectors(&self.arms) && plausible_vectors(&[self.gap, self.force])
     }
 
-    /// Updates arms and gap for two shoes; the pin is half of `pitch` [m] along the shoes from both centres.
-    pub(super) fn follow(&mut self, centers: [Vector; 2], alongs: [Vector; 2], pitch: f64) {
-        self.arms = [alongs[0] * (0.5 * pitch), alongs[1] * (-0.5 * pitch)];
+    /// Measures its gap between shoes with these centres.
+    pub(super) fn measure(&mut self, centers: [Vector; 2]) {
         self.gap = centers[1] + self.arms[1] - centers[0] - self.arms[0];
+    }
+
+    /// Turns its arms: it is half of `pitch` [m] along the shoes from both centres.
+    pub(super) fn turn(&mut self, alongs: [Vector; 2], pitch: f64) {
+        self.arms = [alongs[0] * (0.5 * pitch), alongs[1] * (-0.5 * pitch)];
+    }
+
+    /// [N m] How hard its force turns each of the two shoes back, per radian: pulled lengthwise, a shoe comes back into
+    /// line.
+    pub(super) fn straightens(&self) -> [f64; 2] {
+        [-self.arms[0].dot(self.force), self.arms[1].dot(self.force)]
     }
 
     /// Entries of the two shoes' velocities in that of the next shoe's end relative to this one's, along x and y.

@@ -9,7 +9,7 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
 
 use super::pin::Pin;
 use crate::dynamics::damper::Damper;
@@ -17,20 +17,20 @@ use crate::dynamics::state::Twist;
 use crate::geometry::Vector;
 
 /// Rows and columns of the border: three for the chassis, ...
-const CHASSIS: usize = 0;
+pub(super) const CHASSIS: usize = 0;
 const TURN: usize = 2;
 /// ... one for the drive (its force or the spin of its sprocket), one for the idler, ...
-const DRIVE: usize = 3;
-const IDLER: usize = 4;
+pub(super) const DRIVE: usize = 3;
+pub(super) const IDLER: usize = 4;
 /// ... which are those that act on shoes; two for the closing pin; then the right-hand side.
-const BESIDE: usize = 5;
-const CLOSING: usize = BESIDE;
+pub(super) const BESIDE: usize = 5;
+pub(super) const CLOSING: usize = BESIDE;
 const BORDER: usize = 7;
-const RIGHT: usize = BORDER;
-const WIDTH: usize = BORDER + 1;
+pub(super) const RIGHT: usize = BORDER;
+pub(super) const WIDTH: usize = BORDER + 1;
 /// The right-hand side of a shoe.
-const OF_SHOE: usize = BESIDE;
-const WIDTH_OF_SHOE: usize = BESIDE + 1;
+pub(super) const OF_SHOE: usize = BESIDE;
+pub(super) const WIDTH_OF_SHOE: usize = BESIDE + 1;
 
 /// A body that takes part in a contact besides chassis and shoe.
 #[derive(Clone, Copy)]
@@ -52,58 +52,59 @@ impl Beside {
 
 /// The part of the system that belongs to one shoe.
 #[derive(Clone, Copy, Default)]
-struct Entry {
-    own: Matrix3<f64>,
+pub(super) struct Entry {
+    pub(super) own: Matrix3<f64>,
     /// Its rows in the columns of chassis, drive and idler, and the right-hand side.
-    beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
+    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
     /// Rows of chassis, drive and idler in its columns.
-    below: SMatrix<f64, BESIDE, 3>,
+    pub(super) below: SMatrix<f64, BESIDE, 3>,
 }
 
 /// How a pin holds its two shoes.
 #[derive(Clone, Copy, Default)]
-struct Joint {
-    /// Entries of both shoes' velocities in its speed.
-    rows: [Matrix2x3<f64>; 2],
+pub(super) struct Joint {
+    /// Entries of both shoes' velocities in its speed, and of its impulse on them.
+    pub(super) rows: [Matrix2x3<f64>; 2],
+    pub(super) pushes: [Matrix2x3<f64>; 2],
     /// [m/s] Its speed.
-    speed: Vector2<f64>,
+    pub(super) speed: Vector2<f64>,
 }
 
 /// The velocity of a shoe after its elimination.
 #[derive(Clone, Copy, Default)]
-struct Solved {
+pub(super) struct Solved {
     /// In terms of chassis, drive and idler, and its constant part, both with opposite sign as in the equations.
-    beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
+    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
     /// Per impulse of the pin in front and of the pin behind.
-    pins: [SMatrix<f64, 3, 2>; 2],
+    pub(super) pins: [SMatrix<f64, 3, 2>; 2],
 }
 
 /// The rows of a pin, and its columns, after the elimination of the shoes.
 #[derive(Clone, Copy, Default)]
-struct PinEntry {
-    own: Matrix2<f64>,
+pub(super) struct PinEntry {
+    pub(super) own: Matrix2<f64>,
     /// Its rows in the columns of the next pin, and the next pin's rows in its own.
-    next: Matrix2<f64>,
-    back: Matrix2<f64>,
+    pub(super) next: Matrix2<f64>,
+    pub(super) back: Matrix2<f64>,
     /// Its rows in the columns of the border, and the right-hand side.
-    beside: SMatrix<f64, 2, WIDTH>,
+    pub(super) beside: SMatrix<f64, 2, WIDTH>,
     /// Rows of the border in its columns.
-    below: SMatrix<f64, BORDER, 2>,
+    pub(super) below: SMatrix<f64, BORDER, 2>,
 }
 
 /// The system of one chain.
 pub(super) struct ChainSystem {
-    shoes: Vec<Entry>,
+    pub(super) shoes: Vec<Entry>,
     /// The shoes in this piece without constraints.
-    bare: Vec<Entry>,
-    joints: Vec<Joint>,
-    freed: Vec<Solved>,
-    pins: Vec<PinEntry>,
+    pub(super) bare: Vec<Entry>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) freed: Vec<Solved>,
+    pub(super) pins: Vec<PinEntry>,
     /// Columns of the next pin and of the border after the pin's own have been eliminated.
-    solved: Vec<(Matrix2<f64>, SMatrix<f64, 2, WIDTH>)>,
-    border: SMatrix<f64, BORDER, WIDTH>,
+    pub(super) solved: Vec<(Matrix2<f64>, SMatrix<f64, 2, WIDTH>)>,
+    pub(super) border: SMatrix<f64, BORDER, WIDTH>,
     /// [N s] Impulse of each pin on the next shoe.
-    impulses: Vec<Vector2<f64>>,
+    pub(super) impulses: Vec<Vector2<f64>>,
 }
 
 impl ChainSystem {
@@ -120,27 +121,47 @@ impl ChainSystem {
         }
     }
 
-    /// Sets up shoes of a mass and inertia with their velocities without constraints, and pins that close their
-    /// gaps in `h` [s].
-    pub(super) fn link(
-        &mut self,
-        (mass, inertia): (f64, f64),
-        free: &[Twist],
-        pins: &[Pin],
-        h: f64,
-    ) {
-        let masses = Vector3::new(mass, mass, inertia);
-        for (bare, twist) in self.bare.iter_mut().zip(free) {
+    /// Sets up shoes of a mass, and inertias, with their velocities without constraints.
+    pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[Twist]) {
+        for ((bare, inertia), twist) in self.bare.iter_mut().zip(inertias).zip(free) {
+            let masses = Vector3::new(mass, mass, *inertia);
             *bare = Entry::default();
             bare.own.set_diagonal(&masses);
             let momentum = masses.component_mul(&Vector3::from(twist.entries()));
             bare.beside.set_column(OF_SHOE, &momentum);
         }
+    }
+
+    /// Links the shoes by pins that close their gaps in `h` [s].
+    pub(super) fn link(&mut self, pins: &[Pin], h: f64) {
         for (joint, pin) in self.joints.iter_mut().zip(pins) {
             *joint = Joint {
                 rows: pin.rows(),
+                pushes: pin.rows(),
                 speed: Vector2::new(pin.gap.x, pin.gap.y) / -h,
             };
+        }
+    }
+
+    /// Lets the pins hold the shoes together.
+    pub(super) fn hold(&mut self, pins: &[Pin]) {
+        for (joint, pin) in self.joints.iter_mut().zip(pins) {
+            joint.rows = pin.rows();
+            joint.speed = Vector2::zeros();
+        }
+    }
+
+    /// Lets the pins push in their present directions.
+    pub(super) fn push_along(&mut self, pins: &[Pin]) {
+        for (joint, pin) in self.joints.iter_mut().zip(pins) {
+            joint.pushes = pin.rows();
+        }
+    }
+
+    /// Lets the pins hold in the directions in which they push, so that their forces do no work.
+    pub(super) fn hold_as_pushed(&mut self) {
+        for joint in &mut self.joints {
+            joint.rows = joint.pushes;
         }
     }
 
@@ -237,159 +258,8 @@ impl ChainSystem {
         }
     }
 
-    /// Reduces the system to the chassis, adding the chain's part to the chassis' rows. None if the constraints
-    /// contradict each other.
-    pub(super) fn eliminate(&mut self, chassis: &mut [[f64; 4]; 3]) -> Option<()> {
-        self.eliminate_shoes()?;
-        self.couple_pins();
-        let last = self.pins.len() - 1;
-        for k in 0..last {
-            let entry = self.pins[k];
-            let inverse = entry.own.try_inverse()?;
-            let (next, beside) = (inverse * entry.next, inverse * entry.beside);
-            self.border.gemm(-1.0, &entry.below, &beside, 1.0);
-            if k + 1 < last {
-                let ahead = &mut self.pins[k + 1];
-                ahead.own.gemm(-1.0, &entry.back, &next, 1.0);
-                ahead.beside.gemm(-1.0, &entry.back, &beside, 1.0);
-                ahead.below.gemm(-1.0, &entry.below, &next, 1.0);
-            }
-            self.solved[k] = (next, beside);
-        }
-        self.solve_border()?;
-        for (i, row) in chassis.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                let column = if j < 3 { CHASSIS + j } else { RIGHT };
-                *entry += self.border[(CHASSIS + i, column)];
-            }
-        }
-        Some(())
-    }
-
-    /// Expresses the velocities of the shoes in terms of border and pins.
-    fn eliminate_shoes(&mut self) -> Option<()> {
-        for (k, entry) in self.shoes.iter().enumerate() {
-            let inverse = entry.own.try_inverse()?;
-            let behind = (k + self.joints.len() - 1) % self.joints.len();
-            let [front, _] = self.joints[k].rows;
-            let [_, back] = self.joints[behind].rows;
-            let beside = inverse * entry.beside;
-            let of_shoe = entry.below * beside;
-            for i in 0..BESIDE {
-                for j in 0..BESIDE {
-                    self.border[(i, j)] -= of_shoe[(i, j)];
-                }
-                self.border[(i, RIGHT)] -= of_shoe[(i, OF_SHOE)];
-            }
-            self.freed[k] = Solved {
-                beside,
-                pins: [front, back].map(|rows| inverse * rows.transpose()),
-            };
-        }
-        Some(())
-    }
-
-    /// Sets up the rows and columns of the pins; the last one goes into the border.
-    fn couple_pins(&mut self) {
-        let (count, last) = (self.pins.len(), self.pins.len() - 1);
-        let mut closing = PinEntry::default();
-        for k in 0..count {
-            let ahead = (k + 1) % count;
-            let (joint, next_joint) = (&self.joints[k], &self.joints[ahead]);
-            let [front, back] = joint.rows;
-            let [own, next] = [&self.freed[k], &self.freed[ahead]];
-            let mut entry = PinEntry {
-                own: front * own.pins[0] + back * next.pins[1],
-                next: back * next.pins[0],
-                back: next_joint.rows[0] * next.pins[1],
-                ..PinEntry::default()
-            };
-            let of_shoes = front * own.beside + back * next.beside;
-            for i in 0..2 {
-                for j in 0..BESIDE {
-                    entry.beside[(i, j)] = -of_shoes[(i, j)];
-                }
-                entry.beside[(i, RIGHT)] = joint.speed[i] - of_shoes[(i, OF_SHOE)];
-            }
-            let below = self.shoes[k].below * own.pins[0] + self.shoes[ahead].below * next.pins[1];
-            entry.below.fixed_rows_mut::<BESIDE>(0).copy_from(&below);
-            if k == last {
-                closing = entry;
-            } else {
-                self.pins[k] = entry;
-            }
-        }
-        // The closing pin is both before the first and after the last but one.
-        let before = self.pins[last - 1];
-        let [first, before_last] = [0, last - 1];
-        put(&mut self.pins[first].beside, 0, CLOSING, &closing.back);
-        put(&mut self.pins[first].below, CLOSING, 0, &closing.next);
-        put(&mut self.pins[before_last].beside, 0, CLOSING, &before.next);
-        put(&mut self.pins[before_last].below, CLOSING, 0, &before.back);
-        self.pins[before_last].next = Matrix2::zeros();
-        put(&mut self.border, CLOSING, CLOSING, &closing.own);
-        let mut rows = self.border.fixed_rows_mut::<2>(CLOSING);
-        rows += closing.beside;
-        let mut columns = self.border.fixed_columns_mut::<2>(CLOSING);
-        columns += closing.below;
-    }
-
-    /// Expresses the closing pin, the drive and the idler in terms of the chassis.
-    fn solve_border(&mut self) -> Option<()> {
-        for pivot in [CLOSING, CLOSING + 1, IDLER, DRIVE] {
-            let by = self.border[(pivot, pivot)];
-            if by == 0.0 || !by.is_finite() {
-                return None;
-            }
-            let row = self.border.row(pivot) / by;
-            let mut column = self.border.column(pivot).into_owned();
-            column[pivot] = 0.0;
-            self.border.gemm(-1.0, &column, &row, 1.0);
-            self.border.set_row(pivot, &row);
-        }
-        Some(())
-    }
-
-    /// Computes the velocities of the shoes and the impulses of the pins from the velocity of the chassis; returns
-    /// the velocities of idler and sprocket.
-    pub(super) fn follow(&mut self, chassis: [f64; 3], shoes: &mut [Twist]) -> [f64; 2] {
-        let mut known = SVector::<f64, WIDTH>::zeros();
-        known.fixed_rows_mut::<3>(CHASSIS).copy_from_slice(&chassis);
-        known[RIGHT] = -1.0;
-        let of_border = -(self.border * known);
-        for i in [CLOSING, CLOSING + 1, DRIVE, IDLER] {
-            known[i] = of_border[i];
-        }
-        let last = shoes.len() - 1;
-        self.impulses[last] = known.fixed_rows::<2>(CLOSING).into_owned();
-        for k in (0..last).rev() {
-            let (next, beside) = &self.solved[k];
-            self.impulses[k] = -(beside * known + next * self.impulses[k + 1]);
-        }
-        let mut of_shoe = SVector::<f64, WIDTH_OF_SHOE>::zeros();
-        of_shoe.copy_from(&known.fixed_rows::<WIDTH_OF_SHOE>(0));
-        of_shoe[OF_SHOE] = -1.0;
-        for (k, shoe) in shoes.iter_mut().enumerate() {
-            let behind = if k == 0 { last } else { k - 1 };
-            let Solved { beside, pins } = &self.freed[k];
-            let velocity =
-                pins[0] * self.impulses[k] + pins[1] * self.impulses[behind] - beside * of_shoe;
-            *shoe = Twist::from(<[f64; 3]>::from(velocity));
-        }
-        [known[IDLER], known[DRIVE]]
-    }
-
     /// [N s] Impulse of each pin on the next shoe in the last solution.
     pub(super) fn impulses(&self) -> impl Iterator<Item = Vector> + '_ {
         self.impulses.iter().map(|p| Vector::new(p.x, p.y))
     }
-}
-
-fn put<const R: usize, const C: usize>(
-    to: &mut SMatrix<f64, R, C>,
-    row: usize,
-    column: usize,
-    block: &Matrix2<f64>,
-) {
-    to.fixed_view_mut::<2, 2>(row, column).copy_from(block);
 }
