@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Number of solves, and of their parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Effort {
-    /// Searches for impulses that satisfy all constraints: two per piece of a substep, one with chains.
+    /// Searches for impulses that satisfy all constraints: two per piece of a substep.
     pub solves: u64,
     /// Linear systems solved in direct searches.
     pub rounds: u64,
