@@ -13,7 +13,7 @@ pub(super) struct Action {
     pub lever: f64,
     /// [m] Lever of the spin of a drive that does not turn with the chassis.
     pub spin_lever: f64,
-    /// [m/s] Constant part of the speed: from a surface held at the set-point, and from a moving frame.
+    /// [m/s] Constant part of the speed: from a surface or a flipper held by its motor.
     pub offset: f64,
     /// [m] Lever of the reaction on the chassis, if the chassis takes it.
     pub back: f64,
@@ -54,14 +54,6 @@ impl Action {
                 ..self
             },
             None => self,
-        }
-    }
-
-    /// The action on a contact with the ground, in a frame that moves over the ground [m/s].
-    pub(super) fn on_ground(self, frame: Vector) -> Self {
-        Self {
-            offset: self.offset + self.unit.dot(frame),
-            ..self
         }
     }
 

@@ -55,11 +55,6 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
-    /// [N s] Momentum that it would have without the pivot.
-    pub(super) fn free_momentum(&self) -> Vector {
-        self.free.velocity * self.rule.mass
-    }
-
     /// [N m s] Angular impulse of its motor at a share of its limit.
     pub(super) fn given(&self, share: f64, phase: &Phase) -> f64 {
         share * self.rule.torque_limit * phase.elapsed

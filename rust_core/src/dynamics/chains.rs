@@ -2,12 +2,14 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use super::arm::Arm;
+#[cfg(test)]
+mod tests;
+
+use super::Dynamics;
 use super::chain::{Chain, Stand};
 use super::phase::Phase;
 use super::row::{Link, Row};
 use super::state::{State, Twist};
-use super::{Dynamics, SetPoint};
 use crate::geometry::Vector;
 
 /// [m] A shoe this close to the guide may come to rest on it within a step.
@@ -91,53 +93,8 @@ impl Dynamics {
         }
     }
 
-    /// Advances by a step of `h` [s].
-    ///
-    /// The solve uses a frame moving with the chassis: pins are so stiff that rounding errors of a velocity
-    /// common to all bodies would act as forces.
-    pub(super) fn step_of_chains(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
-        self.place_flippers(state, 0.5 * h);
-        let soft = self.softness(h);
-        let frame = state.velocity;
-        state.add_velocity(-frame);
-        let mut phase = self.start_phase(state, set_point.end, h);
-        phase.frame = frame;
-        self.start_chains(state, h);
-        for row in &mut self.rows {
-            row.close_softly(h, soft, self.solver.max_push_speed);
-        }
-        self.guess(h);
-        self.solve(state, &phase);
-        // The pins cost eight digits; the common velocity is corrected by the momentum balance of the robot.
-        let lost = self.momentum_given(&phase) - self.momentum(state);
-        self.end_phase(state, phase);
-        state.add_velocity(frame + lost / self.model.total_mass());
-        self.moved.copy(state);
-        self.move_on(state, h);
-        self.move_chains(state, set_point.end, h);
-    }
-
-    /// [N s] Momentum of the robot after a piece by the impulses of weight and ground.
-    fn momentum_given(&self, phase: &Phase) -> Vector {
-        let of_chain = |chain: &Chain| {
-            let velocities = chain.free.iter().map(|shoe| shoe.velocity);
-            velocities.sum::<Vector>() * chain.rule.shoe_mass
-        };
-        let of_shoes: Vector = self.chains.iter().map(of_chain).sum();
-        let of_row = |row: &Row| match row.link {
-            Link::Guide { .. } | Link::Tooth { .. } => Vector::ZERO,
-            Link::Chassis | Link::Flipper(_) | Link::Shoe(_) => {
-                let [n, t] = &row.actions;
-                n.unit * row.normal_impulse + t.unit * row.friction_impulse
-            }
-        };
-        let of_ground: Vector = self.rows.iter().map(of_row).sum();
-        let of_arms: Vector = self.flippers.iter().map(Arm::free_momentum).sum();
-        phase.velocity * self.model.mass + of_shoes + of_arms + of_ground
-    }
-
     /// Moves shoes and idlers by `h` [s] at their velocities.
-    fn move_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
+    pub(super) fn move_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
         for (chain, motor) in self.chains.iter_mut().zip(&self.motors) {
             chain.count(state, set_point, motor.share().is_none(), h);
         }
@@ -149,20 +106,37 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece of `h` [s]: velocities without constraints, and pins in place with their last forces.
-    fn start_chains(&mut self, state: &State, h: f64) {
-        let kick = Twist {
-            velocity: Vector::new(0.0, -self.gravity) * h,
-            turn: 0.0,
-        };
-        let pose = state.pose(&self.model);
+    /// Starts a step of `h` [s]: velocities without constraints, and pins in place.
+    pub(super) fn start_chains(&mut self, state: &State, h: f64) {
+        let weight = self.weight(0.5 * h);
+        let pose = state.pose_after(0.5 * h, &self.model);
         for chain in &mut self.chains {
             let shoes = &state.shoes[chain.rule.shoes.clone()];
             for (free, shoe) in chain.free.iter_mut().zip(shoes) {
-                *free = shoe.twist.plus(kick, 1.0);
+                *free = shoe.twist.plus(weight, 1.0);
             }
             chain.follow(state, pose, h);
-            chain.guess(h);
+            chain.guess(0.5 * h);
+        }
+    }
+
+    /// Continues after the motion of a step of `h` [s]: the other half of the weight, and pins where they are now.
+    pub(super) fn hold_chains(&mut self, state: &State, h: f64) {
+        let weight = self.weight(0.5 * h);
+        for chain in &mut self.chains {
+            for free in &mut chain.free {
+                *free = free.plus(weight, 1.0);
+            }
+            chain.hold(state, h);
+            chain.guess_more(0.5 * h);
+        }
+    }
+
+    /// Change of a shoe's velocity by its weight in a time [s].
+    fn weight(&self, time: f64) -> Twist {
+        Twist {
+            velocity: Vector::new(0.0, -self.gravity * time),
+            turn: 0.0,
         }
     }
 

@@ -8,6 +8,7 @@
 //! The equations: docs/physics.md, "Descent".
 
 use super::Dynamics;
+use super::chain::Chain;
 use super::damper::Damper;
 use super::phase::Phase;
 use super::row::Row;
@@ -105,13 +106,19 @@ impl Dynamics {
     /// a limit towards the new normal impulses [m/s].
     fn go_down(&mut self, state: &mut State, phase: &Phase) -> f64 {
         self.settle();
+        self.chains.iter_mut().for_each(Chain::hold_as_pushed);
         self.choose_dampers(state);
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
             self.assemble_frozen(phase);
             let Some(change) = self.solve_for_change(state) else {
                 break;
             };
-            let share = self.share_that_falls(state, &change, phase);
+            // The first step of a chain may have to join its pins.
+            let share = if step == 0 && !self.chains.is_empty() {
+                1.0
+            } else {
+                self.share_that_falls(state, &change, phase)
+            };
             self.move_by(state, &change, share);
             let same = self.choose_dampers(state);
             if (same && share >= 1.0) || share * self.largest(&change) < ROUNDING {

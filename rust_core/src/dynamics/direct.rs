@@ -159,8 +159,7 @@ impl Dynamics {
             }
             Link::Shoe(i) => {
                 let (chain, i) = (i / self.shoes_a_chain, i % self.shoes_a_chain);
-                // In the system, shoes have no offset of their own.
-                self.chains[chain].add(i, on_body, damper.shifted(-action.offset));
+                self.chains[chain].add(i, on_body, damper);
             }
             Link::Guide { shoe, chain } => {
                 let back = [force.reaction(), action.reaction()];

@@ -11,7 +11,7 @@ pub(crate) struct Effort {
     pub steps: u64,
     /// Steps taken again with a shorter one, because their error was too large.
     pub repeated_steps: u64,
-    /// Searches for impulses that satisfy all constraints: two a step, one with chains.
+    /// Searches for impulses that satisfy all constraints: two a step.
     pub solves: u64,
     /// Linear systems solved in direct searches.
     pub rounds: u64,

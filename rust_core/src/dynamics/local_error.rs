@@ -33,9 +33,13 @@ impl Dynamics {
             );
             most = most.max(of_chassis + reach * rate.abs());
         }
+        let half_pitch = self
+            .chains
+            .first()
+            .map_or(0.0, |chain| 0.5 * chain.rule.path.pitch);
         for (k, shoe) in moved.shoes.iter().enumerate() {
-            let shoe = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
-            most = most.max(shoe.velocity.length());
+            let off = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
+            most = most.max(off.velocity.length() + half_pitch * off.turn.abs());
         }
         let dips = self.rows.iter().map(Row::dip);
         dips.fold(h * most, f64::max)

@@ -212,11 +212,27 @@ impl Dynamics {
     /// Advances the state by the prepared step of `h` [s].
     pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
         self.effort = Effort::default();
-        if self.chains.is_empty() {
-            self.symmetric_step(state, set_point, h);
-        } else {
-            self.step_of_chains(state, set_point, h);
-        }
+        let half = 0.5 * h;
+        let before = self.momentum_at(state);
+        self.place_flippers(state, half);
+        let mut phase = self.start_phase(state, set_point.middle, half);
+        self.start_chains(state, h);
+        self.close_gaps(h);
+        self.guess(half);
+        self.solve(state, &phase);
+        self.moved.copy(state);
+        self.move_on(state, h);
+        self.move_chains(state, set_point.middle, h);
+        phase.velocity += self.kick(half);
+        self.pull_flippers(state, phase.angular_velocity, half);
+        (phase.set_point, phase.elapsed) = (set_point.end, h);
+        self.aim_at_end();
+        self.hold_chains(state, h);
+        self.guess_more(half);
+        self.keep_closed(h);
+        self.solve(state, &phase);
+        self.end_phase(state, phase);
+        self.balance_momentum(state, before, h);
     }
 
     /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that
@@ -229,40 +245,50 @@ impl Dynamics {
         self.report(state, contacts, h);
     }
 
-    fn symmetric_step(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
-        let (soft, half) = (self.softness(h), 0.5 * h);
-        let before = self.momentum_at(state);
-        self.place_flippers(state, half);
-        let mut phase = self.start_phase(state, set_point.middle, half);
+    /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half of it.
+    fn close_gaps(&mut self, h: f64) {
+        let (soft, most) = (self.softness(h), self.solver.max_push_speed);
         for row in &mut self.rows {
-            row.close(h, soft, self.solver.max_push_speed);
-        }
-        self.guess(half);
-        self.solve(state, &phase);
-        self.moved.copy(state);
-        self.move_on(state, h);
-        phase.velocity += self.kick(half);
-        self.pull_flippers(state, phase.angular_velocity, half);
-        (phase.set_point, phase.elapsed) = (set_point.end, h);
-        self.aim_at_end();
-        self.guess_more(half);
-        self.solve(state, &phase);
-        self.end_phase(state, phase);
-        if !self.flippers.is_empty() {
-            // The solve has the arms where they are in the middle of the step; what that loses, a third-order
-            // error, is returned, so that forces and change of momentum agree to the last digit.
-            let mass = self.model.total_mass();
-            let of_weight = Vector::new(0.0, -mass * self.gravity);
-            let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground();
-            let lost = given - self.momentum_at(state);
-            state.velocity += lost / mass;
+            if self.chains.is_empty() {
+                row.close(h, soft, most);
+            } else {
+                row.close_softly((h, 0.5 * h), soft, most);
+            }
         }
     }
 
-    /// [N s] Momentum of a robot without chains, with its arms where they are now.
+    /// Sets them up for the one after it, which finds the impulses of all of it: only those of chains, on which a
+    /// robot stands softly, go on to close.
+    fn keep_closed(&mut self, h: f64) {
+        let (soft, most) = (self.softness(h), self.solver.max_push_speed);
+        if !self.chains.is_empty() {
+            for row in &mut self.rows {
+                row.close_softly((h, h), soft, most);
+            }
+        }
+    }
+
+    /// [N s] Momentum of the robot, with its arms where they are now.
     fn momentum_at(&mut self, state: &State) -> Vector {
         self.place_flippers(state, 0.0);
         self.momentum(state)
+    }
+
+    /// Gives a robot of several bodies the momentum that it has from the impulses of weight and ground in a step of
+    /// `h` [s]: the solve has its arms where they are in the middle of the step, a third-order error, and the
+    /// elimination of its chains loses the last few digits.
+    fn balance_momentum(&mut self, state: &mut State, before: Vector, h: f64) {
+        if self.model.is_one_body() {
+            return;
+        }
+        let mass = self.model.total_mass();
+        let of_weight = Vector::new(0.0, -mass * self.gravity);
+        let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground();
+        let lost = (given - self.momentum_at(state)) / mass;
+        state.velocity += lost;
+        for shoe in &mut state.shoes {
+            shoe.twist.velocity += lost;
+        }
     }
 
     /// [N s] Impulse of the ground in this step.
@@ -272,8 +298,8 @@ impl Dynamics {
             n.unit * row.normal_impulse + t.unit * row.friction_impulse
         };
         let of_push = |push: &Push| push.action.unit * push.impulse;
-        self.rows.iter().map(of_row).sum::<Vector>()
-            + self.push.as_ref().map_or(Vector::ZERO, of_push)
+        let on_ground = self.rows.iter().filter(|row| row.is_on_ground());
+        on_ground.map(of_row).sum::<Vector>() + self.push.as_ref().map_or(Vector::ZERO, of_push)
     }
 
     /// Goes back to before a step that was not kept.

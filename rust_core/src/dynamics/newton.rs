@@ -165,12 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_is_solved_once_a_step_in_a_few_rounds() {
+    fn a_chain_is_solved_twice_a_step_in_a_few_rounds() {
         let (dynamics, _) = spinning_up();
         let effort = dynamics.effort();
-        assert_eq!(effort.solves, 1);
+        assert_eq!(effort.solves, 2);
+        // Nothing strikes and pins are exact, so most first guesses are right.
         assert!(effort.rounds >= effort.solves);
-        assert!(effort.rounds <= u64::from(STEPS) * effort.solves);
+        assert!(effort.rounds <= 3 * effort.solves);
         assert_eq!((effort.descents, effort.unresolved), (0, 0));
     }
 

@@ -18,8 +18,6 @@ pub(super) struct Phase {
     pub set_point: f64,
     /// [s] Time for which motors push.
     pub elapsed: f64,
-    /// [m/s] Velocity over the ground of the frame in which velocities are measured.
-    pub frame: Vector,
 }
 
 impl Phase {

@@ -58,6 +58,8 @@ pub(super) struct Row {
     pub compliance: f64,
     /// The same of a grip that gives way elastically; it is damped about its impulse of the last piece.
     pub give: f64,
+    /// Share of a change of the friction of an elastic grip that its spring keeps; the rest is damping.
+    pub springs: f64,
     /// Whether it can carry a load in this solve.
     pub bears: bool,
     /// [N s] Normal impulse in this piece.
@@ -186,6 +188,7 @@ impl Row {
             bias: 0.0,
             compliance: 0.0,
             give: 0.0,
+            springs: 1.0,
             bears: false,
             normal_impulse: 0.0,
             friction_impulse: 0.0,
@@ -208,6 +211,11 @@ impl Row {
     pub(super) fn spin(&self) -> Option<usize> {
         self.drive
             .filter(|_| matches!(self.link, Link::Chassis | Link::Flipper(_)))
+    }
+
+    /// Whether the ground bears there, not the robot itself.
+    pub(super) fn is_on_ground(&self) -> bool {
+        !matches!(self.link, Link::Guide { .. } | Link::Tooth { .. })
     }
 
     /// The flipper on which it acts.
@@ -351,16 +359,23 @@ impl Row {
         }
     }
 
-    /// Sets it up for the end of the motion: an open gap may just close, softly; a penetration is pushed out.
-    pub(super) fn close_softly(&mut self, h: f64, soft: Softness, max_push_speed: f64) {
-        self.bears = true;
+    /// Sets it up for a motion of `h` [s]: an open gap may just close, softly; a penetration is pushed out. The
+    /// solve finds the impulse of a `time` [s].
+    pub(super) fn close_softly(
+        &mut self,
+        (h, time): (f64, f64),
+        soft: Softness,
+        max_push_speed: f64,
+    ) {
         let share = match self.link {
             Link::Guide { .. } | Link::Tooth { .. } => ON_GUIDE,
             _ => ON_GROUND,
         };
-        self.compliance = share * soft.compliance;
-        self.give = soft.compliance;
-        self.center.1 = self.friction_guess * h;
+        self.bears = true;
+        self.compliance = share * soft.compliance * h / time;
+        self.give = share * soft.compliance * h / time;
+        self.springs = (soft.push_rate * h).min(1.0);
+        self.center.1 = self.friction_guess * time;
         self.bias = if self.gap > 0.0 {
             self.gap / h
         } else {
@@ -378,6 +393,14 @@ impl Row {
             // Here the impulse of half the piece stands for that of all of it.
             self.compliance = 2.0 * soft.compliance;
         }
+    }
+
+    /// [N s] Friction impulse without the part of the damper, from which the next piece starts.
+    pub(super) fn friction_kept(&self) -> f64 {
+        if self.give == 0.0 || self.grip != Grip::Sticks {
+            return self.friction_impulse;
+        }
+        self.center.1 + (self.friction_impulse - self.center.1) * self.springs
     }
 
     /// [N m s] Angular impulse on the drive.

@@ -58,11 +58,10 @@ impl Dynamics {
             let row = &self.rows[i];
             let held = row.spin().is_some_and(|k| motors[k].share().is_none());
             let [n, t] = [&row.normal, &row.tangent].map(|along| match row.link {
-                Link::Chassis => Action::new(along, held, spin_of_set_point).on_ground(phase.frame),
+                Link::Chassis => Action::new(along, held, spin_of_set_point),
                 Link::Flipper(k) => Action::new(along, held, spin_of_set_point)
-                    .of_flipper(self.flippers[k].held_rate())
-                    .on_ground(phase.frame),
-                Link::Shoe(_) => Action::of_shoe(along, 0.0).on_ground(phase.frame),
+                    .of_flipper(self.flippers[k].held_rate()),
+                Link::Shoe(_) => Action::of_shoe(along, 0.0),
                 Link::Guide { .. } | Link::Tooth { .. } => {
                     Action::of_shoe(along, along.drive_lever)
                 }
@@ -261,7 +260,7 @@ impl Dynamics {
     pub(super) fn remember(&mut self, h: f64) {
         for row in &mut self.rows {
             row.normal_guess = row.normal_impulse / h;
-            row.friction_guess = row.friction_impulse / h;
+            row.friction_guess = row.friction_kept() / h;
         }
         if let Some(push) = &mut self.push {
             push.force = push.impulse / h;

@@ -254,14 +254,6 @@ impl State {
         (turn - self.drives[drive].spin) * model.drive_radius
     }
 
-    /// Adds a velocity [m/s] to all bodies.
-    pub(super) fn add_velocity(&mut self, velocity: Vector) {
-        self.velocity += velocity;
-        for shoe in &mut self.shoes {
-            shoe.twist.velocity += velocity;
-        }
-    }
-
     /// [m/s] Upper bound of the speed of any point; `reach` is the farthest from the centre of mass.
     pub(crate) fn fastest(&self, reach: f64) -> f64 {
         let turns = self.flippers.iter().map(|flipper| flipper.rate.abs());

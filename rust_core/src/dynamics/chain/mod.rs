@@ -3,6 +3,8 @@
 //! The equations: docs/physics.md, "Chains".
 
 mod contacts;
+mod elimination;
+mod motion;
 mod pin;
 mod pull;
 mod rest;
@@ -21,7 +23,7 @@ use super::grip::Grip;
 use super::row::Row;
 use super::state::{Shoe, State, Twist};
 use crate::geometry::{Pose, Vector, plausible};
-use crate::robot::{ChainOfShoes, Tensioner};
+use crate::robot::ChainOfShoes;
 
 pub(super) use rest::Stand;
 
@@ -35,8 +37,11 @@ pub(super) struct Chain {
     pins: Vec<Pin>,
     pull: Pull,
     system: ChainSystem,
-    /// Unit vectors along the shoes in this piece.
+    /// The shoes in the middle of this piece, and unit vectors along them.
+    middle: Vec<Shoe>,
     alongs: Vec<Vector>,
+    /// [kg m^2] Moments of inertia of the shoes in this solve.
+    inertias: Vec<f64>,
     /// Poses of the shoes, in the world and in the chassis frame, when rests were last searched for.
     places: Vec<[Pose; 2]>,
     /// The last forces and grips of the rests, shoe by shoe.
@@ -80,7 +85,9 @@ impl Chain {
             pins: vec![Pin::default(); count],
             pull: Pull::default(),
             system: ChainSystem::new(count),
+            middle: Vec::with_capacity(count),
             alongs: Vec::with_capacity(count),
+            inertias: vec![rule.shoe_inertia; count],
             places: Vec::with_capacity(count),
             memory: vec![RestMemory::default(); count * of_a_shoe(&rule)],
             free: vec![Twist::default(); count],
@@ -119,47 +126,6 @@ impl Chain {
         self.memory = impulses.memory;
     }
 
-    /// Moves pins and drive to the current shoes; the pins are to close their gaps in `h` [s].
-    pub(super) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let (pitch, masses) = (self.rule.path.pitch, self.masses());
-        self.alongs.clear();
-        self.alongs.extend(shoes.iter().map(Shoe::along));
-        for (i, pin) in self.pins.iter_mut().enumerate() {
-            let pair = [i, (i + 1) % shoes.len()];
-            pin.follow(
-                pair.map(|i| shoes[i].center),
-                pair.map(|i| self.alongs[i]),
-                pitch,
-            );
-            pin.close(h, masses, pitch);
-        }
-        self.system.link(masses, &self.free, &self.pins);
-        let axle = chassis.transform_point(self.rule.ends[0].center);
-        self.pull
-            .follow(&self.rule, (shoes, &self.alongs), state, axle);
-        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h);
-        self.free_spin = state.drives[self.rule.number].spin;
-    }
-
-    /// Spring and damper of the idler at a travel [m], for `h` [s]; its stops are stiff.
-    fn tensioner(&self, travel: f64, h: f64) -> Damper {
-        let Tensioner {
-            pre_tension,
-            stiffness,
-            damping,
-            stop,
-        } = self.rule.tensioner;
-        let force = pre_tension - stiffness * travel;
-        let beyond = -travel - stop;
-        if beyond <= 0.0 {
-            return Damper::new(h * force, h * (damping + h * stiffness));
-        }
-        let hard = STOP_STIFFNESS * stiffness;
-        let force = force + hard * beyond;
-        Damper::new(h * force, h * (damping + h * (stiffness + hard)))
-    }
-
     /// The last force and grip of a rest.
     pub(super) fn recall(&self, rest: &Rest) -> RestMemory {
         self.memory[rest.shoe * of_a_shoe(&self.rule) + rest.place]
@@ -179,14 +145,10 @@ impl Chain {
         };
     }
 
-    fn masses(&self) -> (f64, f64) {
-        (self.rule.shoe_mass, self.rule.shoe_inertia)
-    }
-
     /// Assembles the system of shoes, pins and drive; the drive gives the impulse `given` [N s] if it does not
     /// hold the speed `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
-        self.system.start(&self.pins, self.idler);
+        self.system.start(self.idler);
         let damper = self.pull.damper().shifted(self.pull.aim(set_point));
         if let (Some(sprocket), Some(lever)) = (&self.rule.sprocket, self.pull.lever) {
             self.system.add_sprocket(sprocket.inertia, self.free_spin);
@@ -249,25 +211,16 @@ impl Chain {
         [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
-    /// Updates the impulses to match the velocities; returns the largest error of a velocity [m/s].
+    /// Updates the drive's impulse to match the velocities; returns the error of its speed [m/s].
     pub(super) fn follow_velocities(
         &mut self,
         state: &State,
         set_point: f64,
         given: Option<f64>,
     ) -> f64 {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let mut off: f64 = 0.0;
-        for (i, pin) in self.pins.iter_mut().enumerate() {
-            let next = shoes[(i + 1) % shoes.len()].twist;
-            off = off.max(pin.follow_velocities(shoes[i].twist, next));
-        }
         let ahead = self.ahead(state, set_point);
         self.pull.impulses.impulse = given.unwrap_or_else(|| self.pull.damper().at(ahead));
-        if given.is_none() {
-            off = off.max(ahead.abs());
-        }
-        off
+        if given.is_none() { ahead.abs() } else { 0.0 }
     }
 
     /// [m/s] How much faster the drive is than it aims to be.
@@ -324,7 +277,8 @@ impl Chain {
         sprocket.map_or(0.0, |sprocket| lever * lever / sprocket.inertia)
     }
 
-    /// The slope of the potential of shoes, pins and drive along the change `solved`, at a share of it.
+    /// The slope of the potential of shoes and drive along the change `solved`, at a share of it. The pins hold in
+    /// every solution of the system, so they have no part in the change from one to another.
     pub(super) fn slope(
         &self,
         state: &State,
@@ -333,16 +287,12 @@ impl Chain {
         share: f64,
     ) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
-        let (mass, inertia) = self.masses();
+        let mass = self.rule.shoe_mass;
         let mut slope = 0.0;
         for (i, change) in self.solved.iter().enumerate() {
             let gained = shoes[i].twist.plus(*change, share).less(self.free[i]);
-            slope +=
-                mass * gained.velocity.dot(change.velocity) + inertia * gained.turn * change.turn;
-            let (next, next_change) = ((i + 1) % shoes.len(), self.solved[(i + 1) % shoes.len()]);
-            let speed = self.pins[i].speed(shoes[i].twist, shoes[next].twist);
-            let of_pin = self.pins[i].speed(*change, next_change);
-            slope -= self.pins[i].at(speed + of_pin * share).dot(of_pin);
+            slope += mass * gained.velocity.dot(change.velocity)
+                + self.inertias[i] * gained.turn * change.turn;
         }
         if let Some(sprocket) = &self.rule.sprocket {
             let gained = state.drives[self.rule.number].spin + spin * share - self.free_spin;
@@ -372,23 +322,25 @@ impl Chain {
     }
 
     pub(super) fn settle(&mut self) {
-        self.pins.iter_mut().for_each(Pin::settle);
         self.pull.impulses.center = self.pull.impulses.impulse;
     }
 
     /// Starts a piece of `h` [s] from the forces of the last one.
     pub(super) fn guess(&mut self, h: f64) {
-        for pin in &mut self.pins {
-            pin.guess(h);
-        }
         let pull = &mut self.pull.impulses;
         pull.impulse = pull.force * h;
     }
 
+    /// The same for the rest of the piece, another `h` [s].
+    pub(super) fn guess_more(&mut self, h: f64) {
+        let pull = &mut self.pull.impulses;
+        pull.impulse += pull.force * h;
+    }
+
     /// Stores the forces of a piece of `h` [s].
     pub(super) fn remember(&mut self, h: f64) {
-        for pin in &mut self.pins {
-            pin.remember(h);
+        for (pin, impulse) in self.pins.iter_mut().zip(self.system.impulses()) {
+            pin.force = impulse / h;
         }
         self.pull.impulses.force = self.pull.impulses.impulse / h;
     }

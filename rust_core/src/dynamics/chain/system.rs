@@ -1,28 +1,36 @@
 //! The linear system of a chain of shoes, reduced by elimination to the system of the chassis.
 //!
-//! Each shoe has three rows and is coupled only to its two neighbours and the chassis, so the elimination goes
-//! once round the chain. The last shoe closes the loop; like the chassis, the drive and the idler, it is part
-//! of a border that is carried along.
+//! The pins are exact: their impulses are unknowns, beside the velocities. Each shoe is coupled only to its own
+//! two pins, the chassis, the drive and the idler, so shoes are eliminated first, each on its own. What is left
+//! has two rows for each pin, which is coupled to its two neighbours: the elimination goes once round the chain.
+//! The last pin closes the ring; like the chassis, the drive and the idler, it is part of a border that is carried
+//! along. Stiff springs in place of the pins would cost as many digits as they are stiffer than shoes are heavy,
+//! and what is lost acts like blows that shake the robot, harder the shorter the step.
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
 
 use super::pin::Pin;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
 use crate::geometry::Vector;
 
-/// Rows and columns of the border: three for the closing shoe, three for the chassis, ...
-const CLOSING: usize = 0;
-const CHASSIS: usize = 3;
-const TURN: usize = 5;
-/// ... one for the drive (its force or the spin of its sprocket), one for the idler; then the right-hand side.
-const DRIVE: usize = 6;
-const IDLER: usize = 7;
-const BORDER: usize = 8;
-const RIGHT: usize = 8;
-const WIDTH: usize = 9;
+/// Rows and columns of the border: three for the chassis, ...
+pub(super) const CHASSIS: usize = 0;
+const TURN: usize = 2;
+/// ... one for the drive (its force or the spin of its sprocket), one for the idler, ...
+pub(super) const DRIVE: usize = 3;
+pub(super) const IDLER: usize = 4;
+/// ... which are those that act on shoes; two for the closing pin; then the right-hand side.
+pub(super) const BESIDE: usize = 5;
+pub(super) const CLOSING: usize = BESIDE;
+const BORDER: usize = 7;
+pub(super) const RIGHT: usize = BORDER;
+pub(super) const WIDTH: usize = BORDER + 1;
+/// The right-hand side of a shoe.
+pub(super) const OF_SHOE: usize = BESIDE;
+pub(super) const WIDTH_OF_SHOE: usize = BESIDE + 1;
 
 /// A body that takes part in a contact besides chassis and shoe.
 #[derive(Clone, Copy)]
@@ -44,24 +52,59 @@ impl Beside {
 
 /// The part of the system that belongs to one shoe.
 #[derive(Clone, Copy, Default)]
-struct Entry {
-    own: Matrix3<f64>,
-    /// Its rows in the columns of the next shoe; the transpose holds the next shoe's rows in its columns.
-    next: Matrix3<f64>,
+pub(super) struct Entry {
+    pub(super) own: Matrix3<f64>,
+    /// Its rows in the columns of chassis, drive and idler, and the right-hand side.
+    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
+    /// Rows of chassis, drive and idler in its columns.
+    pub(super) below: SMatrix<f64, BESIDE, 3>,
+}
+
+/// How a pin holds its two shoes.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Joint {
+    /// Entries of both shoes' velocities in its speed, and of its impulse on them.
+    pub(super) rows: [Matrix2x3<f64>; 2],
+    pub(super) pushes: [Matrix2x3<f64>; 2],
+    /// [m/s] Its speed.
+    pub(super) speed: Vector2<f64>,
+}
+
+/// The velocity of a shoe after its elimination.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Solved {
+    /// In terms of chassis, drive and idler, and its constant part, both with opposite sign as in the equations.
+    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
+    /// Per impulse of the pin in front and of the pin behind.
+    pub(super) pins: [SMatrix<f64, 3, 2>; 2],
+}
+
+/// The rows of a pin, and its columns, after the elimination of the shoes.
+#[derive(Clone, Copy, Default)]
+pub(super) struct PinEntry {
+    pub(super) own: Matrix2<f64>,
+    /// Its rows in the columns of the next pin, and the next pin's rows in its own.
+    pub(super) next: Matrix2<f64>,
+    pub(super) back: Matrix2<f64>,
     /// Its rows in the columns of the border, and the right-hand side.
-    beside: SMatrix<f64, 3, WIDTH>,
+    pub(super) beside: SMatrix<f64, 2, WIDTH>,
     /// Rows of the border in its columns.
-    below: SMatrix<f64, BORDER, 3>,
+    pub(super) below: SMatrix<f64, BORDER, 2>,
 }
 
 /// The system of one chain.
 pub(super) struct ChainSystem {
-    shoes: Vec<Entry>,
-    /// The shoes in this piece with their pins only.
-    bare: Vec<Entry>,
-    /// Columns of the next shoe and of the border after the shoe's own have been eliminated.
-    solved: Vec<(Matrix3<f64>, SMatrix<f64, 3, WIDTH>)>,
-    border: SMatrix<f64, BORDER, WIDTH>,
+    pub(super) shoes: Vec<Entry>,
+    /// The shoes in this piece without constraints.
+    pub(super) bare: Vec<Entry>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) freed: Vec<Solved>,
+    pub(super) pins: Vec<PinEntry>,
+    /// Columns of the next pin and of the border after the pin's own have been eliminated.
+    pub(super) solved: Vec<(Matrix2<f64>, SMatrix<f64, 2, WIDTH>)>,
+    pub(super) border: SMatrix<f64, BORDER, WIDTH>,
+    /// [N s] Impulse of each pin on the next shoe.
+    pub(super) impulses: Vec<Vector2<f64>>,
 }
 
 impl ChainSystem {
@@ -69,41 +112,62 @@ impl ChainSystem {
         Self {
             shoes: vec![Entry::default(); count],
             bare: vec![Entry::default(); count],
+            joints: vec![Joint::default(); count],
+            freed: vec![Solved::default(); count],
+            pins: vec![PinEntry::default(); count],
             solved: vec![Default::default(); count],
             border: SMatrix::zeros(),
+            impulses: vec![Vector2::zeros(); count],
         }
     }
 
-    /// Sets up shoes of a mass and inertia with their velocities without constraints, and the stiffness of their
-    /// pins.
-    pub(super) fn link(&mut self, (mass, inertia): (f64, f64), free: &[Twist], pins: &[Pin]) {
-        let masses = Vector3::new(mass, mass, inertia);
-        for (bare, twist) in self.bare.iter_mut().zip(free) {
+    /// Sets up shoes of a mass, and inertias, with their velocities without constraints.
+    pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[Twist]) {
+        for ((bare, inertia), twist) in self.bare.iter_mut().zip(inertias).zip(free) {
+            let masses = Vector3::new(mass, mass, *inertia);
             *bare = Entry::default();
             bare.own.set_diagonal(&masses);
             let momentum = masses.component_mul(&Vector3::from(twist.entries()));
-            bare.beside.set_column(RIGHT, &momentum);
-        }
-        for (i, pin) in pins.iter().enumerate() {
-            let next = (i + 1) % self.bare.len();
-            let [own, of_next] = pin.rows();
-            self.bare[i].own += own.tr_mul(&own) * pin.stiffness;
-            self.bare[i].next = own.tr_mul(&of_next) * pin.stiffness;
-            self.bare[next].own += of_next.tr_mul(&of_next) * pin.stiffness;
+            bare.beside.set_column(OF_SHOE, &momentum);
         }
     }
 
-    /// Starts from the linked shoes, with the impulses of their pins at rest, and an idler on a damper.
-    pub(super) fn start(&mut self, pins: &[Pin], idler: Damper) {
-        self.shoes.copy_from_slice(&self.bare);
-        for (i, pin) in pins.iter().enumerate() {
-            let impulse = pin.at(Vector::ZERO);
-            let next = (i + 1) % self.shoes.len();
-            for (shoe, rows) in [i, next].into_iter().zip(pin.rows()) {
-                let mut right = self.shoes[shoe].beside.column_mut(RIGHT);
-                right += rows.tr_mul(&Vector2::new(impulse.x, impulse.y));
-            }
+    /// Links the shoes by pins that close their gaps in `h` [s].
+    pub(super) fn link(&mut self, pins: &[Pin], h: f64) {
+        for (joint, pin) in self.joints.iter_mut().zip(pins) {
+            *joint = Joint {
+                rows: pin.rows(),
+                pushes: pin.rows(),
+                speed: Vector2::new(pin.gap.x, pin.gap.y) / -h,
+            };
         }
+    }
+
+    /// Lets the pins hold the shoes together.
+    pub(super) fn hold(&mut self, pins: &[Pin]) {
+        for (joint, pin) in self.joints.iter_mut().zip(pins) {
+            joint.rows = pin.rows();
+            joint.speed = Vector2::zeros();
+        }
+    }
+
+    /// Lets the pins push in their present directions.
+    pub(super) fn push_along(&mut self, pins: &[Pin]) {
+        for (joint, pin) in self.joints.iter_mut().zip(pins) {
+            joint.pushes = pin.rows();
+        }
+    }
+
+    /// Lets the pins hold in the directions in which they push, so that their forces do no work.
+    pub(super) fn hold_as_pushed(&mut self) {
+        for joint in &mut self.joints {
+            joint.rows = joint.pushes;
+        }
+    }
+
+    /// Starts from the bare shoes and an idler on a damper.
+    pub(super) fn start(&mut self, idler: Damper) {
+        self.shoes.copy_from_slice(&self.bare);
         self.border = SMatrix::zeros();
         self.border[(DRIVE, DRIVE)] = 1.0;
         self.border[(IDLER, IDLER)] = idler.stiffness;
@@ -115,7 +179,7 @@ impl ChainSystem {
         let entry = &mut self.shoes[shoe];
         let [force, action] = rows.map(Vector3::from);
         entry.own += force * action.transpose() * damper.stiffness;
-        let mut right = entry.beside.column_mut(RIGHT);
+        let mut right = entry.beside.column_mut(OF_SHOE);
         right += force * damper.at(0.0);
     }
 
@@ -189,95 +253,13 @@ impl ChainSystem {
         impulse: f64,
     ) {
         for i in 0..3 {
-            self.shoes[shoe].beside[(i, RIGHT)] += on_shoe[i] * impulse;
+            self.shoes[shoe].beside[(i, OF_SHOE)] += on_shoe[i] * impulse;
             self.border[(CHASSIS + i, RIGHT)] += on_chassis[i] * impulse;
         }
     }
 
-    /// Reduces the system to the chassis, adding the chain's part to the chassis' rows. None if the constraints
-    /// contradict each other.
-    pub(super) fn eliminate(&mut self, chassis: &mut [[f64; 4]; 3]) -> Option<()> {
-        let last = self.shoes.len() - 1;
-        let closing = self.shoes[last];
-        let mut before = closing.next.transpose();
-        for k in 0..last {
-            let mut entry = self.shoes[k];
-            // The closing shoe is both before the first and after the last but one.
-            if k + 1 == last {
-                before += std::mem::take(&mut entry.next);
-            }
-            add_block(&mut entry.beside, 0, CLOSING, &before);
-            add_block(&mut entry.below, CLOSING, 0, &before.transpose());
-            before = Matrix3::zeros();
-            let inverse = entry.own.try_inverse()?;
-            let (next, beside) = (inverse * entry.next, inverse * entry.beside);
-            self.border.gemm(-1.0, &entry.below, &beside, 1.0);
-            let back = entry.next.transpose();
-            let behind = &mut self.shoes[k + 1];
-            behind.own.gemm(-1.0, &back, &next, 1.0);
-            behind.beside.gemm(-1.0, &back, &beside, 1.0);
-            behind.below.gemm(-1.0, &entry.below, &next, 1.0);
-            self.solved[k] = (next, beside);
-        }
-        add_block(&mut self.border, CLOSING, CLOSING, &closing.own);
-        let mut rows = self.border.fixed_rows_mut::<3>(CLOSING);
-        rows += closing.beside;
-        let mut columns = self.border.fixed_columns_mut::<3>(CLOSING);
-        columns += closing.below;
-        self.solve_border()?;
-        for (i, row) in chassis.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                let column = if j < 3 { CHASSIS + j } else { RIGHT };
-                *entry += self.border[(CHASSIS + i, column)];
-            }
-        }
-        Some(())
+    /// [N s] Impulse of each pin on the next shoe in the last solution.
+    pub(super) fn impulses(&self) -> impl Iterator<Item = Vector> + '_ {
+        self.impulses.iter().map(|p| Vector::new(p.x, p.y))
     }
-
-    /// Expresses the closing shoe, the drive and the idler in terms of the chassis.
-    fn solve_border(&mut self) -> Option<()> {
-        for pivot in [0, 1, 2, IDLER, DRIVE] {
-            let by = self.border[(pivot, pivot)];
-            if by == 0.0 || !by.is_finite() {
-                return None;
-            }
-            let row = self.border.row(pivot) / by;
-            let mut column = self.border.column(pivot).into_owned();
-            column[pivot] = 0.0;
-            self.border.gemm(-1.0, &column, &row, 1.0);
-            self.border.set_row(pivot, &row);
-        }
-        Some(())
-    }
-
-    /// Computes the velocities of the shoes from that of the chassis; returns those of idler and sprocket.
-    pub(super) fn follow(&self, chassis: [f64; 3], shoes: &mut [Twist]) -> [f64; 2] {
-        let mut known = SVector::<f64, WIDTH>::zeros();
-        known.fixed_rows_mut::<3>(CHASSIS).copy_from_slice(&chassis);
-        known[RIGHT] = -1.0;
-        let of_border = -(self.border * known);
-        for i in [0, 1, 2, DRIVE, IDLER] {
-            known[i] = of_border[i];
-        }
-        let last = shoes.len() - 1;
-        let closing = known.fixed_rows::<3>(CLOSING).into_owned();
-        shoes[last] = Twist::from(<[f64; 3]>::from(closing));
-        let mut behind = Vector3::zeros();
-        for k in (0..last).rev() {
-            let (next, beside) = &self.solved[k];
-            behind = -(beside * known + next * behind);
-            shoes[k] = Twist::from(<[f64; 3]>::from(behind));
-        }
-        [known[IDLER], known[DRIVE]]
-    }
-}
-
-fn add_block<const R: usize, const C: usize>(
-    to: &mut SMatrix<f64, R, C>,
-    row: usize,
-    column: usize,
-    block: &Matrix3<f64>,
-) {
-    let mut place = to.fixed_view_mut::<3, 3>(row, column);
-    place += block;
 }

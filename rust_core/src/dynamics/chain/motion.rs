@@ -1,0 +1,113 @@
+//! A step of a chain: its solve before the motion, and its solve after it.
+//!
+//! Before the motion pins are where they will be in its middle, and close their gaps by its end. After it they hold
+//! the shoes together where they are, while their forces over the whole piece act where the middle has been. A
+//! shoe that goes round keeps its speed that way.
+//!
+//! The equations: docs/physics.md, "Chains".
+
+use super::{Chain, STOP_STIFFNESS};
+use crate::dynamics::damper::Damper;
+use crate::dynamics::state::{Shoe, State};
+use crate::geometry::Pose;
+use crate::robot::Tensioner;
+
+impl Chain {
+    /// Prepares the solve before a motion of `h` [s]: pins are to close their gaps by then. Pins and drive act as in
+    /// its middle, where the chassis has the pose `chassis`.
+    pub(in crate::dynamics) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
+        let shoes = &state.shoes[self.rule.shoes.clone()];
+        self.measure_gaps(shoes);
+        self.middle.clear();
+        self.middle
+            .extend(shoes.iter().map(|shoe| shoe.after(0.5 * h)));
+        let middle = std::mem::take(&mut self.middle);
+        self.turn_pins(&middle);
+        self.stiffen(h);
+        self.system
+            .free(self.rule.shoe_mass, &self.inertias, &self.free);
+        self.system.link(&self.pins, h);
+        let axle = chassis.transform_point(self.rule.ends[0].center);
+        self.pull
+            .follow(&self.rule, (&middle, &self.alongs), state, axle);
+        self.middle = middle;
+        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
+        self.free_spin = state.drives[self.rule.number].spin;
+    }
+
+    /// Prepares the solve after it: pins stay together where they are now; their forces over the whole piece are
+    /// those in its middle.
+    pub(in crate::dynamics) fn hold(&mut self, state: &State, h: f64) {
+        let shoes = &state.shoes[self.rule.shoes.clone()];
+        let mut middle = std::mem::take(&mut self.middle);
+        middle.clear();
+        middle.extend(shoes.iter().map(|shoe| shoe.after(-0.5 * h)));
+        self.turn_pins(&middle);
+        self.middle = middle;
+        self.system.push_along(&self.pins);
+        self.measure_gaps(shoes);
+        self.inertias.fill(self.rule.shoe_inertia);
+        self.system
+            .free(self.rule.shoe_mass, &self.inertias, &self.free);
+        self.system.hold(&self.pins);
+        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h, h);
+    }
+
+    /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its
+    /// pins followed it there. Otherwise a light shoe under a strong pull would swing wider with each piece.
+    fn stiffen(&mut self, h: f64) {
+        self.inertias.fill(0.0);
+        let count = self.pins.len();
+        for (i, pin) in self.pins.iter().enumerate() {
+            let [own, next] = pin.straightens();
+            self.inertias[i] += own;
+            self.inertias[(i + 1) % count] += next;
+        }
+        for inertia in &mut self.inertias {
+            *inertia = self.rule.shoe_inertia + 0.25 * h * h * inertia.max(0.0);
+        }
+    }
+
+    /// Lets the pins hold in the directions in which they push, as a descent needs it.
+    pub(in crate::dynamics) fn hold_as_pushed(&mut self) {
+        self.system.hold_as_pushed();
+    }
+
+    /// Turns the pins' arms with the shoes.
+    fn turn_pins(&mut self, shoes: &[Shoe]) {
+        self.alongs.clear();
+        self.alongs.extend(shoes.iter().map(Shoe::along));
+        for (i, pin) in self.pins.iter_mut().enumerate() {
+            let next = (i + 1) % shoes.len();
+            pin.turn([self.alongs[i], self.alongs[next]], self.rule.path.pitch);
+        }
+    }
+
+    /// Measures the gaps of the pins.
+    fn measure_gaps(&mut self, shoes: &[Shoe]) {
+        self.turn_pins(shoes);
+        for (i, pin) in self.pins.iter_mut().enumerate() {
+            let next = (i + 1) % shoes.len();
+            pin.measure([shoes[i].center, shoes[next].center]);
+        }
+    }
+
+    /// Spring and damper of the idler at a travel [m], with the impulse of a `time` [s], at the end of a motion of
+    /// `h` [s]; its stops are stiff.
+    fn tensioner(&self, travel: f64, h: f64, time: f64) -> Damper {
+        let Tensioner {
+            pre_tension,
+            stiffness,
+            damping,
+            stop,
+        } = self.rule.tensioner;
+        let force = pre_tension - stiffness * travel;
+        let beyond = -travel - stop;
+        if beyond <= 0.0 {
+            return Damper::new(time * force, time * (damping + h * stiffness));
+        }
+        let hard = STOP_STIFFNESS * stiffness;
+        let force = force + hard * beyond;
+        Damper::new(time * force, time * (damping + h * (stiffness + hard)))
+    }
+}

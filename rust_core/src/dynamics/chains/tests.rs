@@ -1,0 +1,73 @@
+//! A chain that whirls freely in the air, off its guide.
+
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::geometry::{Rotation, cross, left_of};
+use crate::robot::Model;
+use crate::scenario::Scenario;
+
+/// Momentum [kg m/s], angular momentum about the origin [kg m^2/s] and kinetic energy [J] of the shoes.
+fn sums(dynamics: &Dynamics, state: &State) -> (Vector, f64, f64) {
+    let rule = &dynamics.chains[0].rule;
+    let (mass, inertia) = (rule.shoe_mass, rule.shoe_inertia);
+    let mut sums = (Vector::ZERO, 0.0, 0.0);
+    for shoe in &state.shoes {
+        let Twist { velocity, turn } = shoe.twist;
+        sums.0 += velocity * mass;
+        sums.1 += cross(shoe.center, velocity) * mass + inertia * turn;
+        sums.2 += 0.5 * mass * velocity.length_squared() + 0.5 * inertia * turn * turn;
+    }
+    sums
+}
+
+/// The Engineer without gravity and motors, and its chain 3 m away: still in the shape of the track, but turning as
+/// a whole and flying off.
+fn whirling() -> (Dynamics, State) {
+    let text = include_str!("../../../../tests/scenarios/engineer_chain_step.json");
+    let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+    scenario.robot.drivetrain.max_torque = 0.0;
+    let model = Model::new(&scenario.robot).expect("the robot can be built");
+    let mut state = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
+    let (away, turn) = (Vector::new(0.0, 3.0), 8.0);
+    let turned = Rotation::new(0.4);
+    for shoe in &mut state.shoes {
+        let arm = turned * shoe.center;
+        shoe.center = away + arm;
+        shoe.angle += 0.4;
+        shoe.twist = Twist {
+            velocity: Vector::new(0.2, 0.3) + left_of(arm) * turn,
+            turn,
+        };
+    }
+    // The drive turns as fast as the chain goes round.
+    let length = state.shoes.len() as f64 * model.chains[0].path.pitch;
+    state.drives[0].spin = turn * length / (TAU * model.drive_radius);
+    let dynamics = Dynamics::new(model, vec![0.9], 0.0, scenario.solver);
+    (dynamics, state)
+}
+
+#[test]
+fn a_chain_that_whirls_in_the_air_keeps_momentum_and_energy_to_second_order() {
+    let mut losses = Vec::new();
+    for h in [1e-3_f64, 5e-4] {
+        let (mut dynamics, mut state) = whirling();
+        let before = sums(&dynamics, &state);
+        let (mut turned, mut energy, mut estimate): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        let mut last = state.clone();
+        for _ in 0..(1.0 / h).round() as u64 {
+            last.copy(&state);
+            dynamics.take(&mut state, &[], 0.0, h);
+            let now = sums(&dynamics, &state);
+            assert!((now.0 - before.0).length() < 1e-12 * before.0.length());
+            turned = turned.max((now.1 / before.1 - 1.0).abs());
+            energy = energy.max((now.2 / before.2 - 1.0).abs());
+            estimate = estimate.max(dynamics.local_error(&last, &state, h, 0.0));
+        }
+        losses.push([turned, energy, estimate]);
+    }
+    for (coarse, fine) in losses[0].into_iter().zip(losses[1]) {
+        // Half the step leaves a quarter of the error.
+        assert!(coarse < 1e-3 && fine < 0.3 * coarse, "{losses:?}");
+    }
+}
