@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::contact_table::ContactTable;
 use super::record::Record;
+use super::simulation::SAME_TIME;
 use super::trace::{Recorder, Trace};
 use super::{Checked, Metrics, Simulation, budget};
 use crate::diagnosis::{Counterfactual, Diagnosis};
@@ -12,9 +13,6 @@ use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
 use crate::terrain::Edge;
-
-/// [s] Times closer than this are the same.
-const SAME_TIME: f64 = 1e-9;
 
 /// The results of a run.
 #[derive(Clone, Debug)]

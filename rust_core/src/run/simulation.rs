@@ -15,7 +15,7 @@ mod whole;
 use std::sync::Arc;
 
 use self::gait::{Driver, Target};
-pub(super) use self::pace::FARTHEST_TURN;
+pub(super) use self::pace::{FARTHEST_TURN, SAME_TIME};
 use self::pace::{Pace, Rule};
 use super::Checked;
 use super::checked::fastest_turn;

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::contact_table::ContactTable;
 use super::record::{Columns, Record};
+use super::simulation::SAME_TIME;
 use crate::dynamics::State;
 use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};
@@ -192,8 +193,10 @@ impl<'a> Recorder<'a> {
         mut self,
         simulation: &Simulation,
     ) -> Result<(Trace, ContactTable), LimitError> {
-        if self.trace.time.last() != Some(&simulation.time()) {
-            self.sample(simulation, simulation.time())?;
+        let end = simulation.time();
+        let is_taken = |last: &f64| end - last < SAME_TIME;
+        if !self.trace.time.last().is_some_and(is_taken) {
+            self.sample(simulation, end)?;
         }
         for (column, _) in self.trace.columns(self.columns) {
             column.shrink_to_fit();

@@ -77,6 +77,9 @@ fn scenarios() -> Vec<(&'static str, Scenario)> {
         ),
         ("force", engineer_on(force())),
     ]);
+    for (_, scenario) in scenarios.iter_mut().filter(|(name, _)| strikes(name)) {
+        fixed(scenario, 1e-3);
+    }
     scenarios
 }
 
@@ -155,7 +158,8 @@ fn a_shift_by_kilometres_changes_nothing_before_the_edge() {
         for x in [100.0, 1e4] {
             let off = apart(&here, &path(x));
             println!("{name}, {x} m: off {off:.1e} m");
-            assert!(off < 1e-9);
+            // Blows pass differences of rounding on.
+            assert!(off < if strikes(name) { 1e-6 } else { 1e-9 });
         }
     }
 }

@@ -110,6 +110,7 @@ fn a_shift_by_a_hundred_metres_changes_hundredths_of_a_millimetre_at_most() {
             friction: 0.9,
         };
         scenario.start.approach = 1.0;
+        fixed(&mut scenario, 1e-3);
         // At 0.2 m/s^2 up to 0.4 m/s, three seconds end 0.2 m before the edge.
         let r = after(&scenario, 3.0).reading();
         [r.position.x - x, r.position.y, r.chassis_angle]

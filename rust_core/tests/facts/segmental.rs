@@ -95,7 +95,8 @@ fn on_level_ground_speed_and_height_are_the_geometrys() {
         );
         assert!((belt / 0.4 - 1.0).abs() < 0.005);
         assert!((ground / 0.4 - 1.0).abs() < 0.01);
-        assert!((lowest - 0.064).abs() < 1e-3 && (highest - 0.064).abs() < 1e-3);
+        // A corner of a shoe that goes round the front stands out by 4 mm, and lifts the robot by a part of it.
+        assert!((lowest - 0.064).abs() < 1e-3 && (highest - 0.064).abs() < 1.5e-3);
     }
 }
 
@@ -120,11 +121,9 @@ fn the_ground_bears_its_weight_on_the_level_and_on_a_ramp() {
             sum[0] += fx * simulation.last_step();
             sum[1] += fy * simulation.last_step();
         }
-        let gained = (simulation.momentum() - before) / 1.0;
-        let off = [
-            sum[0] / 1000.0 - gained.x,
-            sum[1] / 1000.0 - gained.y - weight,
-        ];
+        // In one second.
+        let gained = simulation.momentum() - before;
+        let off = [sum[0] - gained.x, sum[1] - gained.y - weight];
         println!(
             "slope {angle}: off by {:.1e} and {:.1e} of the weight",
             off[0] / weight,

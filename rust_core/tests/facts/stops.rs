@@ -372,7 +372,7 @@ fn a_stalled_chain_creeps_alike_in_long_steps_and_short_ones() {
         scenario.drive.speed = 0.1;
         scenario.start.approach = 0.02;
         scenario.start.track_phase = 0.02;
-        (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(time_step));
+        fixed(&mut scenario, time_step);
         let mut simulation = after(&scenario, 1.0);
         let start = simulation.reading().track_position;
         advance(&mut simulation, 2.0);

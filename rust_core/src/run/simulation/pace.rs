@@ -25,7 +25,7 @@ const TOO_MUCH: f64 = 1.5;
 /// Smallest error in units of the accuracy that the controller remembers.
 const LEAST: f64 = 1e-3;
 /// [s] Times closer than this are the same.
-pub(super) const SAME_TIME: f64 = 1e-9;
+pub(in crate::run) const SAME_TIME: f64 = 1e-9;
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +89,7 @@ impl Pace {
             return Ok(());
         };
         let ratio = (error / accuracy).max(LEAST);
-        let too_much = !(ratio <= TOO_MUCH);
+        let too_much = ratio > TOO_MUCH;
         let share = AIM / ratio;
         if too_much && h > SHORTEST {
             let factor = if ratio.is_finite() {

@@ -99,13 +99,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// [m] The local error of the step that was tried; not a number if the state is none.
+    /// [m] The local error of the step that was tried; infinite if the state is not finite.
     fn local_error(&self, h: f64) -> f64 {
         if self.state.is_finite() {
             self.dynamics
                 .local_error(&self.before, &self.state, h, self.reach)
         } else {
-            f64::NAN
+            f64::INFINITY
         }
     }
 
