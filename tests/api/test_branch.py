@@ -88,7 +88,7 @@ def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
     """Gears that slip before a step: a smooth belt does, too, grousers take hold of its edge."""
     gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
     robot = c2d.robots.engineer(flippers=None, track=gears)
-    run = c2d.simulate(robot, c2d.terrains.step(0.10, friction=0.7))
+    run = c2d.simulate(robot, c2d.terrains.step(0.105, friction=0.65))
     smooth, grousers = run.counterfactual(), run.counterfactual(grousers=True)
     assert (smooth.freed, grousers.freed) == (False, True)
 

@@ -9,9 +9,12 @@ use super::Dynamics;
 use super::row::Row;
 use super::state::{State, Twist};
 
+/// Share of a shoe's error that counts: shoes are light, and swing where the chain is slack.
+const OF_SHOES: f64 = 0.1;
+
 impl Dynamics {
     /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
-    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface.
+    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin.
     pub(crate) fn local_error(&self, before: &State, after: &State, h: f64, reach: f64) -> f64 {
         let moved = &self.moved;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;
@@ -39,7 +42,7 @@ impl Dynamics {
             .map_or(0.0, |chain| 0.5 * chain.rule.path.pitch);
         for (k, shoe) in moved.shoes.iter().enumerate() {
             let off = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
-            most = most.max(off.velocity.length() + half_pitch * off.turn.abs());
+            most = most.max(OF_SHOES * (off.velocity.length() + half_pitch * off.turn.abs()));
         }
         let dips = self.rows.iter().map(Row::dip);
         dips.fold(h * most, f64::max)

@@ -72,8 +72,10 @@ pub(crate) use state::{
 };
 
 /// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
-/// sustain. Friction that balance does not require fades with this time constant.
+/// sustain. Friction that balance does not require fades with this time constant; not beside chains, whose contacts
+/// are springs: if these faded, whatever hangs on them would creep.
 const SELF_STRESS_TIME: f64 = 0.1;
+
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
     model: Model,
@@ -178,7 +180,11 @@ impl Dynamics {
     /// by [`Dynamics::recognise`].
     pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], h: f64) {
         let half = 0.5 * h;
-        let fading = libm::exp(-h / SELF_STRESS_TIME);
+        let fading = if self.chains.is_empty() {
+            libm::exp(-h / SELF_STRESS_TIME)
+        } else {
+            1.0
+        };
         self.rows.clear();
         let mut last = Numbered::new(&self.loaded);
         for contact in contacts {

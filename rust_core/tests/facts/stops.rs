@@ -361,10 +361,9 @@ fn a_seized_robot_gives_way_to_a_push_beyond_its_escape_force() {
     assert!(f64::from(right) >= 0.95 * f64::from(cases));
 }
 
-/// The friction of shoes fades and is built up again by a little creep: that of a spring, not of a step.
 #[test]
-fn a_stalled_chain_creeps_alike_in_long_steps_and_short_ones() {
-    let crept = [1e-3, 0.125e-3].map(|time_step| {
+fn a_stalled_chain_does_not_creep() {
+    for time_step in [1e-3, 0.125e-3] {
         let mut scenario = engineer_on(segmental(Some(22)));
         scenario.terrain = step(0.2, 1.5);
         scenario.robot.drivetrain.max_torque = 2.0;
@@ -376,9 +375,9 @@ fn a_stalled_chain_creeps_alike_in_long_steps_and_short_ones() {
         let mut simulation = after(&scenario, 1.0);
         let start = simulation.reading().track_position;
         advance(&mut simulation, 2.0);
-        simulation.reading().track_position - start
-    });
-    println!("{:.4} and {:.4} mm", 1e3 * crept[0], 1e3 * crept[1]);
-    // The two stand on their grousers a little differently.
-    assert!((crept[0] / crept[1] - 1.0).abs() < 0.2);
+        let crept = simulation.reading().track_position - start;
+        println!("{crept:.1e} m in 2 s, steps of {time_step} s");
+        // What is left of its swinging.
+        assert!(crept.abs() < 1e-6);
+    }
 }

@@ -161,9 +161,10 @@ impl HullContact {
         if -depth >= prediction {
             return None;
         }
-        let normal = -(pose.rotation * self.outward_at(place, inside));
+        let (outward, is_run) = self.outward_at(place, inside);
+        let normal = -(pose.rotation * outward);
         // Deep inside, every corner bears on the hull by itself.
-        if depth > SHALLOW || corner.faces(normal) {
+        if depth > SHALLOW || corner.faces(normal) || (is_run && corner.faces_side(normal)) {
             return Some(corner.touch(i, normal, -depth));
         }
         let (depth, normal) = self.way_out(corner, place, pose)?;
@@ -199,8 +200,9 @@ impl HullContact {
         is_met.then_some((inside + corner.radius, normal))
     }
 
-    /// The outward normal where the hull is nearest to a place that is `depth` [m] inside.
-    fn outward_at(&self, place: Vector, depth: f64) -> Vector {
+    /// The outward normal where the hull is nearest to a place that is `depth` [m] inside, and whether that is on a
+    /// run.
+    fn outward_at(&self, place: Vector, depth: f64) -> (Vector, bool) {
         // Near the end of an arc its run is equally near within rounding, but has another normal.
         let of_arc = |arc: &Arc| {
             let spoke = place - arc.disc.center;
@@ -208,6 +210,9 @@ impl HullContact {
             spoke.try_normalize().filter(|_| is_nearest)
         };
         let outward = self.arcs.iter().find_map(of_arc);
-        outward.unwrap_or_else(|| self.hull.outward_at(place))
+        outward.map_or_else(
+            || (self.hull.outward_at(place), true),
+            |outward| (outward, false),
+        )
     }
 }

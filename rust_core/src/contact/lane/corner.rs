@@ -6,6 +6,9 @@ use super::{On, ROUNDING, Touch};
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::Profile;
 
+/// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
+/// a rounded corner reaches out of the ground by less than 4 um.
+const NEARLY: f64 = 0.02;
 /// [m] A point this close to an arc is on it.
 const SHARED: f64 = 1e-10;
 
@@ -31,9 +34,20 @@ pub(crate) struct Corner {
 impl Corner {
     /// Whether a direction is a normal of the ground at the corner, within rounding.
     pub(crate) fn faces(&self, direction: Vector) -> bool {
+        self.is_normal(direction, ROUNDING)
+    }
+
+    /// Whether a straight side with this opposite normal bears on the corner, or would after a small turn: at an edge,
+    /// where no other ground would bear in its place.
+    pub(crate) fn faces_side(&self, direction: Vector) -> bool {
+        self.is_normal(direction, if self.edge >= 0 { NEARLY } else { ROUNDING })
+    }
+
+    /// Whether a direction is within an angle, of this sine, of the normals of the ground at the corner.
+    fn is_normal(&self, direction: Vector, within: f64) -> bool {
         let [before, behind] = self.normals;
-        cross(direction, before) >= -ROUNDING
-            && cross(behind, direction) >= -ROUNDING
+        cross(direction, before) >= -within
+            && cross(behind, direction) >= -within
             && direction.dot(before + behind) > 0.0
     }
 

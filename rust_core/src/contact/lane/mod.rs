@@ -238,7 +238,7 @@ impl Lane {
                     && gap < prediction
                     && gap > -depth
                     && (0.0..=length).contains(&spoke.dot(along))
-                    && corner.faces(-outward);
+                    && corner.faces_side(-outward);
                 let touch = bears.then(|| corner.touch(i, -outward, gap));
                 touch.inspect(|touch| found(*touch))
             },
