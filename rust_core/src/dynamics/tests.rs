@@ -212,14 +212,16 @@ fn force_alone_drives_the_chassis_in_the_air() {
 
 #[test]
 fn a_state_that_is_no_number_is_seen_after_a_step_on_contacts_too() {
-    for value in [f64::NAN, f64::INFINITY, 1e300] {
+    let huge = 1e300;
+    for value in [f64::NAN, f64::INFINITY, huge] {
         for has_contacts in [false, true] {
             let (mut dynamics, mut state) = setup(|_| {});
             let clamped = clamped(&state);
             let contacts = if has_contacts { &clamped[..] } else { &[] };
             state.velocity.x = value;
             dynamics.take(&mut state, contacts, 0.0, STEP);
-            assert!(!state.is_finite() || value == 1e300 && !has_contacts);
+            // Without contacts a robot may be as fast as that.
+            assert!(!state.is_finite() || value <= huge && !has_contacts);
         }
     }
 }

@@ -114,7 +114,7 @@ fn a_free_arm_of_a_heavy_robot_is_a_pendulum() {
         dynamics.take(&mut state, &[], 0.0, STEP);
         let now = state.flippers[0].angle - down;
         if before > 0.0 && now <= 0.0 {
-            crossings.push(1e-3 * (step as f64 + before / (before - now)));
+            crossings.push(1e-3 * (f64::from(step) + before / (before - now)));
         }
         if step > 4000 {
             largest = largest.max(now);
@@ -135,7 +135,7 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     for step in 0..500 {
         dynamics.command_flippers(&state, [0.8, 0.0], [0.0; 2], STEP);
         dynamics.take(&mut state, &[], 0.0, STEP);
-        let turned = (2.0 * STEP * (step + 1) as f64).min(0.8);
+        let turned = (2.0 * STEP * f64::from(step + 1)).min(0.8);
         assert_relative_eq!(state.over_chassis(0), turned, epsilon = 1e-9);
         assert_relative_eq!(state.over_chassis(1), 0.0, epsilon = 1e-9);
     }

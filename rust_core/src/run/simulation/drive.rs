@@ -11,11 +11,8 @@ pub(crate) fn set_point(now: f64, command: f64, limits: &Drivetrain, dt: f64) ->
 /// [s] How long the set-point changes at the same rate; infinite if it has its command.
 pub(crate) fn ramp_time(now: f64, command: f64, limits: &Drivetrain) -> f64 {
     let (target, rate) = ramp(now, command, limits);
-    if target == now {
-        f64::INFINITY
-    } else {
-        (target - now).abs() / rate
-    }
+    let way = (target - now).abs();
+    if way > 0.0 { way / rate } else { f64::INFINITY }
 }
 
 /// [m/s] Where the set-point goes, and [m/s^2] its rate.

@@ -119,7 +119,7 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
     type Forget = fn(&mut Simulation, Simulation);
     let all: [(&str, Forget); 10] = [
         ("time", |s, fresh| {
-            (s.time, s.began) = (fresh.time, fresh.time)
+            (s.time, s.began) = (fresh.time, fresh.time);
         }),
         ("pace", |s, fresh| s.pace = fresh.pace),
         ("command", |s, fresh| s.command = fresh.command),
