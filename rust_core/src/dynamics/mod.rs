@@ -41,6 +41,7 @@ mod state;
 mod system;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod way;
 
 use arm::Arm;

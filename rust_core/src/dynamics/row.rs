@@ -9,6 +9,7 @@ use super::grip::Grip;
 use super::levers::{Carried, Direction, Levers};
 use super::softness::Softness;
 use super::state::{Carrier, State, Twist};
+use super::turning::Turning;
 use super::way::Way;
 use crate::contact::Contact;
 use crate::geometry::{Rotation, Vector};
@@ -85,6 +86,9 @@ pub(super) struct Row {
     pub friction_guess: f64,
     /// [m] Current gap.
     pub gap: f64,
+    turning: Turning,
+    /// [m/s] What the turn of the normal since the middle of the step adds to the speed at which the gap opens.
+    pub opens: f64,
     /// Index among the shoe's rests.
     pub place: usize,
     start: Place,
@@ -164,6 +168,9 @@ impl Row {
             friction_guess: last.map_or(0.0, |l| l.friction_guess),
             gap: start.gap,
             start,
+            turning: Turning::of(contact, part, |point| {
+                middle.center + Rotation::new(middle.angle) * (point - middle.origin)
+            }),
             ..match part.mount {
                 Mount::Flipper(k) => {
                     let pivot = middle.center - state.moved(time).0;
@@ -202,6 +209,8 @@ impl Row {
             normal_guess: 0.0,
             friction_guess: 0.0,
             gap: 0.0,
+            turning: Turning::Fixed,
+            opens: 0.0,
             place: 0,
             start: Place::default(),
         }
@@ -305,6 +314,13 @@ impl Row {
         let now = state.carrier(mount, 0.0, model);
         let run = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
         self.gap = s.gap + self.normal.unit.dot(s.moved(&now, run));
+        let turn = match self.link {
+            Link::Flipper(k) => state.flippers[k].rate,
+            _ => state.angular_velocity,
+        };
+        let of_drive = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
+        let slip = self.slip(state) - self.tangent.drive_lever * of_drive;
+        self.opens = self.turning.opens(slip, turn, 0.5 * h);
     }
 
     /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.

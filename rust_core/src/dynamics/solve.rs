@@ -245,7 +245,7 @@ impl Dynamics {
         for row in &mut self.rows {
             // Contacts loaded before the motion have closed their gap, apart from the arc of a turning grouser.
             row.bears = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
-            (row.bias, row.compliance) = (0.0, 0.0);
+            (row.bias, row.compliance) = (row.opens, 0.0);
             if row.normal_impulse >= row.normal_guess * half {
                 row.normal_impulse += row.normal_guess * half;
                 row.friction_impulse += row.friction_guess * half;

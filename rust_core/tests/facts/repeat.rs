@@ -129,28 +129,28 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0xd0f2_7a0b_11ba_d15a),
+        ("line of 5", engineer_on(line(5)), 0x821a_7258_39c2_69e3),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x9293_76d2_8cb6_8eaa,
+            0x895e_750d_09e7_9972,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0xf545_8806_6c78_fc0f,
+            0x74d9_dc1f_a589_0c1f,
         ),
-        ("chain", engineer_on(segmental(None)), 0xe3f7_07bf_4e6f_c980),
+        ("chain", engineer_on(segmental(None)), 0x5910_23a9_8c19_4417),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0x1c88_1c39_eed3_d2a8,
+            0x8cd6_7422_6311_33c7,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0xdb2f_a9f2_b2e8_1736),
+        ("belt, arms", on_arms(0.5, belt()), 0x06db_57f4_358c_50f5),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xbbdb_2a95_8d08_1a31,
+            0xf188_070a_bd99_40a7,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {
