@@ -27,6 +27,16 @@ impl Carried {
         self.turn != 0.0 || self.along != Vector::ZERO
     }
 
+    /// Whether it turns about an axle of its own.
+    pub(super) fn turns(&self) -> bool {
+        self.turn != 0.0
+    }
+
+    /// [rad/s] How fast, over its carrier, if its drive runs at a speed [m/s].
+    pub(super) fn turn_at(&self, speed: f64) -> f64 {
+        -self.turn * speed
+    }
+
     /// [m] From the end of the arm to the contact, after the chassis has turned and the drive has run by `run`.
     pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
         let spoke = turned * self.spoke;

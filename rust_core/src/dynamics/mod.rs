@@ -26,6 +26,7 @@ mod law;
 mod levers;
 mod loaded;
 mod local_error;
+mod meeting;
 mod motor;
 mod motors;
 mod newton;
@@ -41,7 +42,6 @@ mod state;
 mod system;
 #[cfg(test)]
 mod tests;
-mod turning;
 mod way;
 
 use arm::Arm;

@@ -7,9 +7,9 @@ use super::action::Action;
 use super::damper::Damper;
 use super::grip::Grip;
 use super::levers::{Carried, Direction, Levers};
+use super::meeting::{Meeting, Swing};
 use super::softness::Softness;
 use super::state::{Carrier, State, Twist};
-use super::turning::Turning;
 use super::way::Way;
 use crate::contact::Contact;
 use crate::geometry::{Rotation, Vector};
@@ -86,8 +86,8 @@ pub(super) struct Row {
     pub friction_guess: f64,
     /// [m] Current gap.
     pub gap: f64,
-    turning: Turning,
-    /// [m/s] What the turn of the normal since the middle of the step adds to the speed at which the gap opens.
+    meeting: Meeting,
+    /// [m/s] How much faster the gap opens at the end of the step than with the levers of its middle.
     pub opens: f64,
     /// Index among the shoe's rests.
     pub place: usize,
@@ -168,7 +168,7 @@ impl Row {
             friction_guess: last.map_or(0.0, |l| l.friction_guess),
             gap: start.gap,
             start,
-            turning: Turning::of(contact, part, |point| {
+            meeting: Meeting::of(contact, part, |point| {
                 middle.center + Rotation::new(middle.angle) * (point - middle.origin)
             }),
             ..match part.mount {
@@ -209,7 +209,7 @@ impl Row {
             normal_guess: 0.0,
             friction_guess: 0.0,
             gap: 0.0,
-            turning: Turning::Fixed,
+            meeting: Meeting::Point,
             opens: 0.0,
             place: 0,
             start: Place::default(),
@@ -314,13 +314,40 @@ impl Row {
         let now = state.carrier(mount, 0.0, model);
         let run = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
         self.gap = s.gap + self.normal.unit.dot(s.moved(&now, run));
+        let speed = self
+            .drive
+            .map_or(0.0, |k| state.speed_over(mount, k, model));
+        // It may let the gap close, but pushes nothing.
+        let grows = self.meeting.opens(self.swing(state, &now, speed)).max(0.0);
+        self.opens = 0.5 * h * grows;
+    }
+
+    /// Its part's motion, with its carrier `now` and its drive at a speed [m/s] over that.
+    fn swing(&self, state: &State, now: &Carrier, speed: f64) -> Swing {
+        let Place {
+            carrier,
+            arm,
+            carried,
+            ..
+        } = &self.start;
         let turn = match self.link {
             Link::Flipper(k) => state.flippers[k].rate,
             _ => state.angular_velocity,
         };
-        let of_drive = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
-        let slip = self.slip(state) - self.tangent.drive_lever * of_drive;
-        self.opens = self.turning.opens(slip, turn, 0.5 * h);
+        let normal = self.normal.unit;
+        if carried.turns() {
+            return Swing {
+                turn: turn + carried.turn_at(speed),
+                height: -carried.spoke.dot(normal),
+                slip: self.slip(state),
+            };
+        }
+        let of_surface = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
+        Swing {
+            turn,
+            height: -(Rotation::new(now.angle - carrier.angle) * *arm).dot(normal),
+            slip: self.slip(state) - self.tangent.drive_lever * of_surface,
+        }
     }
 
     /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.

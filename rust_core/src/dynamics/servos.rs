@@ -14,6 +14,7 @@ use super::system::Acts;
 impl Dynamics {
     /// Puts a servo in the place of each motor of a drive or a flipper.
     pub(super) fn set_servos(&mut self, state: &State, phase: &Phase) {
+        self.sum_torques();
         let m = &self.model;
         self.servos.clear();
         for k in self.chains.len()..self.motors.len() {

@@ -207,7 +207,7 @@ impl Dynamics {
         }
     }
 
-    /// Sets the spins of drives held by motors, and sums the angular impulses of the contacts on the drives.
+    /// Sets the spins of drives and the rates of flippers held by motors, and sums the angular impulses on the drives.
     pub(super) fn turn_with_chassis(&mut self, state: &mut State, phase: &Phase) {
         let back = phase.set_point / self.model.drive_radius;
         // A chain is held at its driving end, and has a speed of its own.
@@ -218,6 +218,11 @@ impl Dynamics {
             }
         }
         self.turn_flippers_with_chassis(state);
+        self.sum_torques();
+    }
+
+    /// Sums the angular impulses of the contacts on the drives.
+    pub(super) fn sum_torques(&mut self) {
         self.torques.fill(0.0);
         for row in &self.rows {
             if let Some(k) = row.drive {
