@@ -85,12 +85,14 @@ def test_a_seized_robot_stays_seized_and_gets_away_on_a_belt(seized: c2d.Run) ->
 
 
 def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
-    """Gears that slip before a step: a smooth belt does, too, grousers take hold of its edge."""
+    """Gears that slip before a step: a smooth belt does, too, grousers mostly take hold of its edge."""
     gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
     robot = c2d.robots.engineer(flippers=None, track=gears)
-    run = c2d.simulate(robot, c2d.terrains.step(0.105, friction=0.65))
-    smooth, grousers = run.counterfactual(), run.counterfactual(grousers=True)
-    assert (smooth.freed, grousers.freed) == (False, True)
+    terrain = c2d.terrains.step(0.105, friction=0.7)
+    starts = [c2d.Start(track_phase=phase * 1e-3) for phase in range(0, 48, 8)]
+    runs = [c2d.simulate(robot, terrain, start=start) for start in starts]
+    assert not any(run.counterfactual().freed for run in runs)
+    assert sum(run.counterfactual(grousers=True).freed for run in runs) > 3
 
 
 def test_a_belt_with_grousers_does_as_the_same_belt_does() -> None:
