@@ -22,7 +22,7 @@ pub(super) struct Arm {
     pub pivot: Vector,
     /// [m] From the pivot to the arm's own centre of mass, in the middle of the step.
     pub center: Vector,
-    /// Its velocity in this piece if there were no pivot.
+    /// Its velocity in this step if there were no pivot.
     pub free: Twist,
 }
 

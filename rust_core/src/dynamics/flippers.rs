@@ -58,7 +58,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece: velocities of the arms after a time [s] under weight alone.
+    /// Starts a step: velocities of the arms after a time [s] under weight alone.
     pub(super) fn start_flippers(&mut self, state: &State, time: f64) {
         let chassis = state.twist();
         for (arm, turn) in self.flippers.iter_mut().zip(&state.flippers) {
@@ -72,7 +72,7 @@ impl Dynamics {
 
     /// Continues for a time [s] under weight and centripetal acceleration: the pivot goes round with the chassis
     /// and the arm round the pivot, which changes no rate. `began` is the angular velocity of the chassis at the
-    /// beginning of the piece [rad/s]. Half of the piece is over, so rates have made half of their change; they
+    /// beginning of the step [rad/s]. Half of the step is over, so rates have made half of their change; they
     /// are extrapolated to its end.
     pub(super) fn pull_flippers(&mut self, state: &State, began: f64, time: f64) {
         let (center, gravity) = (self.model.center_of_mass, self.gravity);

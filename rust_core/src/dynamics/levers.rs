@@ -135,3 +135,31 @@ impl Levers {
         }
     }
 }
+
+/// The touching point of the robot at the start of the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// [m] Gap.
+    pub gap: f64,
+    /// [m] Gap in the middle of the step, where the contact was found.
+    pub middle: f64,
+    /// Its carrier.
+    pub carrier: Carrier,
+    /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
+    pub arm: Vector,
+    /// The way from there to the contact.
+    pub carried: Carried,
+    /// [m] Position of the drive.
+    pub drive_position: f64,
+}
+
+impl Place {
+    /// [m] How far the touching point has moved, once its carrier is there and its drive has run to `run` [m].
+    pub(super) fn moved(&self, now: &Carrier, run: f64) -> Vector {
+        let turned = Rotation::new(now.angle - self.carrier.angle);
+        let offset = self.carried.offset(turned, run - self.drive_position);
+        now.center - self.carrier.center + turned * self.arm + offset
+            - self.arm
+            - self.carried.spoke
+    }
+}

@@ -14,6 +14,7 @@ mod between;
 mod chain;
 mod chains;
 mod change;
+mod course;
 mod damper;
 mod descent;
 mod direct;
@@ -90,7 +91,7 @@ pub(crate) struct Dynamics {
     motors: Vec<Motor>,
     /// The motors in a descent.
     servos: Vec<Servo>,
-    /// [N m s] Angular impulse of the contacts on each drive in this piece.
+    /// [N m s] Angular impulse of the contacts on each drive in this step.
     torques: Vec<f64>,
     /// [kg m^2] Moment of inertia of the chassis with the drives that turn with it.
     inertia: f64,
@@ -300,13 +301,10 @@ impl Dynamics {
 
     /// [N s] Impulse of the ground in this step.
     fn impulse_of_ground(&self) -> Vector {
-        let of_row = |row: &Row| {
-            let [n, t] = &row.actions;
-            n.unit * row.normal_impulse + t.unit * row.friction_impulse
-        };
         let of_push = |push: &Push| push.action.unit * push.impulse;
         let on_ground = self.rows.iter().filter(|row| row.is_on_ground());
-        on_ground.map(of_row).sum::<Vector>() + self.push.as_ref().map_or(Vector::ZERO, of_push)
+        on_ground.map(Row::impulse).sum::<Vector>()
+            + self.push.as_ref().map_or(Vector::ZERO, of_push)
     }
 
     /// Goes back to before a step that was not kept.

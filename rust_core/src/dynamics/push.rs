@@ -15,7 +15,7 @@ use crate::robot::Model;
 pub(super) struct Push {
     /// [N] The last force.
     pub force: f64,
-    /// [N s] Impulse in this piece.
+    /// [N s] Impulse in this step.
     pub impulse: f64,
     /// [N s] Impulse about which a direct solve damps it.
     pub center: f64,

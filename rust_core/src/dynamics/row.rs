@@ -6,10 +6,10 @@ use super::LoadedContact;
 use super::action::Action;
 use super::damper::Damper;
 use super::grip::Grip;
-use super::levers::{Carried, Direction, Levers};
-use super::meeting::{Meeting, Swing};
+use super::levers::{Direction, Levers, Place};
+use super::meeting::Meeting;
 use super::softness::Softness;
-use super::state::{Carrier, State, Twist};
+use super::state::{State, Twist};
 use super::way::Way;
 use crate::contact::Contact;
 use crate::geometry::{Rotation, Vector};
@@ -57,15 +57,15 @@ pub(super) struct Row {
     pub bias: f64,
     /// Compliance in units of its own admittance.
     pub compliance: f64,
-    /// The same of a grip that gives way elastically; it is damped about its impulse of the last piece.
+    /// The same of a grip that gives way elastically; it is damped about its impulse of the last step.
     pub give: f64,
     /// Share of a change of the friction of an elastic grip that its spring keeps; the rest is damping.
     pub springs: f64,
     /// Whether it can carry a load in this solve.
     pub bears: bool,
-    /// [N s] Normal impulse in this piece.
+    /// [N s] Normal impulse in this step.
     pub normal_impulse: f64,
-    /// [N s] Friction impulse in this piece.
+    /// [N s] Friction impulse in this step.
     pub friction_impulse: f64,
     /// The guessed state.
     pub grip: Grip,
@@ -86,40 +86,13 @@ pub(super) struct Row {
     pub friction_guess: f64,
     /// [m] Current gap.
     pub gap: f64,
-    meeting: Meeting,
+    pub meeting: Meeting,
     /// [m/s] How much faster the gap opens at the end of the step than with the levers of its middle.
     pub opens: f64,
     /// Index among the shoe's rests.
     pub place: usize,
-    start: Place,
-}
-
-/// The touching point of the robot at the start of the step.
-#[derive(Clone, Copy, Debug, Default)]
-struct Place {
-    /// [m] Gap.
-    gap: f64,
-    /// [m] Gap in the middle of the step, where the contact was found.
-    middle: f64,
-    /// Its carrier.
-    carrier: Carrier,
-    /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
-    arm: Vector,
-    /// The way from there to the contact.
-    carried: Carried,
-    /// [m] Position of the drive.
-    drive_position: f64,
-}
-
-impl Place {
-    /// [m] How far the touching point has moved, once its carrier is there and its drive has run to `run` [m].
-    fn moved(&self, now: &Carrier, run: f64) -> Vector {
-        let turned = Rotation::new(now.angle - self.carrier.angle);
-        let offset = self.carried.offset(turned, run - self.drive_position);
-        now.center - self.carrier.center + turned * self.arm + offset
-            - self.arm
-            - self.carried.spoke
-    }
+    /// Its point at the start of the step.
+    pub start: Place,
 }
 
 impl Row {
@@ -299,109 +272,6 @@ impl Row {
         }
     }
 
-    /// Updates the gap for the motion in a piece of `h` [s].
-    pub(super) fn follow(&mut self, state: &State, model: &Model, h: f64) {
-        let mount = match self.link {
-            Link::Chassis => Mount::Chassis,
-            Link::Flipper(k) => Mount::Flipper(k),
-            Link::Shoe(_) | Link::Guide { .. } | Link::Tooth { .. } => {
-                // Its directions are kept, and so is its speed during the piece.
-                self.gap += self.opening_speed(state) * h;
-                return;
-            }
-        };
-        let s = &self.start;
-        let now = state.carrier(mount, 0.0, model);
-        let run = self.drive.map_or(0.0, |k| state.run_over(mount, k, model));
-        self.gap = s.gap + self.normal.unit.dot(s.moved(&now, run));
-        let speed = self
-            .drive
-            .map_or(0.0, |k| state.speed_over(mount, k, model));
-        // It may let the gap close, but pushes nothing.
-        let grows = self.meeting.opens(self.swing(state, &now, speed)).max(0.0);
-        self.opens = 0.5 * h * grows;
-    }
-
-    /// Its part's motion, with its carrier `now` and its drive at a speed [m/s] over that.
-    fn swing(&self, state: &State, now: &Carrier, speed: f64) -> Swing {
-        let Place {
-            carrier,
-            arm,
-            carried,
-            ..
-        } = &self.start;
-        let turn = match self.link {
-            Link::Flipper(k) => state.flippers[k].rate,
-            _ => state.angular_velocity,
-        };
-        let normal = self.normal.unit;
-        if carried.turns() {
-            return Swing {
-                turn: turn + carried.turn_at(speed),
-                height: -carried.spoke.dot(normal),
-                slip: self.slip(state),
-            };
-        }
-        let of_surface = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
-        Swing {
-            turn,
-            height: -(Rotation::new(now.angle - carrier.angle) * *arm).dot(normal),
-            slip: self.slip(state) - self.tangent.drive_lever * of_surface,
-        }
-    }
-
-    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.
-    ///
-    /// A tip that a drive carries comes down and goes up again within a step: its gap is taken as a parabola through
-    /// those at the beginning, in the middle and at the end.
-    pub(super) fn strike(
-        &self,
-        state: &State,
-        model: &Model,
-        (h, speed): (f64, f64),
-    ) -> Option<f64> {
-        if !self.start.carried.is_moving() {
-            let closing = -self.opening_speed(state);
-            return (closing > speed).then(|| self.gap / closing);
-        }
-        let (start, middle) = (self.start.gap, self.start.middle);
-        let end = start + self.gained(state, model, h);
-        // gap = start - closing t + bend t^2
-        let bend = 2.0 * (start + end - 2.0 * middle) / (h * h);
-        let closing = (start - end) / h + bend * h;
-        if start <= 0.0 {
-            return (closing > speed).then_some(0.0);
-        }
-        let root = (closing * closing - 4.0 * bend * start).max(0.0).sqrt();
-        // At the root the gap closes by that much.
-        (root > speed && closing + root > 0.0).then(|| 2.0 * start / (closing + root))
-    }
-
-    /// [m] By how much the gap changes in a time [s] at the present velocities.
-    fn gained(&self, state: &State, model: &Model, time: f64) -> f64 {
-        let mount = match self.link {
-            Link::Flipper(k) => Mount::Flipper(k),
-            _ => Mount::Chassis,
-        };
-        let s = &self.start;
-        let then = state.carrier(mount, time, model);
-        let run = self.drive.map_or(0.0, |k| {
-            state.run_over(mount, k, model) + state.speed_over(mount, k, model) * time
-        });
-        self.normal.unit.dot(s.moved(&then, run))
-    }
-
-    /// [m] How much deeper in the ground the place was in the middle of the step than at either end, if nothing
-    /// bore there: the tip of a wheel that turns fast may come and go within a step.
-    pub(super) fn dip(&self) -> f64 {
-        let ends = self.start.gap.min(self.gap).min(0.0);
-        if self.normal_impulse > 0.0 {
-            0.0
-        } else {
-            (ends - self.start.middle).max(0.0)
-        }
-    }
-
     /// Sets it up for a motion of `h` [s]: an open gap may just close, softly; a penetration is pushed out. The
     /// solve finds the impulse of a `time` [s].
     pub(super) fn close_softly(
@@ -415,8 +285,8 @@ impl Row {
             _ => ON_GROUND,
         };
         self.bears = true;
-        self.compliance = share * soft.compliance * h / time;
         self.give = share * soft.compliance * h / time;
+        self.compliance = self.give;
         self.springs = (soft.push_rate * h).min(1.0);
         self.center.1 = self.friction_guess * time;
         self.bias = if self.gap > 0.0 {
@@ -433,17 +303,23 @@ impl Row {
             (self.bias, self.compliance) = (self.gap / h, 0.0);
         } else {
             self.bias = (soft.push_rate * self.gap).max(-max_push_speed);
-            // Here the impulse of half the piece stands for that of all of it.
+            // Here the impulse of half the step stands for that of all of it.
             self.compliance = 2.0 * soft.compliance;
         }
     }
 
-    /// [N s] Friction impulse without the part of the damper, from which the next piece starts.
+    /// [N s] Friction impulse without the part of the damper, from which the next step starts.
     pub(super) fn friction_kept(&self) -> f64 {
         if self.give == 0.0 || self.grip != Grip::Sticks {
             return self.friction_impulse;
         }
         self.center.1 + (self.friction_impulse - self.center.1) * self.springs
+    }
+
+    /// [N s] Impulse on the robot.
+    pub(super) fn impulse(&self) -> Vector {
+        let [n, t] = &self.actions;
+        n.unit * self.normal_impulse + t.unit * self.friction_impulse
     }
 
     /// [N m s] Angular impulse on the drive.

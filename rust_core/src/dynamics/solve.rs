@@ -20,7 +20,7 @@ use crate::geometry::Vector;
 pub(super) const AGREEMENT: f64 = 1e-7;
 /// Rounds of a search at most, unless the scenario says otherwise; a robot without arms usually takes one.
 const ITERATIONS: u32 = 30;
-/// [m] Surfaces closer than this touch; a gap that a piece has just closed is only rounding.
+/// [m] Surfaces closer than this touch; a gap that a step has just closed is only rounding.
 const TOUCHING: f64 = 1e-10;
 
 impl Dynamics {
@@ -109,7 +109,7 @@ impl Dynamics {
         let (mut impulse, mut moment) = (Vector::ZERO, self.free_moment(phase));
         for row in &self.rows {
             let [n, t] = &row.actions;
-            impulse += n.unit * row.normal_impulse + t.unit * row.friction_impulse;
+            impulse += row.impulse();
             moment += n.lever * row.normal_impulse + t.lever * row.friction_impulse;
         }
         if let Some(push) = &self.push {
@@ -162,7 +162,7 @@ impl Dynamics {
             let ([n, t], [approach, slip]) = (&row.actions, row.speeds(state));
             let pushed_out = (-row.bias).max(0.0);
             work += row.normal_impulse * (approach - pushed_out) + row.friction_impulse * slip;
-            impulse += n.unit * row.normal_impulse + t.unit * row.friction_impulse;
+            impulse += row.impulse();
             moment += n.lever * row.normal_impulse + t.lever * row.friction_impulse;
         }
         if let Some(push) = &self.push {
@@ -234,7 +234,7 @@ impl Dynamics {
         }
     }
 
-    /// Starts a piece from the forces of the last one, for half its time.
+    /// Starts a step from the forces of the last one, for half its time.
     pub(super) fn guess(&mut self, half: f64) {
         for row in &mut self.rows {
             row.normal_impulse = row.normal_guess * half;
@@ -261,7 +261,7 @@ impl Dynamics {
         }
     }
 
-    /// Stores the forces of a piece of `h` [s] for the next.
+    /// Stores the forces of a step of `h` [s] for the next.
     pub(super) fn remember(&mut self, h: f64) {
         for row in &mut self.rows {
             row.normal_guess = row.normal_impulse / h;

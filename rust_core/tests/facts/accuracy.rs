@@ -178,7 +178,7 @@ fn a_ramp_of_the_set_point_is_exact() {
 fn steps_of_a_given_length_end_at_its_multiples() {
     let mut scenario = engineer_on(line(3));
     scenario.terrain = slope(0.0, 0.9);
-    (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(3e-3));
+    fixed(&mut scenario, 3e-3);
     let mut simulation = Simulation::new(&checked(&scenario));
     for i in 1..=300 {
         simulation.step().expect("finite");

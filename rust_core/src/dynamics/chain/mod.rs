@@ -37,7 +37,7 @@ pub(super) struct Chain {
     pins: Vec<Pin>,
     pull: Pull,
     system: ChainSystem,
-    /// The shoes in the middle of this piece, and unit vectors along them.
+    /// The shoes in the middle of this step, and unit vectors along them.
     middle: Vec<Shoe>,
     alongs: Vec<Vector>,
     /// [kg m^2] Moments of inertia of the shoes in this solve.
@@ -54,7 +54,7 @@ pub(super) struct Chain {
     /// [rad/s] Spin of the sprocket in the last solve.
     pub spin: f64,
     free_spin: f64,
-    /// The spring and damper of the idler in this piece.
+    /// The spring and damper of the idler in this step.
     idler: Damper,
     /// [m] How far it lagged behind its drive when the step began.
     lagged: f64,
@@ -310,7 +310,7 @@ impl Chain {
         self.pull.has_hold()
     }
 
-    /// [N s] Impulse of the drive in this piece.
+    /// [N s] Impulse of the drive in this step.
     pub(super) fn drive_impulse(&self) -> f64 {
         self.pull.impulses.impulse
     }
@@ -325,19 +325,19 @@ impl Chain {
         self.pull.impulses.center = self.pull.impulses.impulse;
     }
 
-    /// Starts a piece of `h` [s] from the forces of the last one.
+    /// Starts a step of `h` [s] from the forces of the last one.
     pub(super) fn guess(&mut self, h: f64) {
         let pull = &mut self.pull.impulses;
         pull.impulse = pull.force * h;
     }
 
-    /// The same for the rest of the piece, another `h` [s].
+    /// The same for the rest of the step, another `h` [s].
     pub(super) fn guess_more(&mut self, h: f64) {
         let pull = &mut self.pull.impulses;
         pull.impulse += pull.force * h;
     }
 
-    /// Stores the forces of a piece of `h` [s].
+    /// Stores the forces of a step of `h` [s].
     pub(super) fn remember(&mut self, h: f64) {
         for (pin, impulse) in self.pins.iter_mut().zip(self.system.impulses()) {
             pin.force = impulse / h;

@@ -1,7 +1,7 @@
 //! A step of a chain: its solve before the motion, and its solve after it.
 //!
 //! Before the motion pins are where they will be in its middle, and close their gaps by its end. After it they hold
-//! the shoes together where they are, while their forces over the whole piece act where the middle has been. A
+//! the shoes together where they are, while their forces over the whole step act where the middle has been. A
 //! shoe that goes round keeps its speed that way.
 //!
 //! The equations: docs/physics.md, "Chains".
@@ -35,7 +35,7 @@ impl Chain {
         self.free_spin = state.drives[self.rule.number].spin;
     }
 
-    /// Prepares the solve after it: pins stay together where they are now; their forces over the whole piece are
+    /// Prepares the solve after it: pins stay together where they are now; their forces over the whole step are
     /// those in its middle.
     pub(in crate::dynamics) fn hold(&mut self, state: &State, h: f64) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
@@ -54,7 +54,7 @@ impl Chain {
     }
 
     /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its
-    /// pins followed it there. Otherwise a light shoe under a strong pull would swing wider with each piece.
+    /// pins followed it there. Otherwise a light shoe under a strong pull would swing wider with each step.
     fn stiffen(&mut self, h: f64) {
         self.inertias.fill(0.0);
         let count = self.pins.len();

@@ -14,7 +14,7 @@ pub(super) struct Pin {
     arms: [Vector; 2],
     /// [m] Offset of the next shoe's end from this one's.
     pub gap: Vector,
-    /// [N] Mean force on the next shoe in the last piece.
+    /// [N] Mean force on the next shoe in the last step.
     pub force: Vector,
 }
 

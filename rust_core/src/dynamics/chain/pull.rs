@@ -33,14 +33,14 @@ pub(super) struct Pull {
     stiffness: f64,
 }
 
-/// The part of the drive that is kept from piece to piece.
+/// The part of the drive that is kept from step to step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct PullImpulses {
-    /// [N s] Impulse on the chain in this piece.
+    /// [N s] Impulse on the chain in this step.
     pub impulse: f64,
     /// [N s] Impulse about which a direct solve damps it.
     pub center: f64,
-    /// [N] Force from which the next piece starts.
+    /// [N] Force from which the next step starts.
     pub force: f64,
     /// [m] How far the chain lags behind the set-point or behind its sprocket.
     pub behind: f64,

@@ -95,7 +95,7 @@ pub(super) struct PinEntry {
 /// The system of one chain.
 pub(super) struct ChainSystem {
     pub(super) shoes: Vec<Entry>,
-    /// The shoes in this piece without constraints.
+    /// The shoes in this step without constraints.
     pub(super) bare: Vec<Entry>,
     pub(super) joints: Vec<Joint>,
     pub(super) freed: Vec<Solved>,

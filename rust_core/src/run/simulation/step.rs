@@ -109,7 +109,8 @@ impl Simulation {
         }
     }
 
-    /// Tries a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the ground; the next, with the impact, is short.
+    /// Tries a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the ground; the
+    /// next, with the impact, is short.
     fn attempt(&mut self, h: f64, left: f64) -> Tried {
         let mut h = h;
         let strikes = loop {
