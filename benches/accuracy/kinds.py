@@ -39,8 +39,6 @@ class Kind:
     obstacles: tuple[str, ...] = ONE_LANE
     heights: tuple[float, float] = (0.01, 0.3)
     """[m] Between these the search takes place."""
-    is_fine: bool = False
-    """Whether its rates at 1 ms are not to be trusted."""
 
     def robot(self, center_of_mass: tuple[float, float], max_torque: float) -> Robot:
         """Build the robot.
@@ -66,12 +64,9 @@ def _lines() -> Iterator[Kind]:
             radius = _AXLES / 6.0 if count == 4 else None
             track = c2d.LineOfWheels(count, wheel_radius=radius, wheel=wheel)
             name = f"line of {count} {word}"
-            is_gear = word == "gears"
-            model = f"lines of {'gear' if is_gear else 'round'} wheels"
-            yield Kind(name=name, model=model, track=track, is_fine=is_gear)
-            yield Kind(
-                name=f"{name}, servos", model=model, track=track, sharing="wheel", is_fine=is_gear
-            )
+            model = f"lines of {'gear' if word == 'gears' else 'round'} wheels"
+            yield Kind(name=name, model=model, track=track)
+            yield Kind(name=f"{name}, servos", model=model, track=track, sharing="wheel")
 
 
 def _closed() -> Iterator[Kind]:
@@ -80,19 +75,17 @@ def _closed() -> Iterator[Kind]:
     middle = tuple((x, low, 0.03) for x in (-0.07, 0.0, 0.07))
     ends = ((-0.5 * _AXLES, 0.0, 0.064), (0.5 * _AXLES, 0.0, 0.064))
     hybrid = c2d.HybridWheels((ends[0], *middle, ends[1]))
-    tracks: tuple[tuple[str, Track, bool], ...] = (
-        ("24 round all round", small, False),
-        ("24 gears all round", replace(small, wheel=_GEAR), True),
-        ("belt", c2d.BeltTrack(), False),
-        ("belt with grousers", c2d.GrouserBeltTrack(), True),
-    )
+    tracks: dict[str, Track] = {
+        "24 round all round": small,
+        "24 gears all round": replace(small, wheel=_GEAR),
+        "belt": c2d.BeltTrack(),
+        "belt with grousers": c2d.GrouserBeltTrack(),
+    }
     for letter in "ab":
-        for name, track, is_fine in tracks:
-            yield Kind(name=f"{name} ({letter})", model=name, track=track, is_fine=is_fine)
+        for name, track in tracks.items():
+            yield Kind(name=f"{name} ({letter})", model=name, track=track)
     yield Kind(name="hybrid round", model="hybrid", track=hybrid)
-    yield Kind(
-        name="hybrid gears", model="hybrid", track=replace(hybrid, wheel=_GEAR), is_fine=True
-    )
+    yield Kind(name="hybrid gears", model="hybrid", track=replace(hybrid, wheel=_GEAR))
     for support in _SUPPORTS:
         yield Kind(
             name=f"force on {support}",
@@ -116,7 +109,6 @@ def _lanes() -> Iterator[Kind]:
             model="two lanes",
             track=track,
             obstacles=TWO_LANES,
-            is_fine=name not in ("belt", "line of 5 round"),
         )
 
 
@@ -127,7 +119,6 @@ def _chains() -> Iterator[Kind]:
                 name=f"chain of {count}, {mechanism}",
                 model="chains",
                 track=c2d.SegmentalTrack(shoe_count=count, mechanism=mechanism),
-                is_fine=True,
             )
 
 
@@ -147,7 +138,6 @@ def _arms() -> Iterator[Kind]:
                     ends=ends,
                     gait=gait,
                     heights=(0.03, 0.45),
-                    is_fine=True,
                 )
 
 

@@ -19,10 +19,10 @@ DRAWS = 12
 """Draws of a kind, before it counts as one without such a height."""
 
 # Settings of the search: while it is coarse, and to confirm.
-_COARSE: Setting = {"time_step": 1e-3}
-_CONFIRM: dict[bool, Setting] = {False: {"time_step": 1e-3}, True: {"time_step": 0.25e-3}}
+_COARSE: Setting = {"accuracy": 1e-6}
+_CONFIRM: Setting = {"accuracy": 3e-7}
 # Runs per height, and those after which a height with equal outcomes is given up.
-_RUNS = {False: 48, True: 24}
+_RUNS = 40
 _COARSE_RUNS = 24
 _FIRST = 8
 # [m] Heights are whole multiples of this.
@@ -87,7 +87,6 @@ def find(name: str, seed: int, threads: int | None, tell: Callable[[str], None])
 
 def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell | None:
     """Search the height of a drawn cell."""
-    is_fine = cell.what.is_fine
 
     def rate(height: float, setting: Setting, count: int) -> float:
         share, made = _rate(replace(cell, height=height), setting, count, threads)
@@ -97,12 +96,11 @@ def search(cell: Cell, threads: int | None, tell: Callable[[str], None]) -> Cell
     coarse = bisect(lambda h: rate(h, _COARSE, _COARSE_RUNS), *cell.what.heights)
     if coarse is None:
         return None
-    setting, count = _CONFIRM[is_fine], _RUNS[is_fine]
     low, high = (1.0 - _NEAR) * coarse[0], (1.0 + _NEAR) * coarse[0]
-    fine = bisect(lambda h: rate(h, setting, count), low, high)
+    fine = bisect(lambda h: rate(h, _CONFIRM, _RUNS), low, high)
     if fine is None:
         return None
-    told = {"rate": round(fine[1], 3), "runs": count, "setting": dict(setting)}
+    told = {"rate": round(fine[1], 3), "runs": _RUNS, "setting": dict(_CONFIRM)}
     return replace(cell, height=fine[0], found=told)
 
 

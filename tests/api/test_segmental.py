@@ -57,14 +57,13 @@ def test_ground_speed_is_the_belts(mechanism: str) -> None:
 def test_a_tighter_chain_has_more_tension() -> None:
     def tension(newtons: float) -> float:
         robot = chain(shoe_count=44, pre_tension=newtons)
-        run = c2d.simulate(
-            Scenario(robot, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), duration=2.0)
-        )
+        run = c2d.simulate(Scenario(robot, smooth, drive=c2d.Drive(speed=0.0), duration=2.0))
         return float(run.track_tension[-1])
 
     # Both tracks are lumped, and each has two runs: the force of one tensioner is in their pins.
-    # Shoes that stick to the ground keep up to a quarter more.
-    assert tension(100.0) - tension(50.0) == pytest.approx(50.0, rel=0.25)
+    # Shoes that stick keep some of the tension of the start, even on smooth ground.
+    smooth = c2d.terrains.flat(friction=0.05)
+    assert tension(100.0) - tension(50.0) == pytest.approx(50.0, rel=0.15)
 
 
 @pytest.mark.parametrize("mechanism", ["guide", "sprocket"])

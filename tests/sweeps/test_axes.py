@@ -48,7 +48,7 @@ def test_the_accuracy_or_the_time_step_is_swept_on_any_scenario() -> None:
         steps = quiet(base, {"solver.time_step": [1e-3, 5e-4]}, vary={}, repeats=1)
         assert steps["steps"].values.tolist() == [[50.0], [100.0]]
         assert steps["time_step"].attrs["units"] == "s"
-        fine = quiet(base, {"solver.accuracy": [1e-6]}, vary={}, repeats=1)
+        fine = quiet(base, {"solver.accuracy": [c2d.Solver().accuracy]}, vary={}, repeats=1)
         assert Scenario.from_json(fine["scenario"].values.item()).solver == c2d.Solver()
         assert fine["accuracy"].attrs["units"] == "m"
     error = refusal(BASE, {"solver.accuracy": [1e-6], "solver.time_step": [1e-3]})

@@ -62,7 +62,7 @@ class Start(Parameters):
     angle: float = 0.0
 
 
-_ACCURACY = 1e-6
+_ACCURACY = 3e-7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +83,7 @@ class Solver(Parameters):
         [m] Local error of a step: the difference between its motion and the mean of the velocities
         at its ends times its length, the largest over all points of the robot and all driven
         surfaces. Steps are as long as it allows, 20 us to 16 ms. It limits what one step adds, and
-        promises nothing about the whole path. None takes 1 um, unless a time step is given.
+        promises nothing about the whole path. None takes 0.3 um, unless a time step is given.
     time_step : float, optional
         [s] The same length for every step, in place of an accuracy, for comparison. Steps are
         shorter only where something strikes the ground, a command changes or a run ends.

@@ -3,6 +3,7 @@
 //! The equations: docs/physics.md, "Arms".
 
 use super::action::Action;
+use super::approach::Approach;
 use super::damper::Damper;
 use super::motor::Motor;
 use super::phase::Phase;
@@ -14,10 +15,12 @@ use crate::robot::Flipper;
 pub(super) struct Arm {
     pub rule: Flipper,
     pub motor: Motor,
-    /// [rad/s] Rates relative to the chassis that are commanded for the motion of the step and at its end.
-    pub rates: [f64; 2],
-    /// [rad/s] The one that this solve aims at.
+    /// [rad/s] Rate relative to the chassis at which this solve aims.
     pub rate: f64,
+    /// Its approach to the angle that it is to hold, in this step.
+    pub approach: Approach,
+    /// The rate at which this angle changes, in units of the angular velocity of the chassis, and against that.
+    pub against: f64,
     /// [m] From the chassis' centre of mass to the pivot, in the middle of the step.
     pub pivot: Vector,
     /// [m] From the pivot to the arm's own centre of mass, in the middle of the step.
@@ -32,8 +35,9 @@ impl Arm {
         Self {
             rule,
             motor: if has_motor { Motor::Holds } else { Motor::Free },
-            rates: [0.0; 2],
             rate: 0.0,
+            approach: Approach::default(),
+            against: 0.0,
             pivot: Vector::ZERO,
             center: Vector::ZERO,
             free: Twist::default(),
@@ -48,6 +52,11 @@ impl Arm {
     /// [kg m^2] Moment of inertia about the pivot.
     pub(super) fn inertia_about_pivot(&self) -> f64 {
         self.rule.moment_of_inertia + self.rule.mass * self.rule.arm.length_squared()
+    }
+
+    /// [rad/s^2] How fast its motor can slow it down in the air.
+    pub(super) fn deceleration(&self) -> f64 {
+        self.rule.torque_limit / self.inertia_about_pivot()
     }
 
     /// [m/s] Velocity of its centre of mass.

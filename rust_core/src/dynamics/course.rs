@@ -28,7 +28,7 @@ impl Row {
     }
 
     /// What carries it, if that is no shoe.
-    fn mount(&self) -> Option<Mount> {
+    pub(super) fn mount(&self) -> Option<Mount> {
         match self.link {
             Link::Chassis => Some(Mount::Chassis),
             Link::Flipper(k) => Some(Mount::Flipper(k)),
@@ -64,36 +64,8 @@ impl Row {
         }
     }
 
-    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.
-    ///
-    /// A tip that a drive carries comes down and goes up again within a step: its gap is taken as a parabola through
-    /// those at the beginning, in the middle and at the end.
-    pub(super) fn strike(
-        &self,
-        state: &State,
-        model: &Model,
-        (h, speed): (f64, f64),
-    ) -> Option<f64> {
-        let carried = self.mount().filter(|_| self.start.carried.is_moving());
-        let Some(mount) = carried else {
-            let closing = -self.opening_speed(state);
-            return (closing > speed).then(|| self.gap / closing);
-        };
-        let (start, middle) = (self.start.gap, self.start.middle);
-        let end = start + self.gained(state, model, (mount, h));
-        // gap = start - closing t + bend t^2
-        let bend = 2.0 * (start + end - 2.0 * middle) / (h * h);
-        let closing = (start - end) / h + bend * h;
-        if start <= 0.0 {
-            return (closing > speed).then_some(0.0);
-        }
-        let root = (closing * closing - 4.0 * bend * start).max(0.0).sqrt();
-        // At the root the gap closes by that much.
-        (root > speed && closing + root > 0.0).then(|| 2.0 * start / (closing + root))
-    }
-
     /// [m] By how much the gap changes in a time [s] at the present velocities.
-    fn gained(&self, state: &State, model: &Model, (mount, time): (Mount, f64)) -> f64 {
+    pub(super) fn gained(&self, state: &State, model: &Model, (mount, time): (Mount, f64)) -> f64 {
         let s = &self.start;
         let then = state.carrier(mount, time, model);
         let run = self.drive.map_or(0.0, |k| {

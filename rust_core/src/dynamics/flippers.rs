@@ -12,6 +12,7 @@ mod tests;
 
 use super::Dynamics;
 use super::action::Action;
+use super::approach::Approach;
 use super::arm::Arm;
 use super::motor::{AT_LIMIT, Motor, PAST};
 use super::phase::Phase;
@@ -21,31 +22,35 @@ use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 
 impl Dynamics {
-    /// Commands angles of the flippers [rad], upwards > 0, and their rates [rad/s], front and rear, for a step of
-    /// `h` [s].
+    /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
+    /// against the chassis, to keep their angle to the ground.
     pub(crate) fn command_flippers(
         &mut self,
         state: &State,
         angles: [f64; 2],
-        rates: [f64; 2],
+        keep_level: [bool; 2],
         h: f64,
     ) {
         for (k, arm) in self.flippers.iter_mut().enumerate() {
             let end = usize::from(arm.rule.end == End::Rear);
-            let (sign, limit) = (arm.rule.sign(), arm.rule.rate_limit);
-            let way = sign * angles[end] - state.over_chassis(k);
-            let (needed, kept) = (way / h + sign * rates[end], sign * rates[end]);
-            // What it reaches in this step it does not pass.
-            let end = if needed.abs() <= limit { kept } else { needed };
-            arm.rates = [needed, end].map(|rate| rate.clamp(-limit, limit));
-            arm.rate = arm.rates[0];
+            let way = arm.rule.sign() * angles[end] - state.over_chassis(k);
+            arm.against = if keep_level[end] { 1.0 } else { 0.0 };
+            let follows = -arm.against * state.angular_velocity;
+            if arm.rule.torque_limit > 0.0 {
+                let closing = arm.rule.rate_limit - follows * 1.0_f64.copysign(way);
+                arm.approach = Approach::new(way, [closing, arm.deceleration()], h);
+            }
+            arm.rate = arm.rule.within_limit(arm.approach.mean + follows);
         }
     }
 
-    /// Has the motors aim at what they are to do at the end of the step.
-    pub(super) fn aim_at_end(&mut self) {
+    /// Has the motors aim at what they are to do at the end of a step. `began` is the angular velocity of the chassis
+    /// at its beginning [rad/s]; half of its change is made.
+    pub(super) fn aim_at_end(&mut self, state: &State, began: f64) {
+        let of_chassis = 2.0 * state.angular_velocity - began;
         for arm in &mut self.flippers {
-            arm.rate = arm.rates[1];
+            let follows = -arm.against * of_chassis;
+            arm.rate = arm.rule.within_limit(arm.approach.end + follows);
         }
     }
 

@@ -9,6 +9,7 @@
 //! The equations: docs/physics.md, "A step".
 
 mod action;
+mod approach;
 mod arm;
 mod between;
 mod chain;
@@ -40,6 +41,7 @@ mod set_point;
 mod softness;
 mod solve;
 mod state;
+mod strike;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -234,7 +236,7 @@ impl Dynamics {
         phase.velocity += self.kick(half);
         self.pull_flippers(state, phase.angular_velocity, half);
         (phase.set_point, phase.elapsed) = (set_point.end, h);
-        self.aim_at_end();
+        self.aim_at_end(state, phase.angular_velocity);
         self.hold_chains(state, h);
         self.guess_more(half);
         self.keep_closed(h);

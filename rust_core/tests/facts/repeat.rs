@@ -129,28 +129,28 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0x601b_fa93_87db_7a7b),
+        ("line of 5", engineer_on(line(5)), 0xcc16_caec_402d_e3f6),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x5cb4_9bc2_c693_79e8,
+            0x40a6_8178_a0a4_ccd0,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0x3487_ce94_7684_c08f,
+            0x64af_0d53_350e_8c99,
         ),
-        ("chain", engineer_on(segmental(None)), 0x5910_23a9_8c19_4417),
+        ("chain", engineer_on(segmental(None)), 0x3e2b_de50_57d8_cff7),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0x8cd6_7422_6311_33c7,
+            0xdae7_ef81_79c3_9c5b,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0xf2fd_b80f_d38e_113c),
+        ("belt, arms", on_arms(0.5, belt()), 0xe8ba_be81_f729_51c6),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xe93a_a134_c555_7242,
+            0x8b21_81a4_bfa8_e363,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {

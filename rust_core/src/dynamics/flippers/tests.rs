@@ -132,10 +132,15 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     let mut scenario = scenario(1e4);
     scenario.gravity = 0.0;
     let (mut dynamics, mut state) = built(&scenario);
+    // From 2 rad/s it comes to rest as fast as the motor can slow it down.
+    let slows = 2.0 / dynamics.flippers[0].deceleration();
+    let arrives = 0.8 / 2.0 + 0.5 * slows;
     for step in 0..500 {
-        dynamics.command_flippers(&state, [0.8, 0.0], [0.0; 2], STEP);
+        dynamics.command_flippers(&state, [0.8, 0.0], [false; 2], STEP);
         dynamics.take(&mut state, &[], 0.0, STEP);
-        let turned = (2.0 * STEP * f64::from(step + 1)).min(0.8);
+        let left = (arrives - STEP * f64::from(step + 1)).max(0.0);
+        let slowing = left.min(slows);
+        let turned = 0.8 - 2.0 * (left - slowing) - slowing * slowing / slows;
         assert_relative_eq!(state.over_chassis(0), turned, epsilon = 1e-9);
         assert_relative_eq!(state.over_chassis(1), 0.0, epsilon = 1e-9);
     }
@@ -146,6 +151,20 @@ fn a_motor_turns_its_arm_at_the_limit_of_its_rate_and_the_chassis_back() {
     let in_a_step = arm.mass * arm.arm.length() * 2.0 * 2.0 * 1e-3;
     assert!(momentum.length() < in_a_step, "{momentum}");
     assert!(moment.abs() < in_a_step, "{moment}"); // about a point less than 1 m away
+}
+
+#[test]
+fn arms_that_are_to_keep_level_get_there_at_their_full_rate() {
+    let (mut dynamics, mut state) = built(&scenario(30.0));
+    state.angular_velocity = 0.7;
+    // Front arms have to go down, against the chassis that turns up, and rear arms up.
+    dynamics.command_flippers(&state, [-0.5, 0.5], [true; 2], STEP);
+    let rates: Vec<f64> = dynamics.flippers.iter().map(|arm| arm.rate).collect();
+    assert_eq!(rates, [-2.0, -2.0]);
+    // The other way round.
+    dynamics.command_flippers(&state, [0.5, -0.5], [true; 2], STEP);
+    let rates: Vec<f64> = dynamics.flippers.iter().map(|arm| arm.rate).collect();
+    assert_eq!(rates, [2.0, 2.0]);
 }
 
 #[test]

@@ -20,7 +20,6 @@ impl Simulation {
             let sight = Sight {
                 time,
                 chassis_angle: self.state.angle,
-                angular_velocity: self.state.angular_velocity,
                 touches: [End::Front, End::Rear].map(|end| self.flipper_touches(end)),
             };
             self.targets = self.driver.targets(drive, flippers.angle, sight);

@@ -11,8 +11,6 @@ pub(crate) struct Sight {
     pub time: f64,
     /// [rad] Chassis angle, nose up > 0.
     pub chassis_angle: f64,
-    /// [rad/s] Its rate.
-    pub angular_velocity: f64,
     /// Whether the front and the rear flippers bear on something beyond their roots.
     pub touches: [bool; 2],
 }
@@ -22,13 +20,17 @@ pub(crate) struct Sight {
 pub(crate) struct Target {
     /// [rad] Angle relative to the chassis, upwards > 0.
     pub angle: f64,
-    /// [rad/s] Rate at which this angle changes.
-    pub rate: f64,
+    /// Whether they turn against the chassis as fast as it turns, to keep their angle to the ground; otherwise they
+    /// would lag behind.
+    pub keeps_level: bool,
 }
 
 impl Target {
     fn fixed(angle: f64) -> Self {
-        Self { angle, rate: 0.0 }
+        Self {
+            angle,
+            keeps_level: false,
+        }
     }
 }
 
@@ -98,16 +100,12 @@ impl Driver {
             Phase::Lift if !raised && !rear => Phase::Reach,
             same => same,
         };
-        // Level arms turn against the chassis as fast as it turns; otherwise they would lag behind.
-        let (angle, rate) = (sight.chassis_angle, sight.angular_velocity);
-        let swept = Target {
-            angle: climb.sweep_angle - angle,
-            rate: -rate,
+        let level = |angle| Target {
+            angle,
+            keeps_level: true,
         };
-        let pushed = Target {
-            angle: climb.push_angle + angle,
-            rate,
-        };
+        let swept = level(climb.sweep_angle - sight.chassis_angle);
+        let pushed = level(climb.push_angle + sight.chassis_angle);
         let (reach, start) = (Target::fixed(climb.reach_angle), Target::fixed(start));
         match self.phase {
             Phase::Reach => [reach, start],

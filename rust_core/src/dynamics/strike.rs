@@ -1,0 +1,115 @@
+//! When a contact strikes the ground in a step, if nothing changes until then.
+//!
+//! The equations: docs/physics.md, "Length of a step".
+
+use super::row::Row;
+use super::state::State;
+use crate::robot::Model;
+
+/// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
+/// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
+const CLOSELY: f64 = 0.125;
+
+/// A gap that changes with time like this: `gap + slope s + bend s^2`, `s` after a time `at`.
+#[derive(Clone, Copy, Debug)]
+struct Parabola {
+    at: f64,
+    gap: f64,
+    slope: f64,
+    bend: f64,
+}
+
+impl Parabola {
+    /// The one through gaps at a time and `apart` [s] before and after it.
+    fn through([before, gap, after]: [f64; 3], at: f64, apart: f64) -> Self {
+        Self {
+            at,
+            gap,
+            slope: 0.5 * (after - before) / apart,
+            bend: 0.5 * (before + after - 2.0 * gap) / (apart * apart),
+        }
+    }
+
+    /// [s] When it is lowest, if it comes down and goes up again.
+    fn lowest(&self) -> Option<f64> {
+        (self.bend > 0.0).then(|| self.at - 0.5 * self.slope / self.bend)
+    }
+
+    /// [s] When it comes down to 0, and how fast [m/s].
+    fn lands(&self) -> Option<(f64, f64)> {
+        let squared = self.slope * self.slope - 4.0 * self.bend * self.gap;
+        let speed = (squared >= 0.0).then(|| squared.sqrt())?;
+        let closing = speed - self.slope;
+        (closing > 0.0).then(|| (self.at + 2.0 * self.gap / closing, speed))
+    }
+}
+
+impl Row {
+    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.
+    ///
+    /// A tip that a drive carries may come down and go up again within a step.
+    pub(super) fn strike(
+        &self,
+        state: &State,
+        model: &Model,
+        (h, speed): (f64, f64),
+    ) -> Option<f64> {
+        let carried = self.mount().filter(|_| self.start.carried.is_moving());
+        let Some(mount) = carried else {
+            let closing = -self.opening_speed(state);
+            return (closing > speed).then(|| self.gap / closing);
+        };
+        let start = self.start.gap;
+        let gap = |time| start + self.gained(state, model, (mount, time));
+        let whole = Parabola::through([start, self.start.middle, gap(h)], 0.5 * h, 0.5 * h);
+        if start <= 0.0 {
+            let closing = h * whole.bend - whole.slope;
+            return (closing > speed).then_some(0.0);
+        }
+        let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {
+            None => whole,
+            Some(lowest) => {
+                let apart = CLOSELY * h;
+                let gaps = [lowest - apart, lowest, lowest + apart].map(gap);
+                Parabola::through(gaps, lowest, apart)
+            }
+        };
+        let (time, closing) = course.lands()?;
+        (closing > speed).then_some(time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    fn of(gap: impl Fn(f64) -> f64) -> Parabola {
+        Parabola::through([0.1, 0.3, 0.5].map(gap), 0.3, 0.2)
+    }
+
+    #[test]
+    fn a_gap_like_a_parabola_lands_where_that_does() {
+        let fall = of(|t| 2.0 - 3.0 * t * t);
+        let (time, speed) = fall.lands().expect("it falls");
+        assert_relative_eq!(time, (2.0_f64 / 3.0).sqrt(), max_relative = 1e-12);
+        assert_relative_eq!(speed, 6.0 * time, max_relative = 1e-12);
+        assert_eq!(fall.lowest(), None);
+    }
+
+    #[test]
+    fn the_first_of_two_roots_counts() {
+        let dip = of(|t| (t - 0.2) * (t - 0.8));
+        let (time, speed) = dip.lands().expect("it dips");
+        assert_relative_eq!(time, 0.2, max_relative = 1e-12);
+        assert_relative_eq!(speed, 0.6, max_relative = 1e-12);
+        assert_relative_eq!(dip.lowest().expect("it turns"), 0.5, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_gap_that_stays_open_does_not_land() {
+        assert!(of(|t| 1.0 + t * t).lands().is_none());
+        assert!(of(|t| 1.0 + t).lands().is_none());
+    }
+}
