@@ -264,7 +264,7 @@ mod tests {
                 let off = tried.h - expected;
                 assert!(off.abs() < 0.05 * STEP, "{} s, {expected} s", tried.h);
             } else if expected > STEP {
-                assert_eq!(tried.h, STEP);
+                assert!(tried.h >= STEP, "{} s", tried.h);
             }
         }
         assert!(found > 10, "{found}");
