@@ -23,7 +23,7 @@ from benches.accuracy import plot, report, runs, search
 from benches.accuracy.cells import Cell, Setting, path_of, read
 from benches.accuracy.findings import Study, collect
 from benches.accuracy.kinds import KINDS
-from benches.accuracy.statistics import LOOKS
+from benches.accuracy.statistics import CURVE, LOOKS
 from benches.accuracy.store import Store
 from benches.accuracy.verdicts import undecided
 from benches.peers import machine
@@ -66,11 +66,12 @@ class Job:
             progress(f"{name}: no height found in {search.DRAWS} draws")
 
     def run(self) -> None:
-        """Make all runs of the first look, and more where the setting that is judged needs them."""
+        """Make the runs that judge, more where they are needed, and those that draw the curve."""
         cells = self._cells()
         with Store(self.store, any_build=self.any_build) as store:
-            self._complete(store, cells, self.settings, self.looks[0])
-            pair = {name: self.settings[name] for name in (self.reference, self.default)}
+            pair = {name: self.settings[name] for name in (self.default, self.reference)}
+            self._complete(store, cells, pair, self.looks[0])
+            self._complete(store, cells, self.settings, min(CURVE, self.looks[0]))
             for count in self.looks[1:]:
                 self._complete(store, undecided(self._study(store)), pair, count)
 

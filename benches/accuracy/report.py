@@ -10,6 +10,7 @@ from typing import Any
 from benches.accuracy.findings import Finding, Study
 from benches.accuracy.statistics import (
     CELL_BOUND,
+    CURVE,
     MEAN_BOUND,
     MODEL_BOUND,
     cell_interval,
@@ -67,7 +68,7 @@ def _head(study: Study, machine: dict[str, Any]) -> str:
     runs = sum(f.runs for each in study.findings for f in each.by_setting.values())
     spent = sum(f.processor for each in study.findings for f in each.by_setting.values())
     failed = sum(f.failed for each in study.findings for f in each.by_setting.values())
-    looks = " or ".join(map(str, study.looks))
+    looks, curve = " or ".join(map(str, study.looks)), min(CURVE, study.looks[0])
     again = (
         f" A cell whose interval is undecided after {study.looks[0]} runs gets"
         f" {study.looks[-1]}; since it is looked at {len(study.looks)} times, each of its intervals"
@@ -86,7 +87,8 @@ A *cell* is a robot, an obstacle and a population of starts: approach, track pha
 friction vary as in `crawler2d.sweep`. Robot (the Engineer with another centre of mass, torque and
 track model), friction, speed and obstacle were drawn; then the height was searched at which some
 runs clear and some do not, because elsewhere errors hardly show. Every setting has the same draws,
-so rates are compared run by run: {looks} runs for each cell and setting.{again}
+so rates are compared run by run: {looks} runs of each cell with {study.default} and
+{study.reference}, {curve} with the other settings.{again}
 
 The default is chosen with set 1 of cells and judged with sets that are drawn afterwards. This is
 set {study.number} (`benches/accuracy/sets/{study.number}.json`): {len(study.findings)} cells,

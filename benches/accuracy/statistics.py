@@ -14,6 +14,9 @@ from crawler2d.sweeps.statistics import Interval, mcnemar, newcombe_paired
 LOOKS = (400, 1600)
 """Runs of a cell after which it is judged; it gets more only while its interval is undecided."""
 
+CURVE = 100
+"""Runs of a cell with the settings that only draw the curve of error against cost."""
+
 CELL_BOUND, MODEL_BOUND, MEAN_BOUND = 0.08, 0.05, 0.02
 """[-] Differences of rates that are small enough: of a cell, of a model, of the mean."""
 

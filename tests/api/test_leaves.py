@@ -244,9 +244,24 @@ def test_a_rule_says_what_is_allowed(name: str, path: str, value: float, rule: s
         ("solver.accuracy", 0.1),
         ("solver.iterations", 0),
         ("solver.iterations", 1001),
-        ("schema", 2),
+        ("schema", 1),
+        ("schema", 3),
     ],
 )
 def test_a_rule_between_fields_names_the_field_to_change(path: str, value: Any) -> None:
     error = refusal(changed("belt-step", tuple(path.split(".")), value))
     assert error.path == path
+
+
+def test_a_file_of_version_1_is_told_what_has_changed() -> None:
+    old = changed("belt-step", ("schema",), 1)
+    del old["solver"]["accuracy"]
+    old["solver"] |= {"time_step": 1e-3, "substeps": 2}
+    error = refusal(old)
+    assert error.path == "schema"
+    assert "solver.accuracy takes the place of solver.substeps" in error.rule
+    # What it says leads to a file of today.
+    del old["solver"]["substeps"]
+    old["schema"] = 2
+    old["solver"]["accuracy"] = None
+    assert Scenario.from_json(json.dumps(old)).solver.time_step == 1e-3

@@ -137,7 +137,7 @@ def damaged(snapshot: bytes) -> dict[str, bytes]:
         "longer": snapshot + b"\x00",
         "one bit": snapshot[:middle] + flipped + snapshot[middle + 1 :],
         "another version": snapshot.replace(b"snapshot 1", b"snapshot 9", 1),
-        "scenario file": b'{"schema": 1}',
+        "scenario file": b'{"schema": 2}',
     }
 
 

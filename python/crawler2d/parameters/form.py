@@ -31,7 +31,7 @@ class Form(Parameters):
     duration: float = 15.0
     solver: Solver = Solver()
     criteria: SeizureCriteria = SeizureCriteria()
-    schema: int = 1
+    schema: int = 2
 
     def to_json(self, *, indent: int | None = None) -> str:
         """Write the scenario as JSON, every field present, no bit lost.

@@ -37,8 +37,11 @@ pub(crate) use track::{MAX_SHOES, MAX_WHEELS};
 pub(crate) use wheel::MAX_GROUSERS;
 pub use wheel::{GearWheel, Wheel};
 
-/// The only version of the format so far.
-pub const SCHEMA: u32 = 1;
+/// Version of the format.
+pub const SCHEMA: u32 = 2;
+/// What a file of version 1 lacks.
+const OF_VERSION_1: &str = "must be 2; in a file of version 1, solver.accuracy takes the place of solver.substeps, and \
+                            is null where solver.time_step is kept";
 
 /// Everything that defines a run: the same scenario and build give the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -82,6 +85,9 @@ impl Scenario {
     /// Reads the fields; rules that need the built robot and ground are checked elsewhere.
     pub(crate) fn read(value: &Value) -> Result<Self, ScenarioError> {
         let mut f = Fields::new("", value)?;
+        if value.get("schema").is_some_and(|version| version == 1) {
+            return Err(ScenarioError::new("schema", 1, OF_VERSION_1));
+        }
         let schema = f.integer("schema", SCHEMA, SCHEMA)?;
         let scenario = Self {
             schema,
