@@ -223,7 +223,7 @@ impl Dynamics {
     pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
         self.effort = Effort::default();
         let half = 0.5 * h;
-        let before = self.momentum_at(state);
+        let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
         self.place_flippers(state, half);
         let mut phase = self.start_phase(state, set_point.middle, half);
         self.start_chains(state, h);
@@ -242,7 +242,9 @@ impl Dynamics {
         self.keep_closed(h);
         self.solve(state, &phase);
         self.end_phase(state, phase);
-        self.balance_momentum(state, before, h);
+        if let Some(before) = before {
+            self.balance_momentum(state, before, h);
+        }
     }
 
     /// Keeps what a step of `h` [s] has found, for the next one to start from; after an impact, which is over, that
@@ -288,9 +290,6 @@ impl Dynamics {
     /// `h` [s]: the solve has its arms where they are in the middle of the step, a third-order error, and the
     /// elimination of its chains loses the last few digits.
     fn balance_momentum(&mut self, state: &mut State, before: Vector, h: f64) {
-        if self.model.is_one_body() {
-            return;
-        }
         let mass = self.model.total_mass();
         let of_weight = Vector::new(0.0, -mass * self.gravity);
         let given = before + (self.outer_force + of_weight) * h + self.impulse_of_ground();
