@@ -10,6 +10,8 @@ pub(super) struct Approach {
     pub mean: f64,
     /// [rad/s] Rate at its end.
     pub end: f64,
+    /// Whether it goes on at its full rate.
+    pub goes_on: bool,
 }
 
 impl Approach {
@@ -21,6 +23,7 @@ impl Approach {
             return Self {
                 mean: falls_behind,
                 end: falls_behind,
+                goes_on: true,
             };
         }
         let far = way.abs();
@@ -33,6 +36,7 @@ impl Approach {
         Self {
             mean: (turned / h).copysign(way),
             end: end.copysign(way),
+            goes_on: at_limit >= h,
         }
     }
 }
@@ -71,6 +75,7 @@ mod tests {
         let arrives = Approach::new(-1e-6, LIMITS, 1e-3);
         assert_relative_eq!(arrives.mean, -1e-3, max_relative = 1e-12);
         assert_relative_eq!(arrives.end, 0.0);
+        assert!(!arrives.goes_on);
         assert_relative_eq!(Approach::new(0.0, LIMITS, 1e-3).mean, 0.0);
     }
 
@@ -79,6 +84,7 @@ mod tests {
         let behind = Approach::new(-0.1, [-0.4, 200.0], 1e-2);
         assert_relative_eq!(behind.mean, 0.4);
         assert_relative_eq!(behind.end, 0.4);
+        assert!(behind.goes_on);
     }
 
     #[test]
@@ -86,5 +92,6 @@ mod tests {
         let far = Approach::new(1.0, LIMITS, 1e-2);
         assert_relative_eq!(far.mean, LIMITS[0], max_relative = 1e-12);
         assert_relative_eq!(far.end, LIMITS[0]);
+        assert!(far.goes_on);
     }
 }

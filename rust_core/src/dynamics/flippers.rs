@@ -48,7 +48,7 @@ impl Dynamics {
     /// at its beginning [rad/s]; half of its change is made.
     pub(super) fn aim_at_end(&mut self, state: &State, began: f64) {
         let of_chassis = 2.0 * state.angular_velocity - began;
-        for arm in &mut self.flippers {
+        for arm in self.flippers.iter_mut().filter(|arm| !arm.approach.goes_on) {
             let follows = -arm.against * of_chassis;
             arm.rate = arm.rule.within_limit(arm.approach.end + follows);
         }
