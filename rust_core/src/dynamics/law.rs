@@ -42,8 +42,8 @@ impl Row {
     /// Sets the dampers about their centres.
     pub(super) fn place_dampers(&mut self) {
         let (normal, friction) = self.center;
-        let damping = DAMPING * self.admittance.normal;
-        let stiffness = 1.0 / (self.compliance * self.admittance.normal + damping);
+        let damping = DAMPING * self.admittance.spring;
+        let stiffness = 1.0 / (self.compliance * self.admittance.spring + damping);
         self.dampers = [
             Damper::new(stiffness * (damping * normal - self.bias), stiffness),
             Damper::new(

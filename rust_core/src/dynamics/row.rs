@@ -40,6 +40,8 @@ pub(super) enum Link {
 pub(super) struct Admittance {
     pub normal: f64,
     pub tangent: f64,
+    /// That of the mass that swings on its spring with the contact frequency.
+    pub spring: f64,
 }
 
 /// One contact's constraint in one step.
@@ -55,7 +57,7 @@ pub(super) struct Row {
     pub admittance: Admittance,
     /// [m/s] Speed at which the gap may close or, if negative, must open.
     pub bias: f64,
-    /// Compliance in units of its own admittance.
+    /// Compliance in units of the admittance of its spring.
     pub compliance: f64,
     /// The same of a grip that gives way elastically; it is damped about its impulse of the last step.
     pub give: f64,

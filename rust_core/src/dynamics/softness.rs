@@ -7,7 +7,7 @@
 pub(super) struct Softness {
     /// [1/s] Rate at which a penetration is pushed out.
     pub push_rate: f64,
-    /// Compliance in units of the contact's own admittance.
+    /// Compliance in units of the admittance of the mass on it.
     pub compliance: f64,
 }
 

@@ -54,6 +54,8 @@ impl Dynamics {
         let of_held: f64 = held.map(|k| self.model.drive_inertia(k)).sum();
         self.inertia = self.model.moment_of_inertia + of_held;
         let spin_of_set_point = phase.set_point / self.model.drive_radius;
+        // Ground is as stiff below an arm as below the chassis; shoes, which are light, have springs of their own.
+        let (is_rigid, of_robot) = (self.chains.is_empty(), self.model.total_mass().recip());
         for i in 0..self.rows.len() {
             let row = &self.rows[i];
             let held = row.spin().is_some_and(|k| motors[k].share().is_none());
@@ -66,9 +68,11 @@ impl Dynamics {
                     Action::of_shoe(along, along.drive_lever)
                 }
             });
+            let normal = self.admittance(&n, row.link, row.drive);
             let admittance = Admittance {
-                normal: self.admittance(&n, row.link, row.drive),
+                normal,
                 tangent: self.admittance(&t, row.link, row.drive),
+                spring: if is_rigid { of_robot } else { normal },
             };
             let row = &mut self.rows[i];
             (row.actions, row.admittance) = ([n, t], admittance);

@@ -53,26 +53,37 @@ fn a_stop_that_stands_is_waited_for_in_the_longest_steps() {
     assert!(taken < 110, "{taken} steps in 1.6 s");
 }
 
-/// The local error bounds no path, but a path comes closer to its limit as steps get more accurate.
+/// The local error bounds no path, but paths come closer to their limits as steps get more accurate. Single ones may
+/// fall apart at a late blow: the median of nine counts.
 #[test]
-fn a_path_over_an_edge_converges_with_the_accuracy() {
-    let path = |accuracy: f64| {
-        let run = sampled(&with_accuracy(climbing(), accuracy), 0.05);
+fn paths_over_an_edge_converge_with_the_accuracy() {
+    let path = |height: f64, accuracy: f64| {
+        let mut scenario = climbing();
+        scenario.terrain = step(height, 0.9);
+        let run = sampled(&with_accuracy(scenario, accuracy), 0.05);
         // Without the last sample: runs end with the step in which they arrive.
         let mut path = run.trace.position;
         path.truncate(path.len() - 2);
         path
     };
-    let finest = path(1e-9);
-    let off = |accuracy: f64| {
-        let path = path(accuracy);
-        let apart = path.iter().zip(&finest).map(|(a, b)| (a - b).abs());
-        apart.fold(0.0, f64::max)
+    let off = |height: f64| {
+        let finest = path(height, 1e-9);
+        [1e-5, 1e-6, 1e-7].map(|accuracy| {
+            let path = path(height, accuracy);
+            let apart = path.iter().zip(&finest).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max)
+        })
     };
-    let errors = [1e-5, 1e-6, 1e-7].map(off);
-    println!("off by {errors:?} m");
-    assert!(errors[0] < 3e-3 && errors[2] < 1e-4);
-    assert!(errors[2] < 0.2 * errors[0], "{errors:?}");
+    let errors: Vec<[f64; 3]> = (0..9).map(|i| off(0.05 + 0.002 * f64::from(i))).collect();
+    let median = |k: usize| {
+        let mut own: Vec<f64> = errors.iter().map(|errors| errors[k]).collect();
+        own.sort_by(f64::total_cmp);
+        own[4]
+    };
+    let medians = [0, 1, 2].map(median);
+    println!("off by {medians:?} m");
+    assert!(medians[0] < 3e-3 && medians[2] < 1e-4);
+    assert!(medians[2] < 0.2 * medians[0], "{medians:?}");
 }
 
 #[test]

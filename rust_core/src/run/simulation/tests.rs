@@ -164,7 +164,7 @@ fn ground_between_the_grousers_of_a_wheel_seizes_at_the_tips_alone() {
 
 #[test]
 fn ground_inside_the_track_that_is_no_cause_does_not_seize_at_the_tips() {
-    let found = stopped(&gears(5, 0.11, -0.05)).diagnosis();
+    let found = stopped(&gears(5, 0.108, -0.05)).diagnosis();
     let found = found.expect("it has stopped");
     assert_eq!(found.outcome, Outcome::Stalled);
     assert!(found.intrusion.is_some() && found.certified);
