@@ -19,8 +19,8 @@ pub(super) struct Arm {
     pub rate: f64,
     /// Its approach to the angle that it is to hold, in this step.
     pub approach: Approach,
-    /// The rate at which this angle changes, in units of the angular velocity of the chassis, and against that.
-    pub against: f64,
+    /// Whether this angle changes against the chassis, as fast as that turns.
+    pub keeps_level: bool,
     /// [m] From the chassis' centre of mass to the pivot, in the middle of the step.
     pub pivot: Vector,
     /// [m] From the pivot to the arm's own centre of mass, in the middle of the step.
@@ -37,7 +37,7 @@ impl Arm {
             motor: if has_motor { Motor::Holds } else { Motor::Free },
             rate: 0.0,
             approach: Approach::default(),
-            against: 0.0,
+            keeps_level: false,
             pivot: Vector::ZERO,
             center: Vector::ZERO,
             free: Twist::default(),
@@ -57,6 +57,18 @@ impl Arm {
     /// [rad/s^2] How fast its motor can slow it down in the air.
     pub(super) fn deceleration(&self) -> f64 {
         self.rule.torque_limit / self.inertia_about_pivot()
+    }
+
+    /// [rad/s] Rate relative to the chassis at which the angle changes that it is to hold, if the chassis turns at this
+    /// rate [rad/s].
+    pub(super) fn follows(&self, of_chassis: f64) -> f64 {
+        if self.keeps_level { -of_chassis } else { 0.0 }
+    }
+
+    /// Aims at a rate relative to that angle, as far as the motor can turn so fast [rad/s].
+    pub(super) fn aim(&mut self, rate: f64, of_chassis: f64) {
+        let limit = self.rule.rate_limit;
+        self.rate = (rate + self.follows(of_chassis)).clamp(-limit, limit);
     }
 
     /// [m/s] Velocity of its centre of mass.

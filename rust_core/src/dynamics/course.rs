@@ -5,7 +5,7 @@
 use super::levers::Place;
 use super::meeting::Swing;
 use super::row::{Link, Row};
-use super::state::{Carrier, State};
+use super::state::State;
 use crate::geometry::Rotation;
 use crate::robot::{Model, Mount};
 
@@ -18,12 +18,11 @@ impl Row {
             return;
         };
         self.gap = self.start.gap + self.gained(state, model, (mount, 0.0));
-        let now = state.carrier(mount, 0.0, model);
         let speed = self
             .drive
             .map_or(0.0, |k| state.speed_over(mount, k, model));
         // It may let the gap close, but pushes nothing.
-        let grows = self.meeting.opens(self.swing(state, &now, speed)).max(0.0);
+        let grows = self.meeting.opens(self.swing(state, speed)).max(0.0);
         self.opens = 0.5 * h * grows;
     }
 
@@ -36,17 +35,17 @@ impl Row {
         }
     }
 
-    /// Its part's motion, with its carrier `now` and its drive at a speed [m/s] over that.
-    fn swing(&self, state: &State, now: &Carrier, speed: f64) -> Swing {
+    /// Its part's motion, with its drive at a speed [m/s] over what carries it.
+    fn swing(&self, state: &State, speed: f64) -> Swing {
         let Place {
             carrier,
             arm,
             carried,
             ..
         } = &self.start;
-        let turn = match self.link {
-            Link::Flipper(k) => state.flippers[k].rate,
-            _ => state.angular_velocity,
+        let (angle, turn) = match self.link {
+            Link::Flipper(k) => (state.flippers[k].angle, state.flippers[k].rate),
+            _ => (state.angle, state.angular_velocity),
         };
         let normal = self.normal.unit;
         if carried.turns() {
@@ -59,7 +58,7 @@ impl Row {
         let of_surface = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
         Swing {
             turn,
-            height: -(Rotation::new(now.angle - carrier.angle) * *arm).dot(normal),
+            height: -(Rotation::new(angle - carrier.angle) * *arm).dot(normal),
             slip: self.slip(state) - self.tangent.drive_lever * of_surface,
         }
     }

@@ -34,13 +34,13 @@ impl Dynamics {
         for (k, arm) in self.flippers.iter_mut().enumerate() {
             let end = usize::from(arm.rule.end == End::Rear);
             let way = arm.rule.sign() * angles[end] - state.over_chassis(k);
-            arm.against = if keep_level[end] { 1.0 } else { 0.0 };
-            let follows = -arm.against * state.angular_velocity;
+            arm.keeps_level = keep_level[end];
+            let of_chassis = state.angular_velocity;
             if arm.rule.torque_limit > 0.0 {
-                let closing = arm.rule.rate_limit - follows * 1.0_f64.copysign(way);
+                let closing = arm.rule.rate_limit - arm.follows(of_chassis) * 1.0_f64.copysign(way);
                 arm.approach = Approach::new(way, [closing, arm.deceleration()], h);
             }
-            arm.rate = arm.rule.within_limit(arm.approach.mean + follows);
+            arm.aim(arm.approach.mean, of_chassis);
         }
     }
 
@@ -49,8 +49,7 @@ impl Dynamics {
     pub(super) fn aim_at_end(&mut self, state: &State, began: f64) {
         let of_chassis = 2.0 * state.angular_velocity - began;
         for arm in self.flippers.iter_mut().filter(|arm| !arm.approach.goes_on) {
-            let follows = -arm.against * of_chassis;
-            arm.rate = arm.rule.within_limit(arm.approach.end + follows);
+            arm.aim(arm.approach.end, of_chassis);
         }
     }
 

@@ -68,11 +68,6 @@ impl Flipper {
         self.end.sign()
     }
 
-    /// [rad/s] The nearest rate relative to the chassis that its motor can hold.
-    pub(crate) fn within_limit(&self, rate: f64) -> f64 {
-        rate.clamp(-self.rate_limit, self.rate_limit)
-    }
-
     /// [kg] Mass that moves at the speed of its track if that has its own drive: a tenth of its mass, our assumption.
     pub(crate) fn mass_of_track(&self) -> f64 {
         0.1 * self.mass
