@@ -144,7 +144,9 @@ impl GearContact {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
                     touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
-                if is_real && tip.faces(-touch.normal) && !overlap::tip_yields(lane, &tip, &touch) {
+                let on_face = matches!(touch.on, On::Face(_));
+                let faces = tip.faces(-touch.normal) || (on_face && tip.may_land(&touch));
+                if is_real && faces && !overlap::tip_yields(lane, &tip, &touch) {
                     contacts.push(touch.contact(self.part));
                 }
             });

@@ -11,6 +11,8 @@ use crate::geometry::{Vector, cross};
 /// Cosine of the angle within which two normals of an overlap both count: faces that are nearly parallel
 /// bear at both ends of their overlap.
 const ALIKE: f64 = 0.94;
+/// [rad] If a face is parallel to a run of a part within this angle, both ends of the run bear on it.
+pub(super) const NEARLY: f64 = 0.05;
 
 /// A sharp corner of a part.
 #[derive(Clone, Copy)]
@@ -24,9 +26,20 @@ pub(super) struct Tip {
 impl Tip {
     /// Whether a direction is an outward normal of the part at the tip, within rounding.
     pub(super) fn faces(&self, direction: Vector) -> bool {
+        self.faces_within(direction, ROUNDING)
+    }
+
+    /// Whether it can come to bear on a face as the part turns: from above the face whichever way it points now, and
+    /// in the face if the part lies nearly flat on it.
+    pub(super) fn may_land(&self, on_face: &Touch) -> bool {
+        on_face.distance > 0.0 || self.faces_within(-on_face.normal, NEARLY)
+    }
+
+    /// The same within an angle of this sine.
+    fn faces_within(&self, direction: Vector, sine: f64) -> bool {
         let [before, behind] = self.normals;
-        cross(before, direction) >= -ROUNDING
-            && cross(direction, behind) >= -ROUNDING
+        cross(before, direction) >= -sine
+            && cross(direction, behind) >= -sine
             && direction.dot(before + behind) > 0.0
     }
 }

@@ -54,18 +54,18 @@ impl Row {
         model: &Model,
         (h, speed): (f64, f64),
     ) -> Option<f64> {
+        let start = self.start.gap;
+        if start <= 0.0 {
+            // It is closed already.
+            return None;
+        }
         let carried = self.mount().filter(|_| self.start.carried.is_moving());
         let Some(mount) = carried else {
             let closing = -self.opening_speed(state);
             return (closing > speed).then(|| self.gap / closing);
         };
-        let start = self.start.gap;
         let gap = |time| start + self.gained(state, model, (mount, time));
         let whole = Parabola::through([start, self.start.middle, gap(h)], 0.5 * h, 0.5 * h);
-        if start <= 0.0 {
-            let closing = h * whole.bend - whole.slope;
-            return (closing > speed).then_some(0.0);
-        }
         let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {
             None => whole,
             Some(lowest) => {

@@ -42,9 +42,10 @@ pub struct Simulation {
     state: State,
     /// [s] Simulated time.
     time: f64,
-    /// The state at the beginning of the last step, and when that was [s].
+    /// The state at the beginning of the last step, when that was [s], and the step's length [s].
     before: State,
     began: f64,
+    length: f64,
     rule: Rule,
     pace: Pace,
     steps: u64,
@@ -123,6 +124,7 @@ impl Simulation {
             state,
             time: 0.0,
             began: 0.0,
+            length: 0.0,
             rule,
             pace: Pace::default(),
             steps: 0,

@@ -195,7 +195,7 @@ fn imbalance(scenario: &Scenario) -> (f64, f64) {
         let (fx, fy, _) = contact_sums(&simulation, 0.0, 0.0);
         let dt = simulation.last_step();
         let off = Vector::new(fx, fy - weight) - (simulation.momentum() - before) / dt;
-        // A blow of 20 us is a large force.
+        // A blow of 2 us is a large force.
         let forces = weight + fx.hypot(fy);
         worst = worst.max(off.length() / forces);
         sum += off * dt;
@@ -217,8 +217,7 @@ fn contact_forces_sum_to_weight_and_inertia_on_flat_and_ramp() {
             println!(
                 "{name} at {angle} rad: {worst:.1e} of the weight at worst, {mean:.1e} in the mean"
             );
-            // Velocities follow from the impulses: only rounding is left, that of the time included, from which a
-            // step of 20 us has its length to 1e-11.
+            // Velocities follow from the impulses: only rounding is left.
             assert!(worst < 1e-10 && mean < 1e-11, "{name}");
         }
     }

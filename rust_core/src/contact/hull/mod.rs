@@ -13,16 +13,13 @@ use sector::Sector;
 
 use super::Contact;
 use super::lane::{Corner, Lane, On, Region, Stretch, Touch};
-use super::overlap::{self, Tip};
+use super::overlap::{self, NEARLY, Tip};
 use super::reach::thin_out;
 use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
 use crate::robot::{Part, Shape};
 
 /// [m] Ground deeper inside than this did not get there by sinking in.
 pub(super) const SHALLOW: f64 = 1e-3;
-/// [rad] If a face is parallel to a run within this angle, both ends of the run bear: extended by this
-/// angle, an arc reaches less than 0.1 mm out of the hull.
-const NEARLY: f64 = 0.05;
 
 /// A part that is the hull of discs or of points.
 pub(super) struct HullContact {
@@ -36,7 +33,7 @@ struct Arc {
     disc: Disc,
     /// Its outward directions.
     sector: Sector,
-    /// These and all directions within `NEARLY` of one.
+    /// These and all directions within `NEARLY` of one: with them, an arc reaches less than 0.1 mm out of the hull.
     nearly: Sector,
     /// Outward normals of the two runs that it joins, counter-clockwise.
     runs: [Vector; 2],
