@@ -70,7 +70,10 @@ impl Simulation {
             ..Effort::default()
         };
         self.before.copy(&self.state);
-        let mut h = self.pace.next(self.rule, self.time, limit).min(self.known());
+        let mut h = self
+            .pace
+            .next(self.rule, self.time, limit)
+            .min(self.known());
         let tried = loop {
             let tried = self.attempt(h, limit - self.time);
             self.effort = self.effort.plus(self.dynamics.effort());
@@ -146,19 +149,9 @@ impl Simulation {
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
         let strike = self.dynamics.next_strike(&self.state, (h, COLLISION_SPEED));
         if strike > h {
-            return (h, false);
-        }
-        let before = strike - 0.5 * COLLISION_STEP;
-        let (piece, strikes) = if before > COLLISION_STEP {
-            (before, false)
+            (h, false)
         } else {
-            (COLLISION_STEP, true)
-        };
-        // Leaves no remainder shorter than a collision, but is no longer than `h`: that may have been found too long.
-        if left <= h && left - piece < COLLISION_STEP {
-            (left, strikes)
-        } else {
-            (piece, strikes)
+            cut_at_strike(strike, h, left)
         }
     }
 
@@ -210,6 +203,21 @@ impl Simulation {
     }
 }
 
+/// [s] How much to take of a step of `h` [s], of `left` [s] until something changes, in which something strikes the
+/// ground at this time [s], and whether it does so in that piece.
+fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
+    // Leaves enough for the collision.
+    let before = (strike - 0.5 * COLLISION_STEP).min(left - COLLISION_STEP);
+    let piece = if before > COLLISION_STEP {
+        before
+    } else if left <= h && left < 2.0 * COLLISION_STEP {
+        left
+    } else {
+        COLLISION_STEP
+    };
+    (piece, strike <= piece)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -245,6 +253,21 @@ mod tests {
         simulation.state.drives[0].spin = -0.5 / STEP * 0.06 / radius;
         simulation.state.center.x -= 0.5;
         simulation
+    }
+
+    /// One that were longer could be found too long again and again.
+    #[test]
+    fn no_piece_is_longer_than_the_step_that_was_asked_for() {
+        let little = 0.3 * COLLISION_STEP;
+        for h in [STEP, 20.0 * COLLISION_STEP, 2.0 * COLLISION_STEP] {
+            for left in [h, h + little, h + 0.7 * COLLISION_STEP, 2.0 * h] {
+                for strike in [0.0, little, 0.5 * h, h - little, h] {
+                    let (piece, strikes) = cut_at_strike(strike, h, left);
+                    assert!(piece <= h, "{piece} s of {h} s");
+                    assert_eq!(strikes, strike <= piece, "{strike} s, {piece} s of {h} s");
+                }
+            }
+        }
     }
 
     #[test]
