@@ -134,21 +134,6 @@ fn contacts_are_found_before_they_are_in_the_ground() {
     }
 }
 
-/// It starts with its nose up and falls onto its front wheels: from rest, steps may be long.
-#[test]
-fn a_robot_that_falls_is_not_found_in_the_ground() {
-    for angle in [0.001, 0.003, 0.01] {
-        let mut scenario = engineer_on(line(5));
-        scenario.terrain = slope(0.0, 0.9);
-        scenario.drive.speed = 0.0;
-        scenario.start.angle = angle;
-        scenario.duration = 0.5;
-        let depths = depths_at_first(&scenario);
-        assert!(depths.len() > 1);
-        assert!(depths.iter().all(|depth| *depth < 2e-6), "{depths:?}");
-    }
-}
-
 #[test]
 fn samples_move_no_step() {
     let scenario = climbing();

@@ -243,16 +243,34 @@ mod tests {
         }
     }
 
-    /// Gear wheels that turn by 0.5 rad in a step, above level ground.
-    fn spinning(phase: f64) -> Simulation {
+    /// A robot on gear wheels, at rest.
+    fn on_gears(phase: f64) -> Simulation {
         let text = include_str!("../../../../tests/scenarios/judge_gear3_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
         scenario.start.track_phase = phase;
-        let mut simulation = Simulation::new(&Checked::new(&scenario).expect("it is valid"));
+        Simulation::new(&Checked::new(&scenario).expect("it is valid"))
+    }
+
+    /// Gear wheels that turn by 0.5 rad in a step, above level ground.
+    fn spinning(phase: f64) -> Simulation {
+        let mut simulation = on_gears(phase);
         let radius = simulation.dynamics.model().drive_radius;
         simulation.state.drives[0].spin = -0.5 / STEP * 0.06 / radius;
         simulation.state.center.x -= 0.5;
         simulation
+    }
+
+    /// At its start everything is at rest, and the ground farther away than contacts are searched for then.
+    #[test]
+    fn a_long_step_sees_the_ground_that_it_falls_on() {
+        for i in 1..10 {
+            let mut simulation = on_gears(0.0);
+            simulation.state.center.y += 5e-5 * f64::from(i);
+            simulation.before.copy(&simulation.state);
+            let tried = simulation.attempt(0.012, f64::INFINITY);
+            let error = simulation.local_error(tried.h);
+            assert!(tried.strikes || error > 1e-5, "{error} m");
+        }
     }
 
     /// One that were longer could be found too long again and again.
