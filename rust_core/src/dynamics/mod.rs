@@ -219,21 +219,15 @@ impl Dynamics {
         times.fold(f64::INFINITY, f64::min)
     }
 
-    /// Advances the state by the prepared step of `h` [s]. If something strikes in it, all closed contacts are rigid:
-    /// springs would have no time to answer.
-    pub(crate) fn advance(
-        &mut self,
-        state: &mut State,
-        set_point: SetPoint,
-        (h, strikes): (f64, bool),
-    ) {
+    /// Advances the state by the prepared step of `h` [s].
+    pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
         self.effort = Effort::default();
         let half = 0.5 * h;
         let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
         self.place_flippers(state, half);
         let mut phase = self.start_phase(state, set_point.middle, half);
         self.start_chains(state, h);
-        self.close_gaps(h, strikes);
+        self.close_gaps(h);
         self.guess(half);
         self.solve(state, &phase);
         self.moved.copy(state);
@@ -264,12 +258,10 @@ impl Dynamics {
     }
 
     /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half of it.
-    fn close_gaps(&mut self, h: f64, strikes: bool) {
+    fn close_gaps(&mut self, h: f64) {
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
         for row in &mut self.rows {
-            if strikes {
-                row.close_at_once(h);
-            } else if self.chains.is_empty() {
+            if self.chains.is_empty() {
                 row.close(h, soft, most);
             } else {
                 row.close_softly((h, 0.5 * h), soft, most);

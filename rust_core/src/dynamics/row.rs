@@ -310,12 +310,6 @@ impl Row {
         }
     }
 
-    /// Sets it up for the short motion with a collision: an open gap may just close, and a closed contact is rigid.
-    pub(super) fn close_at_once(&mut self, h: f64) {
-        self.bears = true;
-        (self.bias, self.compliance) = (self.gap.max(0.0) / h, 0.0);
-    }
-
     /// [N s] Friction impulse without the part of the damper, from which the next step starts.
     pub(super) fn friction_kept(&self) -> f64 {
         if self.give == 0.0 || self.grip != Grip::Sticks {

@@ -56,7 +56,7 @@ impl Row {
     ) -> Option<f64> {
         let start = self.start.gap;
         if start <= 0.0 {
-            // It is closed already.
+            // It is closed already; if it closes further, the error makes the step short.
             return None;
         }
         let carried = self.mount().filter(|_| self.start.carried.is_moving());

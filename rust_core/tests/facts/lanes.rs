@@ -62,8 +62,8 @@ fn equal_lanes_are_both_tracks_as_one() {
             _ => 1e-6,
         };
         assert!(pose < limit);
-        // The speed of a chain is that of every blow of its shoes; so is that of gear wheels.
-        assert!(limit > 1e-6 || speed < limit);
+        // The speed of a chain is that of every blow of its shoes.
+        assert!(name.starts_with("chain") || speed < limit);
     }
 }
 
