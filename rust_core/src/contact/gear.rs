@@ -144,9 +144,7 @@ impl GearContact {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
                     touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);
-                let on_face = matches!(touch.on, On::Face(_));
-                let faces = tip.faces(-touch.normal) || (on_face && tip.may_land(&touch));
-                if is_real && faces && !overlap::tip_yields(lane, &tip, &touch) {
+                if is_real && tip.may_bear(&touch) && !overlap::tip_yields(lane, &tip, &touch) {
                     contacts.push(touch.contact(self.part));
                 }
             });

@@ -29,13 +29,16 @@ impl Tip {
         self.faces_within(direction, ROUNDING)
     }
 
-    /// Whether it can come to bear on a face as the part turns: from above the face whichever way it points now, and
-    /// in the face if the part lies nearly flat on it.
-    pub(super) fn may_land(&self, on_face: &Touch) -> bool {
-        on_face.distance > 0.0 || self.faces_within(-on_face.normal, NEARLY)
+    /// Whether it can bear there until the part has turned on: above a face whichever way it points now, and in a face
+    /// if the part lies nearly flat on it.
+    pub(super) fn may_bear(&self, touch: &Touch) -> bool {
+        match touch.on {
+            On::Face(_) => touch.distance > 0.0 || self.faces_within(-touch.normal, NEARLY),
+            On::Corner(_) => self.faces(-touch.normal),
+        }
     }
 
-    /// The same within an angle of this sine.
+    /// Whether a direction is an outward normal of the part at the tip, within an angle of this sine.
     fn faces_within(&self, direction: Vector, sine: f64) -> bool {
         let [before, behind] = self.normals;
         cross(before, direction) >= -sine

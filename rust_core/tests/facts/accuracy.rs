@@ -104,17 +104,16 @@ fn depths_at_first(scenario: &Scenario) -> Vec<f64> {
     depths
 }
 
-/// A contact that a search misses is found in the ground later. Between the corners of a grouser and of the ground that
-/// still happens to a few.
+/// A contact that a search misses is found in the ground later.
 #[test]
 fn contacts_are_found_before_they_are_in_the_ground() {
-    let gears = [
+    let robots = [
         ("line of 3 gear wheels", line_of(3, paper_gear())),
         ("line of 5 gear wheels", line_of(5, paper_gear())),
         ("belt with grousers", grouser_belt()),
         ("line of 5", line(5)),
     ];
-    for (name, track) in gears {
+    for (name, track) in robots {
         let mut depths: Vec<f64> = Vec::new();
         for height in [0.04, 0.05, 0.06, 0.07] {
             let mut scenario = engineer_on(track.clone());
@@ -122,15 +121,12 @@ fn contacts_are_found_before_they_are_in_the_ground() {
             scenario.duration = 5.0;
             depths.extend(depths_at_first(&scenario));
         }
-        depths.sort_by(f64::total_cmp);
-        let (count, deepest) = (depths.len(), depths[depths.len() - 1]);
-        let deep = depths.iter().filter(|depth| **depth > 2e-6).count();
-        println!(
-            "{name}: {count} contacts, {deep} deeper than 2 um at first, at most {:.1} um",
-            1e6 * deepest
-        );
+        let count = depths.len();
+        let deepest = depths.into_iter().fold(0.0, f64::max);
+        println!("{name}: {count} contacts, at most {deepest:.1e} m deep at first");
         assert!(count > 20);
-        assert!(deep * 100 <= count && deepest < 5e-5, "{name}");
+        // As deep as a blow of 1 kN drives one in.
+        assert!(deepest < 2e-6, "{name}");
     }
 }
 
