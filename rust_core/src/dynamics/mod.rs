@@ -71,6 +71,7 @@ pub(crate) use levers::{Direction, Levers};
 pub(crate) use loaded::LoadedContact;
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
+pub(crate) use strike::Trend;
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
@@ -207,14 +208,19 @@ impl Dynamics {
         self.rest_on_guides(state, half);
     }
 
-    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if nothing changes
-    /// until then; infinite if none does, and with chains: their shoes hit the guide all the time, but are light and
-    /// so are their impacts.
-    pub(crate) fn next_strike(&self, state: &State, (h, speed): (f64, f64)) -> f64 {
+    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if velocities go on to
+    /// change like this; infinite if none does, and with chains: their shoes hit the guide all the time, but are light
+    /// and so are their impacts.
+    pub(crate) fn next_strike(
+        &self,
+        state: &State,
+        (h, speed): (f64, f64),
+        trend: Option<Trend>,
+    ) -> f64 {
         if !self.chains.is_empty() {
             return f64::INFINITY;
         }
-        let strike = |row: &Row| row.strike(state, &self.model, (h, speed));
+        let strike = |row: &Row| row.strike(state, &self.model, (h, speed), trend);
         let times = self.rows.iter().filter_map(strike);
         times.fold(f64::INFINITY, f64::min)
     }

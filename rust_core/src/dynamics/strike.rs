@@ -1,4 +1,4 @@
-//! When a contact strikes the ground in a step, if nothing changes until then.
+//! When a contact strikes the ground in a step, if velocities go on to change as in the last one.
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
@@ -9,6 +9,15 @@ use crate::robot::Model;
 /// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
 /// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
 const CLOSELY: f64 = 0.125;
+
+/// The last step, for how fast velocities change.
+#[derive(Clone, Copy)]
+pub(crate) struct Trend<'a> {
+    /// The state at its beginning.
+    pub before: &'a State,
+    /// [s] Its length, above 0.
+    pub time: f64,
+}
 
 /// A gap that changes with time like this: `gap + slope s + bend s^2`, `s` after a time `at`.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +39,22 @@ impl Parabola {
         }
     }
 
+    /// The same with an opening speed that also grows by this [m/s^2] from a time of 0 on.
+    fn speeding_up(self, gain: f64) -> Self {
+        let Self {
+            at,
+            gap,
+            slope,
+            bend,
+        } = self;
+        Self {
+            at,
+            gap: gap + 0.5 * gain * at * at,
+            slope: slope + gain * at,
+            bend: bend + 0.5 * gain,
+        }
+    }
+
     /// [s] When it is lowest, if it comes down and goes up again.
     fn lowest(&self) -> Option<f64> {
         (self.bend > 0.0).then(|| self.at - 0.5 * self.slope / self.bend)
@@ -45,7 +70,7 @@ impl Parabola {
 }
 
 impl Row {
-    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if nothing changes until then.
+    /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if velocities go on to change like this.
     ///
     /// A tip that a drive carries may come down and go up again within a step.
     pub(super) fn strike(
@@ -53,25 +78,37 @@ impl Row {
         state: &State,
         model: &Model,
         (h, speed): (f64, f64),
+        trend: Option<Trend>,
     ) -> Option<f64> {
         let start = self.start.gap;
         if start <= 0.0 {
             // It is closed already; if it closes further, the error makes the step short.
             return None;
         }
+        let slope = self.opening_speed(state);
+        let gain = trend.map_or(0.0, |Trend { before, time }| {
+            (slope - self.opening_speed(before)) / time
+        });
         let carried = self.mount().filter(|_| self.start.carried.is_moving());
         let Some(mount) = carried else {
-            let closing = -self.opening_speed(state);
-            return (closing > speed).then(|| self.gap / closing);
+            let course = Parabola {
+                at: 0.0,
+                gap: start,
+                slope,
+                bend: 0.0,
+            };
+            let (time, closing) = course.speeding_up(gain).lands()?;
+            return (closing > speed).then_some(time);
         };
         let gap = |time| start + self.gained(state, model, (mount, time));
-        let whole = Parabola::through([start, self.start.middle, gap(h)], 0.5 * h, 0.5 * h);
+        let gaps = [start, self.start.middle, gap(h)];
+        let whole = Parabola::through(gaps, 0.5 * h, 0.5 * h).speeding_up(gain);
         let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {
             None => whole,
             Some(lowest) => {
                 let apart = CLOSELY * h;
                 let gaps = [lowest - apart, lowest, lowest + apart].map(gap);
-                Parabola::through(gaps, lowest, apart)
+                Parabola::through(gaps, lowest, apart).speeding_up(gain)
             }
         };
         let (time, closing) = course.lands()?;
@@ -105,6 +142,16 @@ mod tests {
         assert_relative_eq!(time, 0.2, max_relative = 1e-12);
         assert_relative_eq!(speed, 0.6, max_relative = 1e-12);
         assert_relative_eq!(dip.lowest().expect("it turns"), 0.5, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_gap_may_be_on_its_way_up_and_land() {
+        let (gap, slope, gain) = (0.02, 0.1, -2.0);
+        let rises = of(|t| gap + slope * t);
+        assert!(rises.lands().is_none());
+        let (time, speed) = rises.speeding_up(gain).lands().expect("it falls");
+        assert_relative_eq!(gap + (slope + 0.5 * gain * time) * time, 0.0, epsilon = 1e-15);
+        assert_relative_eq!(speed, -slope - gain * time, max_relative = 1e-12);
     }
 
     #[test]

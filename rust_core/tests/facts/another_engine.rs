@@ -81,7 +81,9 @@ fn climbs(track: &Track, torque: f64, height: f64) -> (u32, u32) {
     (ours, theirs)
 }
 
-const STARTS: u32 = 4;
+const STARTS: u32 = 24;
+/// Of as many at equal rates near 0.5, two counts are farther apart once in seventy times.
+const MOST_APART: u32 = 8;
 
 /// Chaotic from grouser to grouser, so that only rates mean anything.
 #[test]
@@ -91,7 +93,7 @@ fn the_engines_own_dynamics_agree_on_who_climbs_with_gear_wheels() {
         println!(
             "{count} gear wheels, {height} m: {ours} of {STARTS} climb, {theirs} of the engine's"
         );
-        assert!(ours.abs_diff(theirs) <= 2);
+        assert!(ours.abs_diff(theirs) <= MOST_APART);
     }
 }
 
@@ -108,6 +110,6 @@ fn the_engines_own_dynamics_agree_on_small_wheels_round_the_outline() {
         println!(
             "24 {name} wheels, {height} m: {ours} of {STARTS} climb, {theirs} of the engine's"
         );
-        assert!(ours.abs_diff(theirs) <= 2);
+        assert!(ours.abs_diff(theirs) <= MOST_APART);
     }
 }

@@ -30,6 +30,7 @@ impl Simulation {
             branch.dynamics.start_from(self.dynamics.impulses());
             branch.dents = self.dents.clone();
             branch.pace = self.pace;
+            (branch.before, branch.free) = (self.before.clone(), self.free);
             branch.seen_ahead = self.seen_ahead;
         }
         branch

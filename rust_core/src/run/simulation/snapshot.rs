@@ -37,6 +37,8 @@ struct Moment {
     time: f64,
     steps: u64,
     pace: Pace,
+    before: State,
+    free: f64,
     seen_ahead: f64,
     command: f64,
     driver: Driver,
@@ -56,6 +58,8 @@ impl Simulation {
             time: self.time,
             steps: self.steps,
             pace: self.pace,
+            before: self.before.clone(),
+            free: self.free,
             seen_ahead: self.seen_ahead,
             command: self.command,
             driver: self.driver,
@@ -113,6 +117,7 @@ impl Simulation {
         (simulation.time, simulation.began) = (moment.time, moment.time);
         simulation.steps = moment.steps;
         simulation.pace = moment.pace;
+        (simulation.before, simulation.free) = (moment.before, moment.free);
         simulation.seen_ahead = moment.seen_ahead;
         simulation.command = moment.command;
         simulation.driver = moment.driver;
@@ -144,6 +149,8 @@ impl Simulation {
         (0.0..LATEST).contains(&time)
             && moment.steps <= MOST_STEPS
             && moment.pace.fits()
+            && (0.0..LATEST).contains(&moment.free)
+            && moment.before.fits(model)
             && (0.0..FAR).contains(&moment.seen_ahead)
             && (low - FAR..=high + FAR).contains(&x)
             && y < FAR + self.ground.highest()

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::pace::{Rule, SAME_TIME, arrive};
-use crate::dynamics::{Effort, SetPoint};
+use crate::dynamics::{Effort, SetPoint, Trend};
 use crate::error::{Error, SimulationError};
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
@@ -70,6 +70,7 @@ impl Simulation {
             steps: 1,
             ..Effort::default()
         };
+        std::mem::swap(&mut self.before, &mut self.earlier);
         self.before.copy(&self.state);
         let mut h = self
             .pace
@@ -147,7 +148,12 @@ impl Simulation {
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
-        let strike = self.dynamics.next_strike(&self.state, (h, COLLISION_SPEED));
+        let trend = (self.free > 0.0).then_some(Trend {
+            before: &self.earlier,
+            time: self.free,
+        });
+        let fast = (h, COLLISION_SPEED);
+        let strike = self.dynamics.next_strike(&self.state, fast, trend);
         if strike > h {
             (h, false)
         } else {
@@ -191,6 +197,7 @@ impl Simulation {
     fn keep(&mut self, tried: &Tried, limit: f64) {
         self.seen_ahead = self.seen_now;
         (self.began, self.length) = (self.time, tried.h);
+        self.free = if tried.strikes { 0.0 } else { tried.h };
         self.time = arrive(self.time + tried.h, limit);
         self.set_point_before = self.set_point;
         self.set_point = tried.set_point.end;
@@ -271,6 +278,23 @@ mod tests {
             let error = simulation.local_error(tried.h);
             assert!(tried.strikes || error > 1e-5, "{error} m");
         }
+    }
+
+    /// At the speed of its first step it would land almost twice as late.
+    #[test]
+    fn what_falls_lands_when_it_does() {
+        let gap = 5e-5;
+        let mut simulation = on_gears(0.0);
+        let gravity = simulation.scenario.gravity;
+        simulation.state.center.y += gap - simulation.gap_after(0.0);
+        simulation.step().expect("it is finite");
+        let left = libm::sqrt(2.0 * gap / gravity) - simulation.time();
+        let (speed, fallen) = (gravity * simulation.time(), gap - simulation.gap_after(0.0));
+        assert!((gap - fallen) / speed > 1.5 * left, "it must speed up");
+        simulation.before.copy(&simulation.state);
+        let tried = simulation.attempt(STEP, f64::INFINITY);
+        let off = tried.h - left;
+        assert!(off.abs() < COLLISION_STEP, "{} s, {left} s", tried.h);
     }
 
     /// One that were longer could be found too long again and again.

@@ -51,9 +51,11 @@ fn of_nobody() -> Contact {
 type Spoil = fn(&mut Moment);
 
 /// Each spoils one thing.
-const SPOILS: [(&str, Spoil); 14] = [
+const SPOILS: [(&str, Spoil); 16] = [
     ("time", |m| m.time += 1.0),
     ("pace", |m| m.pace = Pace::never()),
+    ("last step", |m| m.free = f64::NAN),
+    ("velocity before it", |m| m.before.velocity.x = f64::NAN),
     ("x", |m| m.state.center.x = f64::NAN),
     ("y", |m| m.state.center.y = f64::NAN),
     ("endless height", |m| m.state.center.y = f64::INFINITY),
