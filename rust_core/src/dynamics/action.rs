@@ -13,7 +13,7 @@ pub(super) struct Action {
     pub lever: f64,
     /// [m] Lever of the spin of a drive that does not turn with the chassis.
     pub spin_lever: f64,
-    /// [m/s] Constant part of the speed: from a surface or a flipper held by its motor.
+    /// [m/s] Constant part of the speed: from a surface or a flipper held by its motor, and from how the robot turns.
     pub offset: f64,
     /// [m] Lever of the reaction on the chassis, if the chassis takes it.
     pub back: f64,
@@ -41,6 +41,14 @@ impl Action {
                 back: along.back,
                 flipper_lever: along.flipper_lever,
             }
+        }
+    }
+
+    /// The same along which everything is faster by a speed [m/s].
+    pub(super) fn faster(self, speed: f64) -> Self {
+        Self {
+            offset: self.offset + speed,
+            ..self
         }
     }
 

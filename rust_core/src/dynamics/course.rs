@@ -2,11 +2,11 @@
 //!
 //! The equations: docs/physics.md, "Contacts".
 
-use super::levers::Place;
+use super::levers::Moved;
 use super::meeting::Swing;
 use super::row::{Link, Row};
 use super::state::State;
-use crate::geometry::Rotation;
+use crate::geometry::{Vector, left_of};
 use crate::robot::{Model, Mount};
 
 impl Row {
@@ -17,13 +17,9 @@ impl Row {
             self.gap += self.opening_speed(state) * h;
             return;
         };
-        self.gap = self.start.gap + self.gained(state, model, (mount, 0.0));
-        let speed = self
-            .drive
-            .map_or(0.0, |k| state.speed_over(mount, k, model));
-        // It may let the gap close, but pushes nothing.
-        let grows = self.meeting.opens(self.swing(state, speed)).max(0.0);
-        self.opens = 0.5 * h * grows;
+        self.gap = self.gap_after(state, model, (mount, 0.0));
+        let swing = self.swing(state, model, mount);
+        self.gains = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
     }
 
     /// What carries it, if that is no shoe.
@@ -35,52 +31,79 @@ impl Row {
         }
     }
 
-    /// Its part's motion, with its drive at a speed [m/s] over what carries it.
-    fn swing(&self, state: &State, speed: f64) -> Swing {
-        let Place {
-            carrier,
+    /// Its part's motion.
+    fn swing(&self, state: &State, model: &Model, mount: Mount) -> Swing {
+        let of_drive = |of: &dyn Fn(usize) -> f64| self.drive.map_or(0.0, of);
+        let speed = of_drive(&|k| state.speed_over(mount, k, model));
+        let now = state.carrier(mount, 0.0, model);
+        let Moved {
             arm,
-            carried,
+            spoke,
+            of_carrier,
             ..
-        } = &self.start;
-        let (angle, turn) = match self.link {
-            Link::Flipper(k) => (state.flippers[k].angle, state.flippers[k].rate),
-            _ => (state.angle, state.angular_velocity),
+        } = self.moved(state, model, (mount, 0.0));
+        let carried = &self.middle.carried;
+        // The pivot of an arm turns with the chassis.
+        let of_chassis = state.angular_velocity * state.angular_velocity;
+        let (turn, of_pivot) = match self.link {
+            Link::Flipper(k) => (
+                state.flippers[k].rate,
+                (state.center - now.center) * of_chassis,
+            ),
+            _ => (state.angular_velocity, Vector::ZERO),
         };
-        let normal = self.normal.unit;
+        let along = |v: Vector| [self.normal.unit, self.tangent.unit].map(|unit| unit.dot(v));
         if carried.turns() {
             return Swing {
                 turn: turn + carried.turn_at(speed),
-                height: -carried.spoke.dot(normal),
+                center: along(-spoke),
+                pull: along(of_pivot - arm * (turn * turn)),
                 slip: self.slip(state),
             };
         }
-        let of_surface = self.drive.map_or(0.0, |k| state.drives[k].spin - turn);
+        let of_surface = if carried.is_moving() {
+            0.0
+        } else {
+            of_drive(&|k| self.tangent.drive_lever * (state.drives[k].spin - turn))
+        };
+        let over_carrier = carried.velocity(of_carrier, speed);
         Swing {
             turn,
-            height: -(Rotation::new(angle - carrier.angle) * *arm).dot(normal),
-            slip: self.slip(state) - self.tangent.drive_lever * of_surface,
+            center: along(-(arm + spoke)),
+            pull: along(of_pivot + left_of(over_carrier) * (2.0 * turn)),
+            slip: self.slip(state) - of_surface,
         }
     }
 
-    /// [m] By how much the gap changes in a time [s] at the present velocities.
-    pub(super) fn gained(&self, state: &State, model: &Model, (mount, time): (Mount, f64)) -> f64 {
-        let s = &self.start;
+    /// [m] The gap after a time [s] at the present velocities.
+    pub(super) fn gap_after(
+        &self,
+        state: &State,
+        model: &Model,
+        (mount, time): (Mount, f64),
+    ) -> f64 {
+        let moved = self.moved(state, model, (mount, time));
+        let way = [self.normal.unit, self.tangent.unit].map(|unit| unit.dot(moved.way));
+        self.middle.gap + self.meeting.opened(way, moved.of_part)
+    }
+
+    /// Its point then.
+    fn moved(&self, state: &State, model: &Model, (mount, time): (Mount, f64)) -> Moved {
         let then = state.carrier(mount, time, model);
         let run = self.drive.map_or(0.0, |k| {
             state.run_over(mount, k, model) + state.speed_over(mount, k, model) * time
         });
-        self.normal.unit.dot(s.moved(&then, run))
+        self.middle.moved(&then, run)
     }
 
     /// [m] How much deeper in the ground the place was in the middle of the step than at either end, if nothing
     /// bore there: the tip of a wheel that turns fast may come and go within a step.
     pub(super) fn dip(&self) -> f64 {
-        let ends = self.start.gap.min(self.gap).min(0.0);
+        let ends = self.start.min(self.gap).min(0.0);
         if self.normal_impulse > 0.0 {
             0.0
         } else {
-            (ends - self.start.middle).max(0.0)
+            (ends - self.middle.gap).max(0.0)
         }
     }
 }

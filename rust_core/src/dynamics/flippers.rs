@@ -17,25 +17,29 @@ use super::arm::Arm;
 use super::motor::{AT_LIMIT, Motor, PAST};
 use super::phase::Phase;
 use super::state::{State, Twist};
+use super::strike::Trend;
 use super::system::Acts;
 use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
-    /// against the chassis, to keep their angle to the ground.
+    /// against the chassis, to keep their angle to the ground. The chassis is expected to go on turning as in the last
+    /// step.
     pub(crate) fn command_flippers(
         &mut self,
         state: &State,
         angles: [f64; 2],
         keep_level: [bool; 2],
         h: f64,
+        trend: Option<Trend>,
     ) {
+        let gained = trend.map_or(0.0, |trend| trend.turn_gained(state, 0.5 * h));
+        let of_chassis = state.angular_velocity + gained;
         for (k, arm) in self.flippers.iter_mut().enumerate() {
             let end = usize::from(arm.rule.end == End::Rear);
             let way = arm.rule.sign() * angles[end] - state.over_chassis(k);
             arm.keeps_level = keep_level[end];
-            let of_chassis = state.angular_velocity;
             if arm.rule.torque_limit > 0.0 {
                 let closing = arm.rule.rate_limit - arm.follows(of_chassis) * 1.0_f64.copysign(way);
                 arm.approach = Approach::new(way, [closing, arm.deceleration()], h);

@@ -37,6 +37,11 @@ impl Carried {
         -self.turn * speed
     }
 
+    /// [m/s] How fast, in addition to turning, after the chassis has turned.
+    pub(super) fn velocity(&self, turned: Rotation, speed: f64) -> Vector {
+        turned * self.along * speed
+    }
+
     /// [m] From the end of the arm to the contact, after the chassis has turned and the drive has run by `run`.
     pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
         let spoke = turned * self.spoke;
@@ -48,13 +53,12 @@ impl Carried {
         spoke + turned * self.along * run
     }
 
-    /// The same before these motions.
-    pub(super) fn before(&self, turned: Rotation, run: f64) -> Self {
-        let back = turned.inverse();
-        Self {
-            spoke: self.offset(back, -run),
-            along: back * self.along,
-            ..*self
+    /// How far what it carries has turned, after the same motions.
+    pub(super) fn turned(&self, turned: Rotation, run: f64) -> Rotation {
+        if self.turn == 0.0 {
+            turned
+        } else {
+            Rotation::new(-self.turn * run) * turned
         }
     }
 }
@@ -136,13 +140,11 @@ impl Levers {
     }
 }
 
-/// The touching point of the robot at the start of the step.
+/// The touching point of the robot in the middle of the step, where the contact was found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// [m] Gap.
     pub gap: f64,
-    /// [m] Gap in the middle of the step, where the contact was found.
-    pub middle: f64,
     /// Its carrier.
     pub carrier: Carrier,
     /// [m] From the carrier's centre to the contact, or to the axle about which it turns.
@@ -153,13 +155,33 @@ pub(super) struct Place {
     pub drive_position: f64,
 }
 
+/// The same at another time.
+#[derive(Clone, Copy)]
+pub(super) struct Moved {
+    /// [m] From the carrier's centre to the end of the arm.
+    pub arm: Vector,
+    /// [m] From there to the touching point.
+    pub spoke: Vector,
+    /// [m] How far that has moved.
+    pub way: Vector,
+    /// How far its carrier has turned, and the part itself.
+    pub of_carrier: Rotation,
+    pub of_part: Rotation,
+}
+
 impl Place {
-    /// [m] How far the touching point has moved, once its carrier is there and its drive has run to `run` [m].
-    pub(super) fn moved(&self, now: &Carrier, run: f64) -> Vector {
-        let turned = Rotation::new(now.angle - self.carrier.angle);
-        let offset = self.carried.offset(turned, run - self.drive_position);
-        now.center - self.carrier.center + turned * self.arm + offset
-            - self.arm
-            - self.carried.spoke
+    /// Where it is once its carrier is there and its drive has run to `run` [m].
+    pub(super) fn moved(&self, now: &Carrier, run: f64) -> Moved {
+        let of_carrier = Rotation::new(now.angle - self.carrier.angle);
+        let run = run - self.drive_position;
+        let arm = of_carrier * self.arm;
+        let spoke = self.carried.offset(of_carrier, run);
+        Moved {
+            arm,
+            spoke,
+            way: now.center - self.carrier.center + arm + spoke - self.arm - self.carried.spoke,
+            of_carrier,
+            of_part: self.carried.turned(of_carrier, run),
+        }
     }
 }

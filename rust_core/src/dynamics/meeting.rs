@@ -1,10 +1,10 @@
-//! How the speed at which a gap opens changes as robot and normal turn, while a step keeps both as they are in its
+//! How a gap and the speeds at a contact change as robot and normal turn, while a step keeps the normal as it is in its
 //! middle.
 //!
 //! The equations: docs/physics.md, "Contacts".
 
 use crate::contact::Contact;
-use crate::geometry::{Disc, Vector};
+use crate::geometry::{Disc, Rotation, Vector};
 use crate::robot::{Part, Shape};
 
 /// Cosine of the angle within which a normal leads to the centre of an arc.
@@ -24,14 +24,16 @@ pub(super) enum Meeting {
     SideOnCorner,
 }
 
-/// The motion of a part, seen from the contact.
+/// The motion of a part, seen from the contact: what is given twice, along its normal and its tangent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swing {
     /// [rad/s] Its angular velocity.
     pub turn: f64,
-    /// [m] How high its centre of rotation is above the contact along the normal.
-    pub height: f64,
-    /// [m/s] Velocity of its point at the contact along the tangent.
+    /// [m] The way from the contact to the centre of rotation.
+    pub center: [f64; 2],
+    /// [m/s^2] How fast that gains speed.
+    pub pull: [f64; 2],
+    /// [m/s] Velocity of the part's point at the contact along the tangent.
     pub slip: f64,
 }
 
@@ -63,10 +65,27 @@ impl Meeting {
         }
     }
 
-    /// [m/s^2] How fast the speed at which the gap opens grows at constant velocities.
-    pub(super) fn opens(self, swing: Swing) -> f64 {
-        let Swing { turn, height, slip } = swing;
+    /// [m] By how much the gap has grown after the part's point has moved along normal and tangent by `way` [m] and the
+    /// part has turned, from a pose with this normal.
+    pub(super) fn opened(self, way: [f64; 2], turned: Rotation) -> f64 {
+        // Of the normal, as it turned with the part.
+        let [along, across] = [turned.cos(), -turned.sin()];
         match self {
+            Self::Point => way[0],
+            Self::Arc(far) => way[0] - far * (1.0 - along),
+            Self::ArcOnCorner(far) => {
+                libm::hypot(way[0] + far * along, way[1] + far * across) - far
+            }
+            Self::SideOnCorner => way[0] * along + way[1] * across,
+        }
+    }
+
+    /// [m/s^2] How fast the speeds at which the gap opens and the part slides grow at constant velocities while the gap
+    /// stays as it is.
+    pub(super) fn gains(self, swing: Swing) -> [f64; 2] {
+        let Swing { turn, slip, .. } = swing;
+        let [height, side] = swing.center;
+        let opens = match self {
             Self::Point => turn * turn * height,
             Self::Arc(far) => turn * turn * (height - far),
             Self::ArcOnCorner(far) => {
@@ -74,7 +93,8 @@ impl Meeting {
                 of_center * of_center / far + turn * turn * (height - far)
             }
             Self::SideOnCorner => turn * (turn * height - 2.0 * slip),
-        }
+        };
+        [swing.pull[0] + opens, swing.pull[1] + turn * turn * side]
     }
 }
 
@@ -83,9 +103,11 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::geometry::{Rotation, left_of, right_of};
+    use crate::geometry::{cross, left_of, right_of};
 
     const TIME: f64 = 1e-3;
+    /// [m] From the contact to the centre of an arc.
+    const FAR: f64 = 0.1;
 
     /// A contact at the origin of a part that turns about a centre.
     struct Scene {
@@ -96,68 +118,122 @@ mod tests {
     }
 
     impl Scene {
+        /// One whose gap stays as it is.
         fn new() -> Self {
+            let (normal, center, turn) = (
+                Rotation::new(0.4) * Vector::Y,
+                Vector::new(-0.03, 0.12),
+                1.5,
+            );
             Self {
-                normal: Rotation::new(0.4) * Vector::Y,
-                center: Vector::new(-0.03, 0.12),
-                velocity: Vector::new(0.3, -0.2),
-                turn: 1.5,
+                normal,
+                center,
+                velocity: right_of(normal) * 0.36 + normal * cross(center, normal) * turn,
+                turn,
             }
         }
 
+        fn tangent(&self) -> Vector {
+            right_of(self.normal)
+        }
+
         fn swing(&self) -> Swing {
-            let at_contact = self.velocity - left_of(self.center) * self.turn;
             Swing {
                 turn: self.turn,
-                height: self.center.dot(self.normal),
-                slip: right_of(self.normal).dot(at_contact),
+                center: self.along(self.center),
+                pull: [0.0; 2],
+                slip: self.velocity_at(Vector::ZERO, 0.0).dot(self.tangent()),
             }
+        }
+
+        fn along(&self, v: Vector) -> [f64; 2] {
+            [self.normal, self.tangent()].map(|unit| unit.dot(v))
+        }
+
+        fn turned(&self, time: f64) -> Rotation {
+            Rotation::new(self.turn * time)
         }
 
         /// A point of the part after a time.
         fn moved(&self, point: Vector, time: f64) -> Vector {
-            let arm = Rotation::new(self.turn * time) * (point - self.center);
+            let arm = self.turned(time) * (point - self.center);
             self.center + self.velocity * time + arm
         }
 
-        /// The second derivative of a gap.
-        fn bend(gap: impl Fn(f64) -> f64) -> f64 {
-            (gap(TIME) + gap(-TIME) - 2.0 * gap(0.0)) / (TIME * TIME)
+        /// The velocity of what is at a place of the world after a time.
+        fn velocity_at(&self, place: Vector, time: f64) -> Vector {
+            let arm = place - self.center - self.velocity * time;
+            self.velocity + left_of(arm) * self.turn
+        }
+
+        /// Checks a meeting against its exact gap and slip.
+        fn check(&self, meeting: Meeting, gap: impl Fn(f64) -> f64, slip: impl Fn(f64) -> f64) {
+            let opened = |time: f64| {
+                let way = self.along(self.moved(Vector::ZERO, time));
+                meeting.opened(way, self.turned(time))
+            };
+            for time in [-0.2, TIME, 0.3] {
+                assert_relative_eq!(opened(time), gap(time), epsilon = 1e-14);
+            }
+            let [opens, slides] = meeting.gains(self.swing());
+            let bend = (gap(TIME) + gap(-TIME)) / (TIME * TIME);
+            let grows = (slip(TIME) - slip(-TIME)) / (2.0 * TIME);
+            assert_relative_eq!(slip(0.0), self.swing().slip, max_relative = 1e-12);
+            assert_relative_eq!(opens, bend, max_relative = 1e-4);
+            assert_relative_eq!(slides, grows, max_relative = 1e-4);
         }
     }
 
     #[test]
-    fn a_point_that_turns_leaves_a_face() {
+    fn a_point_on_a_face() {
         let scene = Scene::new();
-        let gap = |time| scene.moved(Vector::ZERO, time).dot(scene.normal);
-        let opens = Meeting::Point.opens(scene.swing());
-        assert_relative_eq!(opens, Scene::bend(gap), max_relative = 1e-5);
-    }
-
-    #[test]
-    fn an_arc_leaves_a_face_or_a_corner_as_its_centre_does() {
-        let (scene, far) = (Scene::new(), 0.1);
-        let axle = scene.normal * far;
-        let on_face = |time| scene.moved(axle, time).dot(scene.normal);
-        let on_corner = |time| scene.moved(axle, time).length();
-        let of = |meeting: Meeting| meeting.opens(scene.swing());
-        assert_relative_eq!(
-            of(Meeting::Arc(far)),
-            Scene::bend(on_face),
-            max_relative = 1e-5
+        let point = |time| scene.moved(Vector::ZERO, time);
+        scene.check(
+            Meeting::Point,
+            |time| point(time).dot(scene.normal),
+            |time| scene.velocity_at(point(time), time).dot(scene.tangent()),
         );
-        let expected = Scene::bend(on_corner);
-        assert_relative_eq!(of(Meeting::ArcOnCorner(far)), expected, max_relative = 1e-5);
     }
 
     #[test]
-    fn a_side_leaves_a_corner_as_it_turns_over_it() {
+    fn an_arc_on_a_face() {
         let scene = Scene::new();
-        let gap = |time: f64| {
-            let normal = Rotation::new(scene.turn * time) * scene.normal;
-            scene.moved(Vector::ZERO, time).dot(normal)
+        let center = |time| scene.moved(scene.normal * FAR, time);
+        let foot = |time| center(time) - scene.normal * FAR;
+        scene.check(
+            Meeting::Arc(FAR),
+            |time| foot(time).dot(scene.normal),
+            |time| scene.velocity_at(foot(time), time).dot(scene.tangent()),
+        );
+    }
+
+    #[test]
+    fn an_arc_on_a_corner() {
+        let scene = Scene::new();
+        let center = |time| scene.moved(scene.normal * FAR, time);
+        let slip = |time| {
+            let normal = center(time).normalize();
+            let foot = center(time) - normal * FAR;
+            scene.velocity_at(foot, time).dot(right_of(normal))
         };
-        let opens = Meeting::SideOnCorner.opens(scene.swing());
-        assert_relative_eq!(opens, Scene::bend(gap), max_relative = 1e-5);
+        scene.check(
+            Meeting::ArcOnCorner(FAR),
+            |time| center(time).length() - FAR,
+            slip,
+        );
+    }
+
+    #[test]
+    fn a_side_on_a_corner() {
+        let scene = Scene::new();
+        let normal = |time| scene.turned(time) * scene.normal;
+        scene.check(
+            Meeting::SideOnCorner,
+            |time| scene.moved(Vector::ZERO, time).dot(normal(time)),
+            |time| {
+                let at_corner = scene.velocity_at(Vector::ZERO, time);
+                at_corner.dot(right_of(normal(time)))
+            },
+        );
     }
 }

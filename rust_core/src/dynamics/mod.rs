@@ -71,10 +71,10 @@ pub(crate) use levers::{Direction, Levers};
 pub(crate) use loaded::LoadedContact;
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
-pub(crate) use strike::Trend;
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
+pub(crate) use strike::Trend;
 
 /// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
 /// sustain. Friction that balance does not require fades with this time constant; not beside chains, whose contacts

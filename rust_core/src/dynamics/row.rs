@@ -89,12 +89,15 @@ pub(super) struct Row {
     /// [m] Current gap.
     pub gap: f64,
     pub meeting: Meeting,
-    /// [m/s] How much faster the gap opens at the end of the step than with the levers of its middle.
-    pub opens: f64,
+    /// [m/s] How much faster the gap opens, and the surface slides, at the end of the step than with the levers of its
+    /// middle.
+    pub gains: [f64; 2],
     /// Index among the shoe's rests.
     pub place: usize,
-    /// Its point at the start of the step.
-    pub start: Place,
+    /// Its point in the middle of the step.
+    pub middle: Place,
+    /// [m] Gap at the start of the step.
+    pub start: f64,
 }
 
 impl Row {
@@ -108,7 +111,7 @@ impl Row {
         time: f64,
     ) -> Self {
         let part = &model.parts[contact.part];
-        let [now, middle] = [0.0, time].map(|time| state.carrier(part.mount, time, model));
+        let middle = state.carrier(part.mount, time, model);
         let of_drive = |of: &dyn Fn(usize) -> f64| part.drive.map_or(0.0, of);
         let drive_position = of_drive(&|k| state.run_over(part.mount, k, model));
         let advance = of_drive(&|k| state.speed_over(part.mount, k, model)) * time;
@@ -123,26 +126,19 @@ impl Row {
             part.motion(drive_position + advance, advance.abs()),
             model,
         );
-        let turned = Rotation::new(middle.angle - now.angle);
-        let mut start = Place {
-            gap: contact.distance,
-            middle: contact.distance,
-            carrier: now,
-            arm: turned.inverse() * (arm - carried.spoke),
-            carried: carried.before(turned, advance),
-            drive_position,
-        };
-        // The gap was found in the middle of the step; this was the touching point at its start.
-        let then = now.center + start.arm + start.carried.spoke;
-        start.gap -= contact.normal.dot(contact.point - then);
-        Self {
+        let mut row = Self {
             drive: part.drive,
             friction: part.friction_limit,
             grip: last.map_or(Grip::Open, |l| l.grip),
             normal_guess: last.map_or(0.0, |l| l.normal_guess),
             friction_guess: last.map_or(0.0, |l| l.friction_guess),
-            gap: start.gap,
-            start,
+            middle: Place {
+                gap: contact.distance,
+                carrier: middle,
+                arm: arm - carried.spoke,
+                carried,
+                drive_position: drive_position + advance,
+            },
             meeting: Meeting::of(contact, part, |point| {
                 middle.center + Rotation::new(middle.angle) * (point - middle.origin)
             }),
@@ -154,7 +150,10 @@ impl Row {
                 }
                 Mount::Chassis | Mount::Shoe(_) => Self::between(normal, tangent, Link::Chassis),
             }
-        }
+        };
+        row.gap = row.gap_after(state, model, (part.mount, 0.0));
+        row.start = row.gap;
+        row
     }
 
     /// A row along these directions, without friction or history.
@@ -185,9 +184,10 @@ impl Row {
             friction_guess: 0.0,
             gap: 0.0,
             meeting: Meeting::Point,
-            opens: 0.0,
+            gains: [0.0; 2],
             place: 0,
-            start: Place::default(),
+            middle: Place::default(),
+            start: 0.0,
         }
     }
 

@@ -27,14 +27,8 @@ impl Dynamics {
     /// Finds the impulses that satisfy all constraints.
     pub(super) fn solve(&mut self, state: &mut State, phase: &Phase) {
         self.effort.solves += 1;
-        self.set_actions(state, phase);
-        let agreed = if self.chains.is_empty() {
-            // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
-            (0..self.solver.iterations.unwrap_or(ITERATIONS))
-                .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
-        } else {
-            self.solve_in_steps(state, phase) || self.descend(state, phase)
-        };
+        let agreed =
+            self.search(state, phase) || (self.forget_gains() && self.search(state, phase));
         if !agreed {
             self.effort.unresolved += 1;
             self.end_search(state, phase);
@@ -45,6 +39,30 @@ impl Dynamics {
         } else if self.chains.is_empty() {
             self.balance_with_flippers(state, phase);
         }
+    }
+
+    /// Searches for them; returns whether they agree.
+    fn search(&mut self, state: &mut State, phase: &Phase) -> bool {
+        self.set_actions(state, phase);
+        if self.chains.is_empty() {
+            // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
+            (0..self.solver.iterations.unwrap_or(ITERATIONS))
+                .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
+        } else {
+            self.solve_in_steps(state, phase) || self.descend(state, phase)
+        }
+    }
+
+    /// Keeps all directions as they are in the middle of the step: contacts that jam cannot all open or slide as the
+    /// robot turns. Returns whether that changes anything.
+    fn forget_gains(&mut self) -> bool {
+        if self.rows.iter().all(|row| row.gains == [0.0; 2]) {
+            return false;
+        }
+        for row in &mut self.rows {
+            (row.gains, row.normal_impulse, row.friction_impulse) = ([0.0; 2], 0.0, 0.0);
+        }
+        true
     }
 
     /// Sets the actions of all constraints for the current state of the motors.
@@ -68,6 +86,7 @@ impl Dynamics {
                     Action::of_shoe(along, along.drive_lever)
                 }
             });
+            let [n, t] = [n.faster(row.gains[0]), t.faster(row.gains[1])];
             let normal = self.admittance(&n, row.link, row.drive);
             let admittance = Admittance {
                 normal,
@@ -254,7 +273,7 @@ impl Dynamics {
         for row in &mut self.rows {
             // Contacts loaded before the motion have closed their gap, apart from the arc of a turning grouser.
             row.bears = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
-            (row.bias, row.compliance) = (row.opens, 0.0);
+            (row.bias, row.compliance) = (0.0, 0.0);
             if row.normal_impulse >= row.normal_guess * half {
                 row.normal_impulse += row.normal_guess * half;
                 row.friction_impulse += row.friction_guess * half;

@@ -19,6 +19,13 @@ pub(crate) struct Trend<'a> {
     pub time: f64,
 }
 
+impl Trend<'_> {
+    /// [rad/s] How much faster the chassis turns after a time [s] than in a state at its end, if that goes on.
+    pub(super) fn turn_gained(&self, state: &State, time: f64) -> f64 {
+        (state.angular_velocity - self.before.angular_velocity) / self.time * time
+    }
+}
+
 /// A gap that changes with time like this: `gap + slope s + bend s^2`, `s` after a time `at`.
 #[derive(Clone, Copy, Debug)]
 struct Parabola {
@@ -80,7 +87,7 @@ impl Row {
         (h, speed): (f64, f64),
         trend: Option<Trend>,
     ) -> Option<f64> {
-        let start = self.start.gap;
+        let start = self.start;
         if start <= 0.0 {
             // It is closed already; if it closes further, the error makes the step short.
             return None;
@@ -89,7 +96,7 @@ impl Row {
         let gain = trend.map_or(0.0, |Trend { before, time }| {
             (slope - self.opening_speed(before)) / time
         });
-        let carried = self.mount().filter(|_| self.start.carried.is_moving());
+        let carried = self.mount().filter(|_| self.middle.carried.is_moving());
         let Some(mount) = carried else {
             let course = Parabola {
                 at: 0.0,
@@ -100,8 +107,8 @@ impl Row {
             let (time, closing) = course.speeding_up(gain).lands()?;
             return (closing > speed).then_some(time);
         };
-        let gap = |time| start + self.gained(state, model, (mount, time));
-        let gaps = [start, self.start.middle, gap(h)];
+        let gap = |time| self.gap_after(state, model, (mount, time));
+        let gaps = [start, self.middle.gap, gap(h)];
         let whole = Parabola::through(gaps, 0.5 * h, 0.5 * h).speeding_up(gain);
         let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {
             None => whole,
@@ -150,7 +157,11 @@ mod tests {
         let rises = of(|t| gap + slope * t);
         assert!(rises.lands().is_none());
         let (time, speed) = rises.speeding_up(gain).lands().expect("it falls");
-        assert_relative_eq!(gap + (slope + 0.5 * gain * time) * time, 0.0, epsilon = 1e-15);
+        assert_relative_eq!(
+            gap + (slope + 0.5 * gain * time) * time,
+            0.0,
+            epsilon = 1e-15
+        );
         assert_relative_eq!(speed, -slope - gain * time, max_relative = 1e-12);
     }
 

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::pace::{Rule, SAME_TIME, arrive};
-use crate::dynamics::{Effort, SetPoint, Trend};
+use crate::dynamics::{Effort, SetPoint, State, Trend};
 use crate::error::{Error, SimulationError};
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
@@ -136,8 +136,9 @@ impl Simulation {
         };
         let angles = self.targets.map(|target| target.angle);
         let keep_level = self.targets.map(|target| target.keeps_level);
+        let trend = trend(&self.earlier, self.free);
         self.dynamics
-            .command_flippers(&self.state, angles, keep_level, h);
+            .command_flippers(&self.state, angles, keep_level, h, trend);
         self.dynamics.advance(&mut self.state, set_point, h);
         Tried {
             h,
@@ -148,11 +149,7 @@ impl Simulation {
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
-        let trend = (self.free > 0.0).then_some(Trend {
-            before: &self.earlier,
-            time: self.free,
-        });
-        let fast = (h, COLLISION_SPEED);
+        let (fast, trend) = ((h, COLLISION_SPEED), trend(&self.earlier, self.free));
         let strike = self.dynamics.next_strike(&self.state, fast, trend);
         if strike > h {
             (h, false)
@@ -208,6 +205,11 @@ impl Simulation {
         let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents.heal(contacts);
     }
+}
+
+/// The last step, if nothing struck the ground in it.
+fn trend(before: &State, time: f64) -> Option<Trend<'_>> {
+    (time > 0.0).then_some(Trend { before, time })
 }
 
 /// [s] How much to take of a step of `h` [s], of `left` [s] until something changes, in which something strikes the
