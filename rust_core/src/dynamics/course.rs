@@ -9,6 +9,9 @@ use super::state::State;
 use crate::geometry::{Vector, left_of};
 use crate::robot::{Model, Mount};
 
+/// [m] Surfaces closer than this touch; a gap that a step has just closed is only rounding.
+const TOUCHING: f64 = 1e-10;
+
 impl Row {
     /// Updates the gap for the motion in a step of `h` [s].
     pub(super) fn follow(&mut self, state: &State, model: &Model, h: f64) {
@@ -17,9 +20,17 @@ impl Row {
             self.gap += self.opening_speed(state) * h;
             return;
         };
-        self.gap = self.gap_after(state, model, (mount, 0.0));
-        let swing = self.swing(state, model, mount);
-        self.gains = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
+        let moved = self.moved(state, model, (mount, 0.0));
+        self.gap = self.gap_at(&moved);
+        if self.has_closed() {
+            let swing = self.swing(state, model, mount, &moved);
+            self.gains = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
+        }
+    }
+
+    /// Whether it has closed in the motion, apart from the arc of a turning grouser.
+    pub(super) fn has_closed(&self) -> bool {
+        self.normal_impulse > 0.0 || self.gap <= TOUCHING
     }
 
     /// What carries it, if that is no shoe.
@@ -32,16 +43,16 @@ impl Row {
     }
 
     /// Its part's motion.
-    fn swing(&self, state: &State, model: &Model, mount: Mount) -> Swing {
+    fn swing(&self, state: &State, model: &Model, mount: Mount, moved: &Moved) -> Swing {
         let of_drive = |of: &dyn Fn(usize) -> f64| self.drive.map_or(0.0, of);
         let speed = of_drive(&|k| state.speed_over(mount, k, model));
         let now = state.carrier(mount, 0.0, model);
-        let Moved {
+        let &Moved {
             arm,
             spoke,
             of_carrier,
             ..
-        } = self.moved(state, model, (mount, 0.0));
+        } = moved;
         let carried = &self.middle.carried;
         // The pivot of an arm turns with the chassis.
         let of_chassis = state.angular_velocity * state.angular_velocity;
@@ -82,7 +93,10 @@ impl Row {
         model: &Model,
         (mount, time): (Mount, f64),
     ) -> f64 {
-        let moved = self.moved(state, model, (mount, time));
+        self.gap_at(&self.moved(state, model, (mount, time)))
+    }
+
+    fn gap_at(&self, moved: &Moved) -> f64 {
         let way = [self.normal.unit, self.tangent.unit].map(|unit| unit.dot(moved.way));
         self.middle.gap + self.meeting.opened(way, moved.of_part)
     }

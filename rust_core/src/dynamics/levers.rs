@@ -42,24 +42,9 @@ impl Carried {
         turned * self.along * speed
     }
 
-    /// [m] From the end of the arm to the contact, after the chassis has turned and the drive has run by `run`.
-    pub(super) fn offset(&self, turned: Rotation, run: f64) -> Vector {
-        let spoke = turned * self.spoke;
-        let spoke = if self.turn == 0.0 {
-            spoke
-        } else {
-            Rotation::new(-self.turn * run) * spoke
-        };
-        spoke + turned * self.along * run
-    }
-
-    /// How far what it carries has turned, after the same motions.
-    pub(super) fn turned(&self, turned: Rotation, run: f64) -> Rotation {
-        if self.turn == 0.0 {
-            turned
-        } else {
-            Rotation::new(-self.turn * run) * turned
-        }
+    /// How far it has turned over its carrier once its drive has run by `run` [m]; `None` if it never does.
+    fn turned(&self, run: f64) -> Option<Rotation> {
+        (self.turn != 0.0).then(|| Rotation::new(-self.turn * run))
     }
 }
 
@@ -174,14 +159,18 @@ impl Place {
     pub(super) fn moved(&self, now: &Carrier, run: f64) -> Moved {
         let of_carrier = Rotation::new(now.angle - self.carrier.angle);
         let run = run - self.drive_position;
-        let arm = of_carrier * self.arm;
-        let spoke = self.carried.offset(of_carrier, run);
+        let (arm, spoke) = (of_carrier * self.arm, of_carrier * self.carried.spoke);
+        let (spoke, of_part) = match self.carried.turned(run) {
+            Some(own) => (own * spoke, own * of_carrier),
+            None => (spoke, of_carrier),
+        };
+        let spoke = spoke + of_carrier * self.carried.along * run;
         Moved {
             arm,
             spoke,
             way: now.center - self.carrier.center + arm + spoke - self.arm - self.carried.spoke,
             of_carrier,
-            of_part: self.carried.turned(of_carrier, run),
+            of_part,
         }
     }
 }

@@ -20,8 +20,6 @@ use crate::geometry::Vector;
 pub(super) const AGREEMENT: f64 = 1e-7;
 /// Rounds of a search at most, unless the scenario says otherwise; a robot without arms usually takes one.
 const ITERATIONS: u32 = 30;
-/// [m] Surfaces closer than this touch; a gap that a step has just closed is only rounding.
-const TOUCHING: f64 = 1e-10;
 
 impl Dynamics {
     /// Finds the impulses that satisfy all constraints.
@@ -271,8 +269,7 @@ impl Dynamics {
     /// The same for the other half, for contacts that bear.
     pub(super) fn guess_more(&mut self, half: f64) {
         for row in &mut self.rows {
-            // Contacts loaded before the motion have closed their gap, apart from the arc of a turning grouser.
-            row.bears = row.normal_impulse > 0.0 || row.gap <= TOUCHING;
+            row.bears = row.has_closed();
             (row.bias, row.compliance) = (0.0, 0.0);
             if row.normal_impulse >= row.normal_guess * half {
                 row.normal_impulse += row.normal_guess * half;
