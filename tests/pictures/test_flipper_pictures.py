@@ -27,9 +27,14 @@ ROBOTS: dict[str, c2d.Robot] = {
 
 @pytest.fixture(scope="module", params=ROBOTS)
 def climb(request: pytest.FixtureRequest) -> c2d.Run:
-    # A sample a step: contacts are means over the time between two samples.
+    # A sample a step: contacts are means over the time between two samples, in the middle of steps.
     return c2d.simulate(
-        ROBOTS[request.param], STEP, drive=CLIMB, duration=4.0, sample_interval=1e-3
+        ROBOTS[request.param],
+        STEP,
+        drive=CLIMB,
+        duration=4.0,
+        solver=c2d.Solver(time_step=1e-3),
+        sample_interval=1e-3,
     )
 
 
