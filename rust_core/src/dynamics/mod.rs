@@ -168,6 +168,14 @@ impl Dynamics {
         &self.model
     }
 
+    /// Whether a gap of the last step below `travel` [m] is not among the contacts any more: what comes so close may be
+    /// past it, and then bears nowhere.
+    pub(crate) fn has_lost(&self, contacts: &[Contact], travel: f64) -> bool {
+        let is_near = |l: &&LoadedContact| (0.0..travel).contains(&l.contact.distance);
+        let mut near = self.loaded.iter().filter(is_near);
+        near.any(|l| !contacts.iter().any(|c| c.number == l.contact.number))
+    }
+
     /// Gives the contacts of a step in which nothing moves farther than `travel` [m] their numbers.
     pub(crate) fn recognise(&mut self, contacts: &mut [Contact], travel: f64) {
         self.identity.recognise(&self.loaded, contacts, travel);

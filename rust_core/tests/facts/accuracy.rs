@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use approx::assert_relative_eq;
-use crawler2d_core::{Outcome, Record, Run, Scenario, Simulation, simulate};
+use crawler2d_core::{Outcome, Record, Run, Scenario, Simulation, Terrain, simulate};
 
 use crate::common::*;
 
@@ -129,6 +129,29 @@ fn contacts_are_found_before_they_are_in_the_ground() {
         // As deep as a blow of 1 kN drives one in.
         assert!(deepest < 2e-6, "{name}");
     }
+}
+
+/// In a long step a grouser may come down so far that nothing of it faces the edge any more.
+#[test]
+fn a_grouser_that_comes_down_on_a_thin_wall_does_not_pass_into_it() {
+    let mut deepest = 0.0_f64;
+    for i in 0..23 {
+        let mut scenario = engineer_on(grouser_belt());
+        scenario.terrain = Terrain::Barrier {
+            height: 0.06,
+            thickness: 0.01,
+            edge_radius: 0.0,
+            friction: 0.9,
+        };
+        // The same grouser comes down on the wall each time.
+        scenario.start.approach = 0.05 + 0.001 * f64::from(i);
+        scenario.start.track_phase = 0.073 - scenario.start.approach;
+        scenario.duration = 1.5;
+        let depths = depths_at_first(&scenario);
+        deepest = depths.into_iter().fold(deepest, f64::max);
+    }
+    println!("at most {deepest:.1e} m deep at first");
+    assert!(deepest < 2e-6);
 }
 
 #[test]

@@ -133,24 +133,24 @@ fn every_build_finds_the_same_values() {
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x3123_bdc1_b45e_108c,
+            0x1d1b_527d_a5d0_6e10,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0xe1e1_4888_9334_6f50,
+            0x0b44_8d15_f3d7_7a7b,
         ),
-        ("chain", engineer_on(segmental(None)), 0x49da_bb14_777c_673b),
+        ("chain", engineer_on(segmental(None)), 0xdb0e_5489_3ad4_32f6),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0x58de_f4ff_ccaa_2467,
+            0x7866_c06a_aaed_5006,
         ),
         ("belt, arms", on_arms(0.5, belt()), 0xe557_bffa_eb26_1096),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xcc74_d117_da40_edc1,
+            0xa13e_1d1b_8317_101d,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {

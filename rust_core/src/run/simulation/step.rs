@@ -121,7 +121,11 @@ impl Simulation {
     fn attempt(&mut self, h: f64, left: f64) -> Tried {
         let mut h = h;
         let strikes = loop {
-            self.find_contacts(h);
+            let travel = self.find_contacts(h);
+            if h > 2.0 * COLLISION_STEP && self.dynamics.has_lost(&self.contacts, 0.5 * travel) {
+                h *= 0.5;
+                continue;
+            }
             let (piece, strikes) = self.piece(h, left);
             let is_cut = piece < (1.0 - CUT) * h;
             h = piece;
@@ -171,7 +175,8 @@ impl Simulation {
         GAIN * self.scenario.gravity
     }
 
-    fn find_contacts(&mut self, h: f64) {
+    /// Returns how far anything may move in the step [m].
+    fn find_contacts(&mut self, h: f64) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
         let travel = (speed + self.gain() * h) * h;
         // A fast body finds a contact one step before it closes.
@@ -189,6 +194,7 @@ impl Simulation {
         let last = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents_now.forgive(&mut self.contacts, &last);
         self.dynamics.prepare(&self.state, &self.contacts, h);
+        travel
     }
 
     fn keep(&mut self, tried: &Tried, limit: f64) {
