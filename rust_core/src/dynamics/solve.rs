@@ -54,7 +54,8 @@ impl Dynamics {
     /// Keeps all directions as they are in the middle of the step: contacts that jam cannot all open or slide as the
     /// robot turns. Returns whether that changes anything.
     fn forget_gains(&mut self) -> bool {
-        if self.rows.iter().all(|row| row.gains == [0.0; 2]) {
+        let mut gains = self.rows.iter().flat_map(|row| row.gains);
+        if gains.all(|gain| gain == 0.0) {
             return false;
         }
         for row in &mut self.rows {
