@@ -28,7 +28,7 @@ impl Row {
         }
     }
 
-    /// Whether it has closed in the motion, apart from the arc of a turning grouser.
+    /// Whether it pressed in the first solve or touches now.
     pub(super) fn has_closed(&self) -> bool {
         self.normal_impulse > 0.0 || self.gap <= TOUCHING
     }
@@ -46,7 +46,6 @@ impl Row {
     fn swing(&self, state: &State, model: &Model, mount: Mount, moved: &Moved) -> Swing {
         let of_drive = |of: &dyn Fn(usize) -> f64| self.drive.map_or(0.0, of);
         let speed = of_drive(&|k| state.speed_over(mount, k, model));
-        let now = state.carrier(mount, 0.0, model);
         let &Moved {
             arm,
             spoke,
@@ -59,7 +58,7 @@ impl Row {
         let (turn, of_pivot) = match self.link {
             Link::Flipper(k) => (
                 state.flippers[k].rate,
-                (state.center - now.center) * of_chassis,
+                (state.center - state.carrier(mount, 0.0, model).center) * of_chassis,
             ),
             _ => (state.angular_velocity, Vector::ZERO),
         };

@@ -61,6 +61,14 @@ struct Lost {
     age: f64,
 }
 
+impl Found {
+    /// The contacts of the `last` step that are gone.
+    fn gone<'a>(&'a self, last: &'a [LoadedContact]) -> impl Iterator<Item = &'a LoadedContact> {
+        let both = last.iter().zip(&self.taken);
+        both.filter_map(|(l, taken)| (!taken).then_some(l))
+    }
+}
+
 impl Identity {
     /// Numbers the contacts of a step in which nothing moves farther than `travel` [m] after the `last` one; both are
     /// sorted by part and x.
@@ -90,6 +98,14 @@ impl Identity {
         }
     }
 
+    /// The contacts of the `last` step that were not recognised.
+    pub(super) fn gone<'a>(
+        &'a self,
+        last: &'a [LoadedContact],
+    ) -> impl Iterator<Item = &'a LoadedContact> {
+        self.found.gone(last)
+    }
+
     /// Keeps what was recognised in a step of `h` [s] after the `last` one.
     pub(super) fn keep(&mut self, last: &[LoadedContact], h: f64) {
         let found = &self.found;
@@ -100,8 +116,8 @@ impl Identity {
         let mut again = found.again.iter();
         self.lost
             .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED);
-        let opened = last.iter().zip(&found.taken).filter(|(_, taken)| !**taken);
-        self.lost.extend(opened.map(|(l, _)| Lost {
+        let gone = found.gone(last);
+        self.lost.extend(gone.map(|l| Lost {
             contact: l.contact,
             age: 0.0,
         }));

@@ -168,12 +168,11 @@ impl Dynamics {
         &self.model
     }
 
-    /// Whether a gap of the last step below `travel` [m] is not among the contacts any more: what comes so close may be
-    /// past it, and then bears nowhere.
-    pub(crate) fn has_lost(&self, contacts: &[Contact], travel: f64) -> bool {
-        let is_near = |l: &&LoadedContact| (0.0..travel).contains(&l.contact.distance);
-        let mut near = self.loaded.iter().filter(is_near);
-        near.any(|l| !contacts.iter().any(|c| c.number == l.contact.number))
+    /// Whether a gap of the last step below `travel` [m] was not recognised: what comes so close may be past it, and then
+    /// bears nowhere.
+    pub(crate) fn has_lost(&self, travel: f64) -> bool {
+        let mut gone = self.identity.gone(&self.loaded);
+        gone.any(|l| (0.0..travel).contains(&l.contact.distance))
     }
 
     /// Gives the contacts of a step in which nothing moves farther than `travel` [m] their numbers.
@@ -214,23 +213,6 @@ impl Dynamics {
             self.rows.push(row);
         }
         self.rest_on_guides(state, half);
-    }
-
-    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if velocities go on to
-    /// change like this; infinite if none does, and with chains: their shoes hit the guide all the time, but are light
-    /// and so are their impacts.
-    pub(crate) fn next_strike(
-        &self,
-        state: &State,
-        (h, speed): (f64, f64),
-        trend: Option<Trend>,
-    ) -> f64 {
-        if !self.chains.is_empty() {
-            return f64::INFINITY;
-        }
-        let strike = |row: &Row| row.strike(state, &self.model, (h, speed), trend);
-        let times = self.rows.iter().filter_map(strike);
-        times.fold(f64::INFINITY, f64::min)
     }
 
     /// Advances the state by the prepared step of `h` [s].

@@ -2,6 +2,7 @@
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
+use super::Dynamics;
 use super::row::Row;
 use super::state::State;
 use crate::robot::Model;
@@ -73,6 +74,25 @@ impl Parabola {
         let speed = (squared >= 0.0).then(|| squared.sqrt())?;
         let closing = speed - self.slope;
         (closing > 0.0).then(|| (self.at + 2.0 * self.gap / closing, speed))
+    }
+}
+
+impl Dynamics {
+    /// [s] When the first part strikes the ground faster than `speed` [m/s] in a step of `h` [s], if velocities go on to
+    /// change like this; infinite if none does, and with chains: their shoes hit the guide all the time, but are light
+    /// and so are their impacts.
+    pub(crate) fn next_strike(
+        &self,
+        state: &State,
+        (h, speed): (f64, f64),
+        trend: Option<Trend>,
+    ) -> f64 {
+        if !self.chains.is_empty() {
+            return f64::INFINITY;
+        }
+        let strike = |row: &Row| row.strike(state, &self.model, (h, speed), trend);
+        let times = self.rows.iter().filter_map(strike);
+        times.fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -122,7 +122,7 @@ impl Simulation {
         let mut h = h;
         let strikes = loop {
             let travel = self.find_contacts(h);
-            if h > 2.0 * COLLISION_STEP && self.dynamics.has_lost(&self.contacts, 0.5 * travel) {
+            if h > 2.0 * COLLISION_STEP && self.dynamics.has_lost(0.5 * travel) {
                 h *= 0.5;
                 continue;
             }
