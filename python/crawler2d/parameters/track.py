@@ -216,8 +216,8 @@ class SegmentalTrack(Parameters):
     are those of `robot.outline`; with a `grouser_height` of 0 there are none.
 
     *Guide*: the plates slide without friction on a guide of the outline's shape. The drive pulls on
-    the shoes round the rear end, and the chassis takes the reaction: a sprocket without teeth that
-    keeps count of its shoes.
+    the shoes round the rear end, and the chassis takes the reaction: a sprocket without teeth, to
+    whose travel each shoe adds a pitch as it goes round.
 
     *Sprocket*: the full mechanism. At the rear a toothed wheel with its own speed, inertia and
     torque limit, at the front an idler, between them road wheels and return rollers. The chain is

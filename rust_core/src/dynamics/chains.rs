@@ -94,9 +94,9 @@ impl Dynamics {
     }
 
     /// Moves shoes and idlers by `h` [s] at their velocities.
-    pub(super) fn move_chains(&mut self, state: &mut State, set_point: f64, h: f64) {
-        for (chain, motor) in self.chains.iter_mut().zip(&self.motors) {
-            chain.count(state, set_point, motor.share().is_none(), h);
+    pub(super) fn move_chains(&mut self, state: &mut State, h: f64) {
+        for chain in &mut self.chains {
+            chain.count(state, h);
         }
         for shoe in &mut state.shoes {
             *shoe = shoe.after(h);
@@ -209,7 +209,7 @@ impl Dynamics {
             off = off.max(of_chain);
             if !chain.has_sprocket() {
                 state.drives[k].spin =
-                    state.angular_velocity - chain.speed(state) / self.model.drive_radius;
+                    state.angular_velocity - chain.drive_speed(state) / self.model.drive_radius;
             }
         }
         off

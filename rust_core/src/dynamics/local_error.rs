@@ -25,7 +25,14 @@ impl Dynamics {
         let chassis = off_twist([before.twist(), after.twist()], moved.twist());
         let of_chassis = chassis.velocity.length();
         let mut most = of_chassis + reach * chassis.turn.abs();
-        for (k, drive) in moved.drives.iter().enumerate() {
+        // The drive of a chain on a guide moves as its shoes do.
+        let of_shoes = |k: usize| {
+            self.chains
+                .get(k)
+                .is_some_and(|chain| !chain.has_sprocket())
+        };
+        let drives = moved.drives.iter().enumerate();
+        for (k, drive) in drives.filter(|(k, _)| !of_shoes(*k)) {
             let spin = off([before.drives[k].spin, after.drives[k].spin], drive.spin);
             most = most.max(self.model.drive_radius * (spin - chassis.turn).abs());
         }

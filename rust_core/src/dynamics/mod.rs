@@ -228,7 +228,7 @@ impl Dynamics {
         self.solve(state, &phase);
         self.moved.copy(state);
         self.move_on(state, h);
-        self.move_chains(state, set_point.middle, h);
+        self.move_chains(state, h);
         phase.velocity += self.kick(half);
         self.pull_flippers(state, phase.angular_velocity, half);
         (phase.set_point, phase.elapsed) = (set_point.end, h);

@@ -63,15 +63,6 @@ pub struct Tensioner {
 }
 
 impl ChainOfShoes {
-    /// [m] Radius at which the drive pulls: one turn moves the chain by as many pitches as shoes fit round the end.
-    pub(crate) fn drive_radius(&self) -> f64 {
-        if let Some(sprocket) = &self.sprocket {
-            return sprocket.teeth.drive_radius();
-        }
-        let half = 0.5 * self.path.pitch;
-        half / libm::atan(half / (self.ends[0].radius + 0.5 * self.plate_thickness))
-    }
-
     /// [kg m^2] Moment of inertia of its sprocket, if there is one.
     pub(crate) fn sprocket_inertia(&self) -> f64 {
         self.sprocket.as_ref().map_or(0.0, |s| s.inertia)

@@ -160,6 +160,35 @@ fn a_push_is_held_by_the_force_of_the_motors() {
     }
 }
 
+/// [m/s] Root mean square of the speed of the chassis over half a second.
+fn restlessness(simulation: &mut Simulation) -> f64 {
+    let looks = 500;
+    let mut squares = 0.0;
+    for _ in 0..looks {
+        advance(simulation, 1e-3);
+        squares += simulation.reading().velocity.length_squared();
+    }
+    (squares / f64::from(looks)).sqrt()
+}
+
+/// A motor that gives a constant force at no mean speed gives no energy, so what swings comes to rest. With forces along
+/// the shoes that are no function of where these are, one of the four went on at 3.7 mm/s.
+#[test]
+fn a_stalled_chain_comes_to_rest() {
+    for (height, phase) in [(0.112, 0.0), (0.112, 0.012), (0.116, 0.0), (0.116, 0.012)] {
+        let mut scenario = chained(22);
+        scenario.terrain = step(height, 1.5);
+        scenario.robot.drivetrain.max_torque = 6.0;
+        scenario.solver.accuracy = Some(3e-8);
+        scenario.start.track_phase = phase;
+        let mut simulation = after(&scenario, 8.0);
+        assert!(simulation.drive_force() > 200.0, "the motors push");
+        let swings = restlessness(&mut simulation);
+        println!("{height} m, from {phase} m: {:.3} mm/s", 1e3 * swings);
+        assert!(swings < 2e-4, "{swings} m/s");
+    }
+}
+
 /// Where a run takes place, and what a driver does meanwhile.
 struct Trial {
     name: &'static str,

@@ -149,7 +149,7 @@ impl Chain {
     /// hold the speed `set_point` [m/s].
     pub(super) fn assemble(&mut self, set_point: f64, given: Option<f64>) {
         self.system.start(self.idler);
-        let damper = self.pull.damper().shifted(self.pull.aim(set_point));
+        let damper = self.pull.damper().shifted(set_point);
         if let (Some(sprocket), Some(lever)) = (&self.rule.sprocket, self.pull.lever) {
             self.system.add_sprocket(sprocket.inertia, self.free_spin);
             let damper = given.map_or(damper, Damper::constant);
@@ -227,12 +227,16 @@ impl Chain {
     pub(super) fn ahead(&self, state: &State, set_point: f64) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let spin = state.drives[self.rule.number].spin;
-        let speed = self.pull.speed(state.twist(), spin, |i| shoes[i].twist);
-        speed - self.pull.aim(set_point)
+        self.pull.speed(state.twist(), spin, |i| shoes[i].twist) - set_point
+    }
+
+    /// [m/s] Rate of the motor's travel.
+    pub(super) fn drive_speed(&self, state: &State) -> f64 {
+        self.ahead(state, 0.0)
     }
 
     /// [m/s] Speed of the chain: one chain length per turn of its shoes relative to the chassis.
-    pub(super) fn speed(&self, state: &State) -> f64 {
+    fn speed(&self, state: &State) -> f64 {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let turns = shoes
             .iter()
@@ -240,15 +244,12 @@ impl Chain {
         turns.sum::<f64>() * self.rule.path.pitch / std::f64::consts::TAU
     }
 
-    /// Integrates how far the chain lags behind its sprocket or, while the motor holds the set-point, behind
-    /// that.
-    pub(super) fn count(&mut self, state: &State, set_point: f64, holds: bool, h: f64) {
+    /// Integrates how far the chain lags behind its sprocket.
+    pub(super) fn count(&mut self, state: &State, h: f64) {
         self.lagged = self.pull.impulses.behind;
-        let speed = match self.pull.lever {
-            Some(lever) => lever * (state.angular_velocity - state.drives[self.rule.number].spin),
-            None => set_point,
-        };
-        if holds || self.has_sprocket() {
+        if let Some(lever) = self.pull.lever {
+            let spin = state.drives[self.rule.number].spin;
+            let speed = lever * (state.angular_velocity - spin);
             self.pull.impulses.behind += (speed - self.speed(state)) * h;
         }
     }
@@ -264,11 +265,7 @@ impl Chain {
 
     /// [m] Difference in travel between chain and sprocket.
     pub(super) fn sprocket_slip(&self) -> f64 {
-        if self.has_sprocket() {
-            self.pull.impulses.behind.abs()
-        } else {
-            0.0
-        }
+        self.pull.impulses.behind.abs()
     }
 
     /// [1/kg] Admittance of the sprocket at a lever [m].

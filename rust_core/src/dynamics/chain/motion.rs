@@ -27,9 +27,8 @@ impl Chain {
         self.system
             .free(self.rule.shoe_mass, &self.inertias, &self.free);
         self.system.link(&self.pins, h);
-        let axle = chassis.transform_point(self.rule.ends[0].center);
-        self.pull
-            .follow(&self.rule, (&middle, &self.alongs), state, axle);
+        let (center, _) = state.moved(0.5 * h);
+        self.pull.follow(&self.rule, &middle, (chassis, center));
         self.middle = middle;
         self.idler = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
         self.free_spin = state.drives[self.rule.number].spin;

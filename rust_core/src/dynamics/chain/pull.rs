@@ -1,25 +1,23 @@
 //! The drive of a chain: a motor turns the sprocket against the chassis, and its teeth pull the chain.
 //!
-//! On a guide the sprocket has no teeth: the drive acts with forces along the shoes on the driving arc, and
-//! with the reaction on the chassis. It then holds the rate at which these shoes go round, up to its torque
-//! limit. Both refer to the radius at which a full turn moves the chain by as many pitches as there are shoes
-//! to a turn, so that the mean speed of the chain is the set-point.
+//! On a guide the sprocket has no teeth. There the travel of the motor is a function of where the shoes are: each adds
+//! one pitch, little by little, as it goes round the driving end. Motor and chain can so exchange no more energy than
+//! the force of the motor times its travel; forces along the shoes, in shares that are no such function, feed a chain
+//! that swings.
 //!
 //! The equations: docs/physics.md, "Chains".
 
 use serde::{Deserialize, Serialize};
 
+use std::f64::consts::FRAC_2_PI;
+
 use crate::dynamics::damper::Damper;
-use crate::dynamics::state::{Shoe, State, Twist};
-use crate::geometry::{Vector, cross, direction, left_of, plausible};
+use crate::dynamics::state::{Shoe, Twist};
+use crate::geometry::{Pose, Vector, cross, plausible, right_of};
 use crate::robot::ChainOfShoes;
 
 /// Compliance of the drive's damper, in units of its admittance.
 const DAMPING: f64 = 1e-8;
-
-/// [1/s] Rate at which the drive makes up for lag of the chain: a real sprocket keeps count of the shoes,
-/// however the polygon effect changes their speed.
-const CATCHING_UP: f64 = 5.0;
 
 /// The drive of one chain.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +40,7 @@ pub(super) struct PullImpulses {
     pub center: f64,
     /// [N] Force from which the next step starts.
     pub force: f64,
-    /// [m] How far the chain lags behind the set-point or behind its sprocket.
+    /// [m] How far the chain lags behind its sprocket.
     pub behind: f64,
 }
 
@@ -62,51 +60,44 @@ pub(super) struct Grasp {
 }
 
 impl Pull {
-    /// Selects the shoes on the arc round the driving end `axle`; they point along `alongs`. A chain that has
-    /// come off may have none there.
+    /// Finds how the travel of the motor depends on the places of the shoes at the driving end; the chassis has the pose
+    /// `chassis` and its centre of mass at `center`. A chain that has come off may have no shoe there.
     pub(super) fn follow(
         &mut self,
         chain: &ChainOfShoes,
-        (shoes, alongs): (&[Shoe], &[Vector]),
-        state: &State,
-        axle: Vector,
+        shoes: &[Shoe],
+        (chassis, center): (Pose, Vector),
     ) {
         self.shoes.clear();
         if let Some(sprocket) = &chain.sprocket {
-            let lever = chain.drive_radius();
+            let lever = sprocket.teeth.drive_radius();
             self.lever = Some(lever);
             self.stiffness = sprocket.inertia / (DAMPING * lever * lever);
             return;
         }
-        let forwards = direction(state.angle);
-        let (mut torque, mut squares) = (0.0, 0.0);
-        for (i, (shoe, along)) in shoes.iter().zip(alongs).enumerate() {
-            // A smooth weight, so that no shoe joins or leaves the arc abruptly.
-            let share = (-left_of(*along).dot(forwards)).max(0.0).powi(2);
-            if share > 0.0 {
-                let along = along * share;
-                // Torque counts: a shoe farther out is faster, so the force on it is smaller.
-                torque += cross(along, shoe.center - axle);
-                squares += share * share;
-                let back = cross(shoe.center - state.center, along);
-                self.shoes.push(Grasp {
-                    shoe: i,
-                    on_shoe: [along.x, along.y, 0.0],
-                    on_chassis: [-along.x, -along.y, -back],
-                });
+        let end = chain.ends[0];
+        let (axle, rearwards) = (
+            chassis.transform_point(end.center),
+            chassis.rotation * -Vector::X,
+        );
+        let mut squares = 0.0;
+        for (i, shoe) in shoes.iter().enumerate() {
+            let arm = shoe.center - axle;
+            let (squared, behind) = (arm.length_squared(), arm.dot(rearwards));
+            if behind <= 0.0 || squared < 0.25 * end.radius * end.radius {
+                continue;
             }
+            // Squares of cosines: they add up to a pitch over half a turn, and start and end smoothly.
+            let share = FRAC_2_PI * behind * behind / squared;
+            let along = right_of(arm) * (chain.path.pitch * share / squared);
+            squares += along.length_squared();
+            self.shoes.push(Grasp {
+                shoe: i,
+                on_shoe: [along.x, along.y, 0.0],
+                on_chassis: [-along.x, -along.y, -cross(shoe.center - center, along)],
+            });
         }
-        if torque <= 0.0 {
-            self.shoes.clear();
-            return;
-        }
-        let scale = chain.drive_radius() / torque;
-        for grasp in &mut self.shoes {
-            grasp.on_shoe = grasp.on_shoe.map(|entry| entry * scale);
-            grasp.on_chassis = grasp.on_chassis.map(|entry| entry * scale);
-        }
-        let admittance = scale * scale * squares / chain.shoe_mass;
-        self.stiffness = 1.0 / (DAMPING * admittance);
+        self.stiffness = chain.shoe_mass / (DAMPING * squares);
     }
 
     /// Whether there is a sprocket or a shoe to pull on.
@@ -114,19 +105,11 @@ impl Pull {
         self.lever.is_some() || !self.shoes.is_empty()
     }
 
-    /// [m/s] Speed that the drive aims for.
-    pub(super) fn aim(&self, set_point: f64) -> f64 {
-        match self.lever {
-            Some(_) => set_point,
-            None => set_point + CATCHING_UP * self.impulses.behind,
-        }
-    }
-
     pub(super) fn damper(&self) -> Damper {
         Damper::new(self.impulses.center, self.stiffness)
     }
 
-    /// [m/s] Speed of the chain on a guide, or the speed given by the spin of the sprocket.
+    /// [m/s] Rate of the motor's travel.
     pub(super) fn speed(&self, chassis: Twist, spin: f64, shoe: impl Fn(usize) -> Twist) -> f64 {
         if let Some(lever) = self.lever {
             return lever * (chassis.turn - spin);
@@ -141,18 +124,24 @@ impl Pull {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use approx::assert_relative_eq;
+
     use super::*;
-    use crate::geometry::{Disc, Envelope, ShoeLoop};
+    use crate::geometry::{Disc, Envelope, ShoeLoop, direction};
     use crate::robot::Tensioner;
 
-    #[test]
-    fn a_drive_without_a_shoe_behind_it_finds_no_hold() {
-        let end = |x| Disc {
+    const RADIUS: f64 = 0.05;
+    const PIECES: u32 = 400;
+
+    /// A chain of 22 shoes on a guide, with its driving end at the origin.
+    fn chain() -> ChainOfShoes {
+        let ends = [0.0, 0.4].map(|x| Disc {
             center: Vector::new(x, 0.0),
-            radius: 0.05,
-        };
-        let ends = [end(-0.2), end(0.2)];
-        let chain = ChainOfShoes {
+            radius: RADIUS,
+        });
+        ChainOfShoes {
             number: 0,
             shoes: 0..22,
             path: ShoeLoop::new(ends, 22).unwrap(),
@@ -169,28 +158,63 @@ mod tests {
                 stop: f64::INFINITY,
             },
             hull: Envelope::new(&ends),
-        };
-        let shoe = |angle: f64| Shoe {
-            center: Vector::new(-0.25, 0.0),
-            angle,
-            twist: Twist::default(),
-        };
-        let state = State {
-            center: Vector::ZERO,
+        }
+    }
+
+    fn shoe_at(center: Vector) -> Shoe {
+        Shoe {
+            center,
             angle: 0.0,
-            velocity: Vector::ZERO,
-            angular_velocity: 0.0,
-            drives: Vec::new(),
-            shoes: Vec::new(),
-            flippers: Vec::new(),
-            idlers: Vec::new(),
+            twist: Twist::default(),
+        }
+    }
+
+    /// [m] Travel of the motor while a shoe goes along a path, which it does from 0 to 1.
+    fn travel(path: impl Fn(f64) -> Vector) -> f64 {
+        let (chain, mut pull) = (chain(), Pull::default());
+        let mut travel = 0.0;
+        for i in 0..PIECES {
+            let [from, to] = [i, i + 1].map(|k| path(f64::from(k) / f64::from(PIECES)));
+            let still = (Pose::default(), Vector::ZERO);
+            pull.follow(&chain, &[shoe_at((from + to) * 0.5)], still);
+            let moved = Twist {
+                velocity: to - from,
+                turn: 0.0,
+            };
+            travel += pull.speed(Twist::default(), 0.0, |_| moved);
+        }
+        travel
+    }
+
+    fn at(radius: f64, turned: f64) -> Vector {
+        direction(-turned) * -radius
+    }
+
+    #[test]
+    fn the_travel_of_a_shoe_round_the_driving_end_is_a_pitch() {
+        let pitch = chain().path.pitch;
+        for radius in [RADIUS, 2.0 * RADIUS] {
+            let round = travel(|share| at(radius, PI * (share - 0.5)));
+            assert_relative_eq!(round, pitch, max_relative = 1e-4);
+        }
+    }
+
+    /// So a chain that swings takes no energy from a motor that gives a constant force.
+    #[test]
+    fn a_shoe_that_comes_back_leaves_the_motor_where_it_was() {
+        let round = |share: f64| {
+            let angle = TAU * share;
+            at(RADIUS * (1.5 + 0.4 * angle.cos()), 0.4 + 0.8 * angle.sin())
         };
-        let mut pull = Pull::default();
-        // A shoe that points up behind the axle is on the arc; one that points down is on the front side.
-        for (angle, holds) in [(1.6, true), (-1.6, false)] {
-            let shoes = [shoe(angle)];
-            let along = [shoes[0].along()];
-            pull.follow(&chain, (&shoes, &along), &state, end(-0.2).center);
+        assert!(travel(round).abs() < 1e-4 * chain().path.pitch);
+    }
+
+    #[test]
+    fn a_drive_without_a_shoe_behind_its_axle_finds_no_hold() {
+        let (chain, mut pull) = (chain(), Pull::default());
+        let still = (Pose::default(), Vector::ZERO);
+        for (x, holds) in [(-RADIUS, true), (RADIUS, false)] {
+            pull.follow(&chain, &[shoe_at(Vector::new(x, 0.0))], still);
             assert_eq!(pull.has_hold(), holds);
         }
     }

@@ -1,7 +1,5 @@
 //! A chain that whirls freely in the air, off its guide.
 
-use std::f64::consts::TAU;
-
 use super::*;
 use crate::geometry::{Rotation, cross, left_of};
 use crate::robot::Model;
@@ -40,9 +38,6 @@ fn whirling() -> (Dynamics, State) {
             turn,
         };
     }
-    // The drive turns as fast as the chain goes round.
-    let length = state.shoes.len() as f64 * model.chains[0].path.pitch;
-    state.drives[0].spin = turn * length / (TAU * model.drive_radius);
     let dynamics = Dynamics::new(model, vec![0.9], 0.0, scenario.solver);
     (dynamics, state)
 }
