@@ -17,8 +17,8 @@ use super::arm::Arm;
 use super::motor::{AT_LIMIT, Motor, PAST};
 use super::phase::Phase;
 use super::state::{State, Twist};
-use super::strike::Trend;
 use super::system::Acts;
+use super::trend::Trend;
 use crate::geometry::{Vector, left_of};
 use crate::scenario::End;
 

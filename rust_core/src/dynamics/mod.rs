@@ -45,6 +45,7 @@ mod strike;
 mod system;
 #[cfg(test)]
 mod tests;
+mod trend;
 mod way;
 
 use arm::Arm;
@@ -74,7 +75,7 @@ pub(crate) use set_point::SetPoint;
 pub(crate) use state::{
     Carrier, DriveState, Shoe, State, flippers_at_rest, idlers_at_rest, shoes_at_rest,
 };
-pub(crate) use strike::Trend;
+pub(crate) use trend::Trend;
 
 /// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
 /// sustain. Friction that balance does not require fades with this time constant; not beside chains, whose contacts

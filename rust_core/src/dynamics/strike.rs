@@ -5,27 +5,12 @@
 use super::Dynamics;
 use super::row::Row;
 use super::state::State;
+use super::trend::Trend;
 use crate::robot::Model;
 
 /// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
 /// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
 const CLOSELY: f64 = 0.125;
-
-/// The last step, for how fast velocities change.
-#[derive(Clone, Copy)]
-pub(crate) struct Trend<'a> {
-    /// The state at its beginning.
-    pub before: &'a State,
-    /// [s] Its length, above 0.
-    pub time: f64,
-}
-
-impl Trend<'_> {
-    /// [rad/s] How much faster the chassis turns after a time [s] than in a state at its end, if that goes on.
-    pub(super) fn turn_gained(&self, state: &State, time: f64) -> f64 {
-        (state.angular_velocity - self.before.angular_velocity) / self.time * time
-    }
-}
 
 /// A gap that changes with time like this: `gap + slope s + bend s^2`, `s` after a time `at`.
 #[derive(Clone, Copy, Debug)]
@@ -113,9 +98,7 @@ impl Row {
             return None;
         }
         let slope = self.opening_speed(state);
-        let gain = trend.map_or(0.0, |Trend { before, time }| {
-            (slope - self.opening_speed(before)) / time
-        });
+        let gain = trend.map_or(0.0, |t| t.rate(slope, |before| self.opening_speed(before)));
         let carried = self.mount().filter(|_| self.middle.carried.is_moving());
         let Some(mount) = carried else {
             let course = Parabola {

@@ -140,7 +140,7 @@ impl Simulation {
         };
         let angles = self.targets.map(|target| target.angle);
         let keep_level = self.targets.map(|target| target.keeps_level);
-        let trend = trend(&self.earlier, self.free);
+        let trend = Trend::since(&self.earlier, self.free);
         self.dynamics
             .command_flippers(&self.state, angles, keep_level, h, trend);
         self.dynamics.advance(&mut self.state, set_point, h);
@@ -153,7 +153,7 @@ impl Simulation {
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
-        let (fast, trend) = ((h, COLLISION_SPEED), trend(&self.earlier, self.free));
+        let (fast, trend) = ((h, COLLISION_SPEED), Trend::since(&self.earlier, self.free));
         let strike = self.dynamics.next_strike(&self.state, fast, trend);
         if strike > h {
             (h, false)
@@ -211,11 +211,6 @@ impl Simulation {
         let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents.heal(contacts);
     }
-}
-
-/// The last step, if nothing struck the ground in it.
-fn trend(before: &State, time: f64) -> Option<Trend<'_>> {
-    (time > 0.0).then_some(Trend { before, time })
 }
 
 /// [s] How much to take of a step of `h` [s], of `left` [s] until something changes, in which something strikes the
