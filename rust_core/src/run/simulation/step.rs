@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::pace::{Rule, SAME_TIME, arrive};
-use crate::dynamics::{Effort, SetPoint, State, Trend};
+use crate::dynamics::{Effort, SetPoint, Trend};
 use crate::error::{Error, SimulationError};
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
