@@ -128,6 +128,9 @@ def _panel(
                 ax.plot(*place, marker="o", color=_RED, linestyle="", label=point.setting, **ring)
             if is_named:
                 _name(ax, point, family.side)
+    if is_named:
+        # Room for the names.
+        ax.margins(x=0.2)
     ax.set_xscale("log")
     if name == "paths":
         ax.set_yscale("log")
