@@ -25,7 +25,7 @@ __all__ = ["ACCURACIES", "HEIGHTS", "ChainStep", "chain_steps", "chain_steps_tex
 ACCURACIES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5)
 """[m] Of the solver."""
 HEIGHTS = (0.11,)
-"""[m] Heights of the steps; the chain of 22 shoes clears about half of the runs."""
+"""[m] Heights of the steps; the chain of 22 shoes clears about a third of the runs."""
 
 _FRICTION = 0.9
 # [s] Duration of the run on flat ground, and when its speed is steady.
