@@ -32,8 +32,9 @@ def test_shoes_stay_linked_and_the_robot_as_high_as_built(
     assert gaps.max() < 1e-4
     assert run.metrics["max_pin_gap"] < 1e-4
     settled = run.time > 3.0  # chassis and guide find their places
-    # Over the corners of its polygon, a chain of 22 shoes lifts the robot by up to 1.1 mm.
-    assert run.position[settled, 1] == pytest.approx(0.064, abs=1.2e-3)
+    # On a guide, the polygon of 22 shoes lifts the robot by up to 1.1 mm.
+    within = 1.2e-3 if (mechanism, count) == ("guide", 22) else 1e-3
+    assert run.position[settled, 1] == pytest.approx(0.064, abs=within)
 
 
 def _pitch(run: c2d.Run) -> float:

@@ -205,11 +205,10 @@ impl Dynamics {
         for k in 0..self.chains.len() {
             let given = self.given(k, phase);
             let chain = &mut self.chains[k];
-            let of_chain = chain.follow_velocities(state, phase.set_point, given);
-            off = off.max(of_chain);
+            let speed = chain.drive_speed(state);
+            off = off.max(chain.follow_drive(speed - phase.set_point, given));
             if !chain.has_sprocket() {
-                state.drives[k].spin =
-                    state.angular_velocity - chain.drive_speed(state) / self.model.drive_radius;
+                state.drives[k].spin = state.angular_velocity - speed / self.model.drive_radius;
             }
         }
         off

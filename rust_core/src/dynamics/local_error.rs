@@ -25,14 +25,10 @@ impl Dynamics {
         let chassis = off_twist([before.twist(), after.twist()], moved.twist());
         let of_chassis = chassis.velocity.length();
         let mut most = of_chassis + reach * chassis.turn.abs();
-        // The drive of a chain on a guide moves as its shoes do.
-        let of_shoes = |k: usize| {
-            self.chains
-                .get(k)
-                .is_some_and(|chain| !chain.has_sprocket())
-        };
+        // The drive of a chain on a guide moves as its shoes do, which count below.
+        let on_guide = |k: usize| self.chains.get(k).is_some_and(|c| !c.has_sprocket());
         let drives = moved.drives.iter().enumerate();
-        for (k, drive) in drives.filter(|(k, _)| !of_shoes(*k)) {
+        for (k, drive) in drives.filter(|(k, _)| !on_guide(*k)) {
             let spin = off([before.drives[k].spin, after.drives[k].spin], drive.spin);
             most = most.max(self.model.drive_radius * (spin - chassis.turn).abs());
         }

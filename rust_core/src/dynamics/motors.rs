@@ -45,10 +45,11 @@ impl Dynamics {
 
     /// [m/s] How far the surface speed of a drive exceeds the set-point.
     fn ahead(&self, state: &State, phase: &Phase, k: usize) -> f64 {
-        match self.chains.get(k) {
-            Some(chain) => chain.ahead(state, phase.set_point),
-            None => state.track_speed(&self.model, k) - phase.set_point,
-        }
+        let speed = match self.chains.get(k) {
+            Some(chain) => chain.drive_speed(state),
+            None => state.track_speed(&self.model, k),
+        };
+        speed - phase.set_point
     }
 
     /// The next state of a motor that holds.

@@ -211,28 +211,18 @@ impl Chain {
         [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
-    /// Updates the drive's impulse to match the velocities; returns the error of its speed [m/s].
-    pub(super) fn follow_velocities(
-        &mut self,
-        state: &State,
-        set_point: f64,
-        given: Option<f64>,
-    ) -> f64 {
-        let ahead = self.ahead(state, set_point);
+    /// Updates the drive's impulse to match a drive that is so much faster [m/s] than it aims to be; returns the error
+    /// of its speed [m/s].
+    pub(super) fn follow_drive(&mut self, ahead: f64, given: Option<f64>) -> f64 {
         self.pull.impulses.impulse = given.unwrap_or_else(|| self.pull.damper().at(ahead));
         if given.is_none() { ahead.abs() } else { 0.0 }
     }
 
-    /// [m/s] How much faster the drive is than it aims to be.
-    pub(super) fn ahead(&self, state: &State, set_point: f64) -> f64 {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let spin = state.drives[self.rule.number].spin;
-        self.pull.speed(state.twist(), spin, |i| shoes[i].twist) - set_point
-    }
-
     /// [m/s] Rate of the motor's travel.
     pub(super) fn drive_speed(&self, state: &State) -> f64 {
-        self.ahead(state, 0.0)
+        let shoes = &state.shoes[self.rule.shoes.clone()];
+        let spin = state.drives[self.rule.number].spin;
+        self.pull.speed(state.twist(), spin, |i| shoes[i].twist)
     }
 
     /// [m/s] Speed of the chain: one chain length per turn of its shoes relative to the chassis.
@@ -247,10 +237,8 @@ impl Chain {
     /// Integrates how far the chain lags behind its sprocket.
     pub(super) fn count(&mut self, state: &State, h: f64) {
         self.lagged = self.pull.impulses.behind;
-        if let Some(lever) = self.pull.lever {
-            let spin = state.drives[self.rule.number].spin;
-            let speed = lever * (state.angular_velocity - spin);
-            self.pull.impulses.behind += (speed - self.speed(state)) * h;
+        if self.has_sprocket() {
+            self.pull.impulses.behind += (self.drive_speed(state) - self.speed(state)) * h;
         }
     }
 
@@ -296,7 +284,7 @@ impl Chain {
             slope += sprocket.inertia * gained * spin;
         }
         let of_drive = self.pull.speed(chassis, spin, |i| self.solved[i]);
-        let ahead = self.ahead(state, set_point) + of_drive * share;
+        let ahead = self.drive_speed(state) - set_point + of_drive * share;
         let rate = state.idlers[self.rule.number].rate + self.idler_rate * share;
         slope -= self.idler.at(rate) * self.idler_rate;
         slope - given.unwrap_or_else(|| self.pull.damper().at(ahead)) * of_drive

@@ -7,9 +7,9 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use serde::{Deserialize, Serialize};
-
 use std::f64::consts::FRAC_2_PI;
+
+use serde::{Deserialize, Serialize};
 
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::{Shoe, Twist};
@@ -76,10 +76,8 @@ impl Pull {
             return;
         }
         let end = chain.ends[0];
-        let (axle, rearwards) = (
-            chassis.transform_point(end.center),
-            chassis.rotation * -Vector::X,
-        );
+        let axle = chassis.transform_point(end.center);
+        let rearwards = chassis.rotation * -Vector::X;
         let mut squares = 0.0;
         for (i, shoe) in shoes.iter().enumerate() {
             let arm = shoe.center - axle;
