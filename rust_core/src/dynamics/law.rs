@@ -42,13 +42,14 @@ impl Row {
     /// Sets the dampers about their centres.
     pub(super) fn place_dampers(&mut self) {
         let (normal, friction) = self.center;
-        let damping = DAMPING * self.admittance.spring;
+        let proximal = self.proximal();
+        let damping = proximal * self.admittance.spring;
         let stiffness = 1.0 / (self.compliance * self.admittance.spring + damping);
         self.dampers = [
             Damper::new(stiffness * (damping * normal - self.bias), stiffness),
             Damper::new(
                 friction,
-                1.0 / ((self.give + DAMPING) * self.admittance.tangent),
+                1.0 / ((self.give + proximal) * self.admittance.tangent),
             ),
         ];
     }
@@ -79,7 +80,12 @@ impl Row {
             Grip::Sticks if self.give == 0.0 => off_normal.max(off_tangent),
             _ => off_normal,
         };
-        DAMPING * off
+        self.proximal() * off
+    }
+
+    /// Compliance of its damper about the last impulses; one that gives way elastically needs none.
+    fn proximal(&self) -> f64 {
+        if self.give == 0.0 { DAMPING } else { 0.0 }
     }
 
     /// The grip at these speeds, and the impulses along normal and tangent [N s].

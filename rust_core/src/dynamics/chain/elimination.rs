@@ -1,35 +1,38 @@
-//! The elimination of a chain: its shoes, each on its own, then its pins, once round.
+//! The elimination of a chain, shoe by shoe, once round.
+//!
+//! All that hangs on a shoe from behind has become part of its equations. What is left to it is to turn about its pin
+//! in front: that turn is eliminated, and what it then takes to move the pin becomes part of the next shoe.
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2, SMatrix, SVector};
+use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, SVector, Vector3};
 
-use super::system::{
-    BESIDE, CHASSIS, CLOSING, ChainSystem, DRIVE, IDLER, OF_SHOE, PinEntry, RIGHT, Solved, WIDTH,
-    WIDTH_OF_SHOE,
-};
+use super::system::{CHASSIS, CLOSING, ChainSystem, DRIVE, Entry, IDLER, Joint, RIGHT, WIDTH};
 use crate::dynamics::state::Twist;
+
+/// What follows from the velocity of a shoe's pin in front, and from the border.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Solved {
+    /// Its turn ...
+    turn: (RowVector2<f64>, SVector<f64, WIDTH>),
+    /// ... and the impulse of the pin on it.
+    impulse: (Matrix2<f64>, SMatrix<f64, WIDTH, 2>),
+}
 
 impl ChainSystem {
     /// Reduces the system to the chassis, adding the chain's part to the chassis' rows. None if the constraints
     /// contradict each other.
     pub(super) fn eliminate(&mut self, chassis: &mut [[f64; 4]; 3]) -> Option<()> {
-        self.eliminate_shoes()?;
-        self.couple_pins();
-        let last = self.pins.len() - 1;
+        let last = self.shoes.len() - 1;
+        self.shoes[0].close(1, &self.joints[last]);
         for k in 0..last {
-            let entry = self.pins[k];
-            let inverse = entry.own.try_inverse()?;
-            let (next, beside) = (inverse * entry.next, inverse * entry.beside);
-            self.border.gemm(-1.0, &entry.below, &beside, 1.0);
-            if k + 1 < last {
-                let ahead = &mut self.pins[k + 1];
-                ahead.own.gemm(-1.0, &entry.back, &next, 1.0);
-                ahead.beside.gemm(-1.0, &entry.back, &beside, 1.0);
-                ahead.below.gemm(-1.0, &entry.below, &next, 1.0);
-            }
-            self.solved[k] = (next, beside);
+            let joint = &self.joints[k];
+            let solved = self.shoes[k].turn_about_pin(joint)?;
+            self.hand_on(k, &solved);
+            self.solved[k] = solved;
         }
+        self.shoes[last].close(0, &self.joints[last]);
+        self.eliminate_last()?;
         self.solve_border()?;
         for (i, row) in chassis.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
@@ -40,72 +43,39 @@ impl ChainSystem {
         Some(())
     }
 
-    /// Expresses the velocities of the shoes in terms of border and pins.
-    fn eliminate_shoes(&mut self) -> Option<()> {
-        for (k, entry) in self.shoes.iter().enumerate() {
-            let inverse = entry.own.try_inverse()?;
-            let behind = (k + self.joints.len() - 1) % self.joints.len();
-            let [front, _] = self.joints[k].pushes;
-            let [_, back] = self.joints[behind].pushes;
-            let beside = inverse * entry.beside;
-            let of_shoe = entry.below * beside;
-            for i in 0..BESIDE {
-                for j in 0..BESIDE {
-                    self.border[(i, j)] -= of_shoe[(i, j)];
-                }
-                self.border[(i, RIGHT)] -= of_shoe[(i, OF_SHOE)];
-            }
-            self.freed[k] = Solved {
-                beside,
-                pins: [front, back].map(|rows| inverse * rows.transpose()),
-            };
-        }
-        Some(())
+    /// Makes what is left of a shoe part of the next one and of the border.
+    fn hand_on(&mut self, shoe: usize, solved: &Solved) {
+        let Joint {
+            rows: [front, back],
+            pushes: [_, push],
+            speed,
+        } = self.joints[shoe];
+        let below = self.shoes[shoe].below;
+        let of_turn = below * turning_about(&front);
+        let of_pin = below.fixed_columns::<2>(0) + of_turn * solved.turn.0;
+        self.border += of_turn * solved.turn.1.transpose();
+        let mut right = self.border.column_mut(RIGHT);
+        right += of_pin * speed;
+
+        let (own, mut beside) = solved.impulse;
+        let mut right = beside.row_mut(RIGHT);
+        right += (own * speed).transpose();
+        let next = &mut self.shoes[shoe + 1];
+        next.own += push.transpose() * own * back;
+        next.beside += beside * push;
+        next.below += of_pin * back;
     }
 
-    /// Sets up the rows and columns of the pins; the last one goes into the border.
-    fn couple_pins(&mut self) {
-        let (count, last) = (self.pins.len(), self.pins.len() - 1);
-        let mut closing = PinEntry::default();
-        for k in 0..count {
-            let ahead = (k + 1) % count;
-            let (joint, next_joint) = (&self.joints[k], &self.joints[ahead]);
-            let [front, back] = joint.rows;
-            let [own, next] = [&self.freed[k], &self.freed[ahead]];
-            let mut entry = PinEntry {
-                own: front * own.pins[0] + back * next.pins[1],
-                next: back * next.pins[0],
-                back: next_joint.rows[0] * next.pins[1],
-                ..PinEntry::default()
-            };
-            let of_shoes = front * own.beside + back * next.beside;
-            for i in 0..2 {
-                for j in 0..BESIDE {
-                    entry.beside[(i, j)] = -of_shoes[(i, j)];
-                }
-                entry.beside[(i, RIGHT)] = joint.speed[i] - of_shoes[(i, OF_SHOE)];
-            }
-            let below = self.shoes[k].below * own.pins[0] + self.shoes[ahead].below * next.pins[1];
-            entry.below.fixed_rows_mut::<BESIDE>(0).copy_from(&below);
-            if k == last {
-                closing = entry;
-            } else {
-                self.pins[k] = entry;
-            }
-        }
-        // The closing pin is both before the first and after the last but one.
-        let before = self.pins[last - 1];
-        let [first, before_last] = [0, last - 1];
-        put(&mut self.pins[first].beside, 0, CLOSING, &closing.back);
-        put(&mut self.pins[first].below, CLOSING, 0, &closing.next);
-        put(&mut self.pins[before_last].beside, 0, CLOSING, &before.next);
-        put(&mut self.pins[before_last].below, CLOSING, 0, &before.back);
-        self.pins[before_last].next = Matrix2::zeros();
-        put(&mut self.border, CLOSING, CLOSING, &closing.own);
-        let mut rows = self.border.fixed_rows_mut::<2>(CLOSING);
-        rows += closing.beside;
-        let mut columns = self.border.fixed_columns_mut::<2>(CLOSING);
-        columns += closing.below;
+    /// Expresses the velocity of the last shoe in terms of the border.
+    fn eliminate_last(&mut self) -> Option<()> {
+        let last = self.shoes.len() - 1;
+        let Entry { own, beside, below } = &self.shoes[last];
+        self.last = -beside * own.try_inverse()?.transpose();
+        self.border += below * self.last.transpose();
+        let closes = self.joints[last].speed;
+        let mut right = self.border.fixed_view_mut::<2, 1>(CLOSING, RIGHT);
+        right += closes;
+        Some(())
     }
 
     /// Expresses the closing pin, the drive and the idler in terms of the chassis.
@@ -118,7 +88,7 @@ impl ChainSystem {
             let row = self.border.row(pivot) / by;
             let mut column = self.border.column(pivot).into_owned();
             column[pivot] = 0.0;
-            self.border.gemm(-1.0, &column, &row, 1.0);
+            self.border -= column * row;
             self.border.set_row(pivot, &row);
         }
         Some(())
@@ -136,29 +106,54 @@ impl ChainSystem {
         }
         let last = shoes.len() - 1;
         self.impulses[last] = known.fixed_rows::<2>(CLOSING).into_owned();
+        let mut velocity = self.last.tr_mul(&known);
+        shoes[last] = Twist::from(<[f64; 3]>::from(velocity));
         for k in (0..last).rev() {
-            let (next, beside) = &self.solved[k];
-            self.impulses[k] = -(beside * known + next * self.impulses[k + 1]);
-        }
-        let mut of_shoe = SVector::<f64, WIDTH_OF_SHOE>::zeros();
-        of_shoe.copy_from(&known.fixed_rows::<WIDTH_OF_SHOE>(0));
-        of_shoe[OF_SHOE] = -1.0;
-        for (k, shoe) in shoes.iter_mut().enumerate() {
-            let behind = if k == 0 { last } else { k - 1 };
-            let Solved { beside, pins } = &self.freed[k];
-            let velocity =
-                pins[0] * self.impulses[k] + pins[1] * self.impulses[behind] - beside * of_shoe;
-            *shoe = Twist::from(<[f64; 3]>::from(velocity));
+            let Joint { rows, speed, .. } = &self.joints[k];
+            let Solved { turn, impulse } = &self.solved[k];
+            let pin = rows[1] * velocity - speed;
+            let turn = (turn.0 * pin).x + turn.1.dot(&known);
+            velocity = turning_about(&rows[0]) * turn + Vector3::new(pin.x, pin.y, 0.0);
+            self.impulses[k] = -(impulse.0 * pin + impulse.1.tr_mul(&known));
+            shoes[k] = Twist::from(<[f64; 3]>::from(velocity));
         }
         [known[IDLER], known[DRIVE]]
     }
 }
 
-fn put<const R: usize, const C: usize>(
-    to: &mut SMatrix<f64, R, C>,
-    row: usize,
-    column: usize,
-    block: &Matrix2<f64>,
-) {
-    to.fixed_view_mut::<2, 2>(row, column).copy_from(block);
+impl Entry {
+    /// Adds the pin that closes the ring, of which it is the shoe before or after.
+    fn close(&mut self, end: usize, joint: &Joint) {
+        let mut below = self.below.fixed_rows_mut::<2>(CLOSING);
+        below += joint.rows[end];
+        let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING);
+        beside -= joint.pushes[end];
+    }
+
+    /// Solves for its turn about its pin in front.
+    fn turn_about_pin(&self, joint: &Joint) -> Option<Solved> {
+        let turning = turning_about(&joint.rows[0]);
+        // The moment about the pin, of which the pin has no part.
+        let moment = turning_about(&joint.pushes[0]);
+        let (of_turn, resists) = (self.own * turning, moment.transpose() * self.own);
+        let pivot = moment.dot(&of_turn);
+        if pivot == 0.0 || !pivot.is_finite() {
+            return None;
+        }
+        let of_pin = resists.fixed_columns::<2>(0) / -pivot;
+        let of_border = self.beside * moment / -pivot;
+        let of_turn = of_turn.fixed_rows::<2>(0);
+        Some(Solved {
+            turn: (of_pin, of_border),
+            impulse: (
+                self.own.fixed_view::<2, 2>(0, 0) + of_turn * of_pin,
+                self.beside.fixed_columns::<2>(0) + of_border * of_turn.transpose(),
+            ),
+        })
+    }
+}
+
+/// The velocity of a shoe that turns at rate 1 about its pin in front, which has these rows.
+fn turning_about(rows: &Matrix2x3<f64>) -> Vector3<f64> {
+    Vector3::new(rows.m13, rows.m23, 1.0)
 }

@@ -1,16 +1,16 @@
 //! The linear system of a chain of shoes, reduced by elimination to the system of the chassis.
 //!
 //! The pins are exact: their impulses are unknowns, beside the velocities. Each shoe is coupled only to its own
-//! two pins, the chassis, the drive and the idler, so shoes are eliminated first, each on its own. What is left
-//! has two rows for each pin, which is coupled to its two neighbours: the elimination goes once round the chain.
-//! The last pin closes the ring; like the chassis, the drive and the idler, it is part of a border that is carried
+//! two pins, the chassis, the drive and the idler, so the elimination goes once round the chain, from shoe to shoe. The
+//! last pin closes the ring; like the chassis, the drive and the idler, it is part of a border that is carried
 //! along. Stiff springs in place of the pins would cost as many digits as they are stiffer than shoes are heavy,
 //! and what is lost acts like blows that shake the robot, harder the shorter the step.
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
 
+use super::elimination::Solved;
 use super::pin::Pin;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
@@ -22,15 +22,10 @@ const TURN: usize = 2;
 /// ... one for the drive (its force or the spin of its sprocket), one for the idler, ...
 pub(super) const DRIVE: usize = 3;
 pub(super) const IDLER: usize = 4;
-/// ... which are those that act on shoes; two for the closing pin; then the right-hand side.
-pub(super) const BESIDE: usize = 5;
-pub(super) const CLOSING: usize = BESIDE;
-const BORDER: usize = 7;
-pub(super) const RIGHT: usize = BORDER;
-pub(super) const WIDTH: usize = BORDER + 1;
-/// The right-hand side of a shoe.
-pub(super) const OF_SHOE: usize = BESIDE;
-pub(super) const WIDTH_OF_SHOE: usize = BESIDE + 1;
+/// ... two for the closing pin; then the right-hand side, a column without a row.
+pub(super) const CLOSING: usize = 5;
+pub(super) const RIGHT: usize = 7;
+pub(super) const WIDTH: usize = 8;
 
 /// A body that takes part in a contact besides chassis and shoe.
 #[derive(Clone, Copy)]
@@ -54,10 +49,10 @@ impl Beside {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Entry {
     pub(super) own: Matrix3<f64>,
-    /// Its rows in the columns of chassis, drive and idler, and the right-hand side.
-    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
-    /// Rows of chassis, drive and idler in its columns.
-    pub(super) below: SMatrix<f64, BESIDE, 3>,
+    /// Its rows in the columns of the border, and the right-hand side; each is a column here.
+    pub(super) beside: SMatrix<f64, WIDTH, 3>,
+    /// Rows of the border in its columns.
+    pub(super) below: SMatrix<f64, WIDTH, 3>,
 }
 
 /// How a pin holds its two shoes.
@@ -70,39 +65,16 @@ pub(super) struct Joint {
     pub(super) speed: Vector2<f64>,
 }
 
-/// The velocity of a shoe after its elimination.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Solved {
-    /// In terms of chassis, drive and idler, and its constant part, both with opposite sign as in the equations.
-    pub(super) beside: SMatrix<f64, 3, WIDTH_OF_SHOE>,
-    /// Per impulse of the pin in front and of the pin behind.
-    pub(super) pins: [SMatrix<f64, 3, 2>; 2],
-}
-
-/// The rows of a pin, and its columns, after the elimination of the shoes.
-#[derive(Clone, Copy, Default)]
-pub(super) struct PinEntry {
-    pub(super) own: Matrix2<f64>,
-    /// Its rows in the columns of the next pin, and the next pin's rows in its own.
-    pub(super) next: Matrix2<f64>,
-    pub(super) back: Matrix2<f64>,
-    /// Its rows in the columns of the border, and the right-hand side.
-    pub(super) beside: SMatrix<f64, 2, WIDTH>,
-    /// Rows of the border in its columns.
-    pub(super) below: SMatrix<f64, BORDER, 2>,
-}
-
 /// The system of one chain.
 pub(super) struct ChainSystem {
     pub(super) shoes: Vec<Entry>,
     /// The shoes in this step without constraints.
     pub(super) bare: Vec<Entry>,
     pub(super) joints: Vec<Joint>,
-    pub(super) freed: Vec<Solved>,
-    pub(super) pins: Vec<PinEntry>,
-    /// Columns of the next pin and of the border after the pin's own have been eliminated.
-    pub(super) solved: Vec<(Matrix2<f64>, SMatrix<f64, 2, WIDTH>)>,
-    pub(super) border: SMatrix<f64, BORDER, WIDTH>,
+    /// What the elimination keeps of each shoe but the last, and of that one: its velocity in terms of the border.
+    pub(super) solved: Vec<Solved>,
+    pub(super) last: SMatrix<f64, WIDTH, 3>,
+    pub(super) border: SMatrix<f64, WIDTH, WIDTH>,
     /// [N s] Impulse of each pin on the next shoe.
     pub(super) impulses: Vec<Vector2<f64>>,
 }
@@ -113,9 +85,8 @@ impl ChainSystem {
             shoes: vec![Entry::default(); count],
             bare: vec![Entry::default(); count],
             joints: vec![Joint::default(); count],
-            freed: vec![Solved::default(); count],
-            pins: vec![PinEntry::default(); count],
-            solved: vec![Default::default(); count],
+            solved: vec![Solved::default(); count],
+            last: SMatrix::zeros(),
             border: SMatrix::zeros(),
             impulses: vec![Vector2::zeros(); count],
         }
@@ -128,7 +99,7 @@ impl ChainSystem {
             *bare = Entry::default();
             bare.own.set_diagonal(&masses);
             let momentum = masses.component_mul(&Vector3::from(twist.entries()));
-            bare.beside.set_column(OF_SHOE, &momentum);
+            bare.beside.set_row(RIGHT, &momentum.transpose());
         }
     }
 
@@ -179,8 +150,8 @@ impl ChainSystem {
         let entry = &mut self.shoes[shoe];
         let [force, action] = rows.map(Vector3::from);
         entry.own += force * action.transpose() * damper.stiffness;
-        let mut right = entry.beside.column_mut(OF_SHOE);
-        right += force * damper.at(0.0);
+        let mut right = entry.beside.row_mut(RIGHT);
+        right += force.transpose() * damper.at(0.0);
     }
 
     /// Adds a constraint between a shoe and the chassis with idler or sprocket; `back` holds three entries for the
@@ -202,7 +173,7 @@ impl ChainSystem {
                 self.border[(there, at)] += stiffness * back_force[k] * action_there;
             }
             for k in 0..3 {
-                entry.beside[(k, at)] += stiffness * force[k] * action_there;
+                entry.beside[(at, k)] += stiffness * force[k] * action_there;
                 entry.below[(at, k)] += force_there * action[k];
             }
             self.border[(at, RIGHT)] += back_force[i] * impulse;
@@ -213,7 +184,7 @@ impl ChainSystem {
     pub(super) fn add_drive(&mut self, shoe: usize, on_shoe: [f64; 3], on_chassis: [f64; 3]) {
         let entry = &mut self.shoes[shoe];
         for i in 0..3 {
-            entry.beside[(i, DRIVE)] += on_shoe[i];
+            entry.beside[(DRIVE, i)] += on_shoe[i];
             entry.below[(DRIVE, i)] += on_shoe[i];
             self.border[(CHASSIS + i, DRIVE)] += on_chassis[i];
             self.border[(DRIVE, CHASSIS + i)] += on_chassis[i];
@@ -253,7 +224,7 @@ impl ChainSystem {
         impulse: f64,
     ) {
         for i in 0..3 {
-            self.shoes[shoe].beside[(i, OF_SHOE)] += on_shoe[i] * impulse;
+            self.shoes[shoe].beside[(RIGHT, i)] += on_shoe[i] * impulse;
             self.border[(CHASSIS + i, RIGHT)] += on_chassis[i] * impulse;
         }
     }
