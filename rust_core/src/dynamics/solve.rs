@@ -42,13 +42,16 @@ impl Dynamics {
     /// Searches for them; returns whether they agree.
     fn search(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.set_actions(state, phase);
-        if self.chains.is_empty() {
-            // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
-            (0..self.solver.iterations.unwrap_or(ITERATIONS))
-                .any(|_| self.solve_at_once(state, phase) || self.descend(state, phase))
-        } else {
-            self.solve_in_steps(state, phase) || self.descend(state, phase)
-        }
+        let has_chains = !self.chains.is_empty();
+        // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
+        (0..self.solver.iterations.unwrap_or(ITERATIONS)).any(|_| {
+            let agrees = if has_chains {
+                self.solve_in_steps(state, phase)
+            } else {
+                self.solve_at_once(state, phase)
+            };
+            agrees || self.descend(state, phase)
+        })
     }
 
     /// Keeps all directions as they are in the middle of the step: contacts that jam cannot all open or slide as the
