@@ -7,7 +7,7 @@
 //! The equations: docs/physics.md, "Contacts".
 
 use super::Contact;
-use super::lane::{Lane, On, Touch};
+use super::lane::{Lane, On, Region, Touch};
 use super::overlap::{self, Tip};
 use super::reach::thin_out;
 use crate::geometry::{Disc, Gear, Pose, Rotation, Vector, direction, right_of};
@@ -103,7 +103,7 @@ impl GearContact {
             // If the centre is past a face, that face is the far side of something thin.
             let (reach, radius) = ((prediction, 0.0), self.gear.root_radius);
             let first = contacts.len();
-            lane.touches_of_disc(center, radius, reach, |touch| {
+            lane.touches_of_disc(&region, center, radius, reach, |touch| {
                 if self.is_between_grousers(turned.inverse() * -touch.normal) {
                     contacts.push(touch.contact(self.part));
                 }
@@ -123,7 +123,7 @@ impl GearContact {
                 corners: self.grouser.corners.map(|p| center + axis.rotate(p)),
                 normals: self.grouser.normals.map(|n| axis.rotate(n)),
             };
-            self.find_tips(lane, &grouser, prediction, contacts);
+            self.find_tips((lane, &region), &grouser, prediction, contacts);
             if corners_stand_out {
                 self.find_runs(lane, &grouser, prediction, contacts);
             }
@@ -133,14 +133,14 @@ impl GearContact {
     /// Adds the contacts of the tip corners on the ground.
     fn find_tips(
         &self,
-        lane: &Lane,
+        (lane, region): (&Lane, &Region),
         grouser: &Grouser,
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
         for tip in [grouser.tip(1), grouser.tip(2)] {
             let (reach, first) = ((prediction, self.height()), contacts.len());
-            lane.touches_of_disc(tip.place, 0.0, reach, |touch| {
+            lane.touches_of_disc(region, tip.place, 0.0, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real =
                     touch.distance >= 0.0 || lane.holds(tip.place) || grouser.holds(touch.place);

@@ -92,7 +92,9 @@ impl OwnContact {
                 } => {
                     let (center, radius) = (pose.transform_point(*center), *radius);
                     let (reach, first) = ((prediction, SHALLOW), contacts.len());
-                    lane.touches_of_disc(center, radius, reach, |touch| {
+                    let far = radius + prediction;
+                    let region = lane.region(center.x - far, center.x + far);
+                    lane.touches_of_disc(&region, center, radius, reach, |touch| {
                         contacts.push(touch.contact(*part));
                     });
                     thin_out(contacts, first, lane, &Disc { center, radius }, prediction);

@@ -94,7 +94,7 @@ impl HullContact {
         // A part that is fast enough to be found from far away may be this deep in the middle of a step.
         let reach = (prediction, SHALLOW.max(prediction));
         for arc in &self.arcs {
-            lane.touches_of_disc(center(arc), arc.disc.radius, reach, |touch| {
+            lane.touches_of_disc(&region, center(arc), arc.disc.radius, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
                 let is_real = touch.distance >= -SHALLOW
                     || lane.holds(center(arc) - touch.normal * arc.disc.radius);
@@ -127,6 +127,9 @@ impl HullContact {
         prediction: f64,
         contacts: &mut Vec<Contact>,
     ) {
+        if !lane.may_stand_out(region) {
+            return;
+        }
         let may_bear = |stretch: &Stretch| self.may_bear(stretch, pose, prediction);
         let mut meet = |i: usize| {
             let touch = self.corner_in_hull(i, lane.corner(i), pose, prediction);

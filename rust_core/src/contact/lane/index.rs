@@ -188,6 +188,21 @@ impl Index {
         Region(first..end.max(first + 1))
     }
 
+    /// The same, of the pieces of a region.
+    pub(super) fn narrow(&self, within: &Region, low: f64, high: f64) -> Region {
+        if within.is_long() {
+            return self.region(low, high);
+        }
+        let Range { mut start, mut end } = within.0;
+        while start + 1 < end && self.begins[start + 1] < low {
+            start += 1;
+        }
+        while start + 1 < end && self.begins[end - 1] > high {
+            end -= 1;
+        }
+        Region(start..end)
+    }
+
     /// A region's corners left of a range of x, in it and right of it; neighbouring regions share a corner.
     pub(super) fn split(&self, region: &Region, low: f64, high: f64) -> [Region; 3] {
         let Range { start, end } = region.0;

@@ -100,17 +100,20 @@ impl Lane {
         region.is_long() || region.corners().any(|i| self.corners[i].stands_out)
     }
 
-    /// Finds everything that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
+    /// Finds everything in a region that a disc bears on with a gap below `prediction`; a corner of a part is a disc of
     /// radius 0. Ground more than `depth` [m] above the centre did not get there by sinking in.
     pub(super) fn touches_of_disc(
         &self,
+        within: &Region,
         center: Vector,
         radius: f64,
         (prediction, depth): (f64, f64),
         mut found: impl FnMut(Touch),
     ) {
         let reach = radius + prediction;
-        let mut region = self.region(center.x - reach, center.x + reach);
+        let mut region = self
+            .index
+            .narrow(within, center.x - reach, center.x + reach);
         if region.is_long() {
             // If all of the ground lies below the centre, only part of the region is near.
             let room = (center.y - self.top(&region)).max(0.0);
@@ -118,7 +121,7 @@ impl Lane {
                 return;
             }
             let half = (reach * reach - room * room).sqrt();
-            region = self.region(center.x - half, center.x + half);
+            region = self.index.narrow(&region, center.x - half, center.x + half);
         }
         self.index.visit(
             &region,

@@ -79,7 +79,9 @@ fn the_index_finds_what_looking_at_every_piece_finds() {
                 let center = Vector::new(x, top + draw.between(-1e-3, 1.2 * prediction));
                 let reach = (prediction, draw.between(0.0, prediction));
                 let mut touches = Vec::new();
-                lane.touches_of_disc(center, radius, reach, |t| touches.push(t));
+                let ends = [-1.0, 1.0].map(|side| center.x + side * (radius + prediction));
+                let region = lane.region(ends[0], ends[1]);
+                lane.touches_of_disc(&region, center, radius, reach, |t| touches.push(t));
                 let slow = touches_one_by_one(&lane, center, radius, reach);
                 // A face farther away than this was not sunk into.
                 let reaches = |t: &Touch| match t.on {

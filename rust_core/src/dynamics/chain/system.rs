@@ -68,8 +68,8 @@ pub(super) struct Joint {
 /// The system of one chain.
 pub(super) struct ChainSystem {
     pub(super) shoes: Vec<Entry>,
-    /// The shoes in this step without constraints.
-    pub(super) bare: Vec<Entry>,
+    /// Masses, inertia and momentum of the shoes in this step without constraints.
+    free: Vec<[Vector3<f64>; 2]>,
     pub(super) joints: Vec<Joint>,
     /// What the elimination keeps of each shoe but the last, and of that one: its velocity in terms of the border.
     pub(super) solved: Vec<Solved>,
@@ -83,7 +83,7 @@ impl ChainSystem {
     pub(super) fn new(count: usize) -> Self {
         Self {
             shoes: vec![Entry::default(); count],
-            bare: vec![Entry::default(); count],
+            free: vec![Default::default(); count],
             joints: vec![Joint::default(); count],
             solved: vec![Solved::default(); count],
             last: SMatrix::zeros(),
@@ -94,12 +94,9 @@ impl ChainSystem {
 
     /// Sets up shoes of a mass, and inertias, with their velocities without constraints.
     pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[Twist]) {
-        for ((bare, inertia), twist) in self.bare.iter_mut().zip(inertias).zip(free) {
+        for ((own, inertia), twist) in self.free.iter_mut().zip(inertias).zip(free) {
             let masses = Vector3::new(mass, mass, *inertia);
-            *bare = Entry::default();
-            bare.own.set_diagonal(&masses);
-            let momentum = masses.component_mul(&Vector3::from(twist.entries()));
-            bare.beside.set_row(RIGHT, &momentum.transpose());
+            *own = [masses, masses.component_mul(&Vector3::from(twist.entries()))];
         }
     }
 
@@ -136,9 +133,13 @@ impl ChainSystem {
         }
     }
 
-    /// Starts from the bare shoes and an idler on a damper.
+    /// Starts from the shoes without constraints and an idler on a damper.
     pub(super) fn start(&mut self, idler: Damper) {
-        self.shoes.copy_from_slice(&self.bare);
+        for (shoe, [masses, momentum]) in self.shoes.iter_mut().zip(&self.free) {
+            *shoe = Entry::default();
+            shoe.own.set_diagonal(masses);
+            shoe.beside.set_row(RIGHT, &momentum.transpose());
+        }
         self.border = SMatrix::zeros();
         self.border[(DRIVE, DRIVE)] = 1.0;
         self.border[(IDLER, IDLER)] = idler.stiffness;
