@@ -170,7 +170,7 @@ def drawn_solver(draw: Draw, longest: float, track: Track) -> tuple[c2d.Solver, 
     solver = c2d.Solver(
         contact="reference" if draw.random() < 0.25 else "own",
         **how,
-        iterations=None if is_chain else draw.whole(1, 1000, (5, 60)),
+        iterations=draw.whole(1, 1000, (1, 8) if is_chain else (5, 60)),
         contact_frequency=draw.size(1.0, 1e5, (300.0, 3000.0)),
         contact_damping_ratio=draw.size(TINY, 100.0, (1.0, 10.0)),
         max_push_speed=draw.size(TINY, 100.0, (0.1, 1.0)),

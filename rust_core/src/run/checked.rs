@@ -95,7 +95,6 @@ impl Checked {
         let scenario = Scenario::read(value)?;
         let robot = &scenario.robot;
         scenario.drive.check(&robot.drivetrain)?;
-        scenario.solver.check(robot)?;
         let twin = other.filter(|other| other.scenario.robot == *robot);
         let built = match twin {
             None => Some(Model::new(robot)?),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::ScenarioError;
 use super::fields::{Fields, Range};
-use super::{Robot, ScenarioError, Track};
 
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,7 +36,7 @@ pub struct Solver {
     /// [s] Length of a step; `None` if its accuracy is given.
     pub time_step: Option<f64>,
     /// Largest number of rounds in the search for forces that satisfy all constraints of a step; each is a few
-    /// guesses and a descent. `None` takes the solver's own. A chain of shoes always has one round of its own kind.
+    /// guesses and a descent. `None` takes the solver's own.
     pub iterations: Option<u32>,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,
@@ -135,20 +135,6 @@ impl Solver {
                 Err(ScenarioError::new("solver.time_step", step, rule))
             }
             _ => Ok(solver),
-        }
-    }
-}
-
-impl Solver {
-    /// Checks that it suits a robot.
-    pub(crate) fn check(&self, robot: &Robot) -> Result<(), ScenarioError> {
-        let is_chain = matches!(robot.track, Track::Segmental(_));
-        match self.iterations {
-            Some(given) if is_chain => {
-                let rule = "must not be given for a chain of shoes, whose solver always takes one round of at most 16 steps";
-                Err(ScenarioError::new("solver.iterations", given, rule))
-            }
-            _ => Ok(()),
         }
     }
 }

@@ -96,7 +96,10 @@ impl ChainSystem {
     pub(super) fn free(&mut self, mass: f64, inertias: &[f64], free: &[Twist]) {
         for ((own, inertia), twist) in self.free.iter_mut().zip(inertias).zip(free) {
             let masses = Vector3::new(mass, mass, *inertia);
-            *own = [masses, masses.component_mul(&Vector3::from(twist.entries()))];
+            *own = [
+                masses,
+                masses.component_mul(&Vector3::from(twist.entries())),
+            ];
         }
     }
 
