@@ -38,6 +38,14 @@ struct Grouser {
 }
 
 impl Grouser {
+    /// The smallest and largest coordinates of its corners [m].
+    fn bounds(&self) -> (Vector, Vector) {
+        let [first, others @ ..] = self.corners;
+        others.iter().fold((first, first), |(low, high), corner| {
+            (low.min(*corner), high.max(*corner))
+        })
+    }
+
     /// Whether a point lies in the grouser.
     fn holds(&self, point: Vector) -> bool {
         let mut sides = self.corners.iter().zip(&self.normals);
@@ -92,13 +100,16 @@ impl GearContact {
         contacts: &mut Vec<Contact>,
     ) {
         let center = pose.transform_point(self.center);
-        let reach = self.gear.radius + prediction;
-        let region = lane.region(center.x - reach, center.x + reach);
-        let room = center.y - lane.top(&region) - prediction;
-        if room > self.gear.radius {
+        let radius = self.gear.radius;
+        if center.y - radius - prediction > lane.highest() {
             return;
         }
-        let turned = pose.rotation * Rotation::new(-drive / self.gear.radius);
+        let region = lane.region_of_runs([center.x - radius, center.x + radius], prediction);
+        let room = center.y - lane.top(&region) - prediction;
+        if room > radius {
+            return;
+        }
+        let turned = pose.rotation * Rotation::new(-drive / radius);
         if room <= self.gear.root_radius {
             // If the centre is past a face, that face is the far side of something thin.
             let (reach, radius) = ((prediction, 0.0), self.gear.root_radius);
@@ -110,7 +121,6 @@ impl GearContact {
             });
             thin_out(contacts, first, lane, &Disc { center, radius }, prediction);
         }
-        let corners_stand_out = lane.may_stand_out(&region);
         let [_, _, tip, base] = self.grouser.corners;
         for along in &self.directions {
             let axis = turned * *along;
@@ -123,9 +133,14 @@ impl GearContact {
                 corners: self.grouser.corners.map(|p| center + axis.rotate(p)),
                 normals: self.grouser.normals.map(|n| axis.rotate(n)),
             };
-            self.find_tips((lane, &region), &grouser, prediction, contacts);
-            if corners_stand_out {
-                self.find_runs(lane, &grouser, prediction, contacts);
+            let (low, high) = grouser.bounds();
+            let near = lane.narrow_of_runs(&region, [low.x, high.x], prediction);
+            if low.y - prediction > lane.top(&near) {
+                continue;
+            }
+            self.find_tips((lane, &near), &grouser, prediction, contacts);
+            if lane.may_stand_out(&near) {
+                self.find_runs((lane, &near), &grouser, prediction, contacts);
             }
         }
     }
@@ -155,7 +170,7 @@ impl GearContact {
     /// Adds the contacts of corners of the ground on the flanks and the tip of a grouser.
     fn find_runs(
         &self,
-        lane: &Lane,
+        (lane, region): (&Lane, &Region),
         grouser: &Grouser,
         prediction: f64,
         contacts: &mut Vec<Contact>,
@@ -168,7 +183,7 @@ impl GearContact {
         {
             let ends = (grouser.corners[i], grouser.corners[i + 1]);
             let outward = grouser.normals[i];
-            lane.touches_of_run(ends, outward, (prediction, depth), |touch| {
+            lane.touches_of_run(region, ends, outward, (prediction, depth), |touch| {
                 // A flank has one end at the tip; the tip itself has two.
                 let mut tips = (i.max(1)..=(i + 1).min(2)).map(|k| grouser.tip(k));
                 let is_real = touch.distance >= 0.0

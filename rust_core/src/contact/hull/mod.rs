@@ -86,6 +86,9 @@ impl HullContact {
             low = low.min(center(arc) - reach);
             high = high.max(center(arc) + reach);
         }
+        if lane.highest() < low.y {
+            return;
+        }
         let region = lane.region(low.x, high.x);
         if lane.top(&region) < low.y {
             return;

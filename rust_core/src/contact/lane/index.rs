@@ -30,8 +30,9 @@ pub(super) struct Index {
     /// Number of pieces that begin before each cell of the table.
     cells: Vec<u32>,
     cells_per_meter: f64,
-    /// [m] Highest point of each piece.
+    /// [m] Highest point of each piece, and of all.
     tops: Vec<f64>,
+    top: f64,
     /// Stretches of `BLOCK` pieces, then of twice as many, and so on up to one of all pieces.
     levels: Vec<Vec<Stretch>>,
     /// [m] Largest radius of the corners' arcs.
@@ -163,11 +164,13 @@ impl Index {
             })
             .collect();
         let pieces = pieces(profile, faces, corners);
+        let tops: Vec<f64> = pieces.iter().map(|piece| piece.high.y).collect();
         Self {
             begins,
             cells,
             cells_per_meter,
-            tops: pieces.iter().map(|piece| piece.high.y).collect(),
+            top: tops.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            tops,
             levels: levels(&pieces, corners),
             largest_radius: corners.iter().map(|c| c.radius).fold(0.0, f64::max),
         }
@@ -181,7 +184,15 @@ impl Index {
     /// The pieces that overlap a range of x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         let first = self.count_before(low).saturating_sub(1);
-        let mut end = self.count_before(high);
+        let mut end = first;
+        // Most ranges have a few pieces, which are counted sooner than looked up.
+        let few = (first + FEW).min(self.begins.len());
+        while end < few && self.begins[end] <= high {
+            end += 1;
+        }
+        if end == few {
+            end = end.max(self.count_before(high));
+        }
         while end < self.begins.len() && self.begins[end] <= high {
             end += 1;
         }
@@ -221,6 +232,11 @@ impl Index {
             None => self.begins.len(),
         };
         from + self.begins[from..to].partition_point(|begin| *begin < x)
+    }
+
+    /// [m] Height of the highest ground.
+    pub(super) fn highest_of_all(&self) -> f64 {
+        self.top
     }
 
     /// [m] An upper bound of the height of a region.

@@ -90,6 +90,11 @@ impl Lane {
         self.index.region(low, high)
     }
 
+    /// [m] Height of the highest ground.
+    pub(super) fn highest(&self) -> f64 {
+        self.index.highest_of_all()
+    }
+
     /// [m] An upper bound of the height of a region.
     pub(super) fn top(&self, region: &Region) -> f64 {
         self.index.top(region)
@@ -211,10 +216,34 @@ impl Lane {
             .then(|| corner.touch(i, normal, far - radius - corner.radius))
     }
 
-    /// Finds every corner that bears on a straight run of a part, from `begin` to `end` counter-clockwise and
+    /// The ground that runs of a part in a range of x may meet with a gap below `prediction`.
+    pub(super) fn region_of_runs(&self, [low, high]: [f64; 2], prediction: f64) -> Region {
+        let margin = self.margin(prediction);
+        self.region(low - margin, high + margin)
+    }
+
+    /// The same, of the ground in a region.
+    pub(super) fn narrow_of_runs(
+        &self,
+        within: &Region,
+        [low, high]: [f64; 2],
+        prediction: f64,
+    ) -> Region {
+        let margin = self.margin(prediction);
+        self.index.narrow(within, low - margin, high + margin)
+    }
+
+    /// [m] How far off a run the corners may be that it meets: the centre of an arc is off its corner by at most its
+    /// radius.
+    fn margin(&self, prediction: f64) -> f64 {
+        prediction + self.index.largest_radius()
+    }
+
+    /// Finds every corner of a region that bears on a straight run of a part, from `begin` to `end` counter-clockwise and
     /// with the normal `outward`, with a gap below `prediction` and a penetration below `depth`.
     pub(super) fn touches_of_run(
         &self,
+        within: &Region,
         (begin, end): (Vector, Vector),
         outward: Vector,
         (prediction, depth): (f64, f64),
@@ -227,9 +256,7 @@ impl Lane {
         let along = left_of(outward);
         let length = (end - begin).dot(along);
         let (low, high) = (begin.x.min(end.x), begin.x.max(end.x));
-        // The centre of an arc is off its corner by at most its radius.
-        let margin = prediction + self.index.largest_radius();
-        let region = self.region(low - margin, high + margin);
+        let region = self.narrow_of_runs(within, [low, high], prediction);
         self.visit_corners_below_run(
             &region,
             |stretch| stretch.may_have(-outward),
