@@ -5,19 +5,12 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix2x3, SVector, Vector3};
 
-use super::system::{CHASSIS, CLOSING, ChainSystem, DRIVE, Entry, IDLER, Joint, RIGHT, WIDTH};
+use super::system::{
+    CHASSIS, CLOSING, ChainSystem, DRIVE, Entry, IDLER, Joint, RIGHT, Solved, WIDTH,
+};
 use crate::dynamics::state::Twist;
-
-/// What follows from the velocity of a shoe's pin in front, and from the border.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Solved {
-    /// Its turn ...
-    turn: (RowVector2<f64>, SVector<f64, WIDTH>),
-    /// ... and the impulse of the pin on it.
-    impulse: (Matrix2<f64>, SMatrix<f64, WIDTH, 2>),
-}
 
 impl ChainSystem {
     /// Reduces the system to the chassis, adding the chain's part to the chassis' rows. None if the constraints

@@ -8,9 +8,8 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, RowVector2, SMatrix, SVector, Vector2, Vector3};
 
-use super::elimination::Solved;
 use super::pin::Pin;
 use crate::dynamics::damper::Damper;
 use crate::dynamics::state::Twist;
@@ -63,6 +62,15 @@ pub(super) struct Joint {
     pub(super) pushes: [Matrix2x3<f64>; 2],
     /// [m/s] Its speed.
     pub(super) speed: Vector2<f64>,
+}
+
+/// What follows for a shoe, once eliminated, from the velocity of its pin in front and from the border.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Solved {
+    /// Its turn ...
+    pub(super) turn: (RowVector2<f64>, SVector<f64, WIDTH>),
+    /// ... and the impulse of the pin on it.
+    pub(super) impulse: (Matrix2<f64>, SMatrix<f64, WIDTH, 2>),
 }
 
 /// The system of one chain.
