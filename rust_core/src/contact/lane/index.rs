@@ -184,17 +184,14 @@ impl Index {
     /// The pieces that overlap a range of x.
     pub(super) fn region(&self, low: f64, high: f64) -> Region {
         let first = self.count_before(low).saturating_sub(1);
-        let mut end = first;
         // Most ranges have a few pieces, which are counted sooner than looked up.
-        let few = (first + FEW).min(self.begins.len());
-        while end < few && self.begins[end] <= high {
-            end += 1;
-        }
-        if end == few {
+        let few = self.begins[first..].iter().take(FEW);
+        let mut end = first + few.take_while(|begin| **begin <= high).count();
+        if end == first + FEW {
             end = end.max(self.count_before(high));
-        }
-        while end < self.begins.len() && self.begins[end] <= high {
-            end += 1;
+            while end < self.begins.len() && self.begins[end] <= high {
+                end += 1;
+            }
         }
         Region(first..end.max(first + 1))
     }
