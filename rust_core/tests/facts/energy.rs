@@ -100,12 +100,20 @@ fn unpowered_robots_never_gain_energy() {
     }
 }
 
-/// With `CRAWLER2D_SOAK` two thousand robots.
+/// With `CRAWLER2D_SOAK` two thousand robots of each of two seeds.
 #[test]
 fn drawn_robots_gain_no_more_than_their_motors_give() {
-    let seed = 97;
-    let soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
-    let (mut draw, cases) = (Draw(seed), if soak { 2000 } else { 100 });
+    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
+        for seed in [97, 1234] {
+            drawn_robots_gain_no_more(seed, 2000);
+        }
+    } else {
+        drawn_robots_gain_no_more(97, 100);
+    }
+}
+
+fn drawn_robots_gain_no_more(seed: u64, cases: u32) {
+    let mut draw = Draw(seed);
     let (mut chains, mut grousers, mut arms, mut most) = (0, 0, 0, 0.0_f64);
     for case in 0..cases {
         let scenario = drawn(&mut draw);
