@@ -106,6 +106,10 @@ VARIANTS = {
     "hybrid-gap": Scenario(
         ROBOT.with_track(c2d.HybridWheels(PLACEMENTS)), c2d.terrains.gap(0.1, edge_radius=0.005)
     ),
+    "closed-barrier": Scenario(
+        ROBOT.with_track(c2d.ClosedTrack(c2d.LineOfWheels(4, wheel=GEAR))),
+        c2d.terrains.barrier(0.06, 0.08),
+    ),
     "force-stairs": Scenario(
         ROBOT.with_track(c2d.ForceTrack(support="wheels")),
         c2d.terrains.stairs(rise=0.05, edge_radius=0.005),

@@ -28,6 +28,7 @@ from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
 from crawler2d.parameters.track import (
     BeltTrack,
     CircumferentialWheels,
+    ClosedTrack,
     ForceTrack,
     GearWheel,
     GrouserBeltTrack,
@@ -57,6 +58,7 @@ __all__ = [
     "BodyKind",
     "CircumferentialWheels",
     "Climb",
+    "ClosedTrack",
     "Crawler2dError",
     "Diagnosis",
     "Drive",

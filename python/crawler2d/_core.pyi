@@ -48,7 +48,12 @@ class Simulation:
     def time(self) -> float: ...
 
 def branch(
-    text: str, at: float, variant: str, sample_interval: float, record: str
+    text: str,
+    at: float,
+    variant: str,
+    push: tuple[float, float],
+    sample_interval: float,
+    record: str,
 ) -> dict[str, Any]: ...
 def build_info() -> dict[str, str | int]: ...
 def canonical(text: str) -> str: ...

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 mod _core {
     use std::sync::Mutex;
 
-    use crawler2d_core::{Cancel, Checked, Error, Progress, Record, Run};
+    use crawler2d_core::{Cancel, Checked, ClosedSurface, Error, Progress, Record, Run};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -157,6 +157,7 @@ mod _core {
         text: PyBackedStr,
         at: f64,
         variant: PyBackedStr,
+        push: (f64, f64),
         sample_interval: f64,
         record: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -166,7 +167,7 @@ mod _core {
         let run = beside(py, &cancel, move || {
             let scenario = Checked::from_json(&text)?;
             let variant = Checked::from_json_like(&variant, Some(&scenario))?;
-            crawler2d_core::branch(&scenario, at, &variant, record, &asked)
+            crawler2d_core::branch(&scenario, at, (&variant, push), record, &asked)
         })?;
         convert::run(py, run)
     }
@@ -182,7 +183,12 @@ mod _core {
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let found = beside(py, &cancel, move || {
-            crawler2d_core::counterfactual(&Checked::from_json(&text)?, at, grousers, &asked)
+            let surface = if grousers {
+                ClosedSurface::Own
+            } else {
+                ClosedSurface::Smooth
+            };
+            crawler2d_core::counterfactual(&Checked::from_json(&text)?, at, surface, &asked)
         })?;
         diagnosis::counterfactual(py, &found)
     }

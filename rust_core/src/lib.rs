@@ -47,11 +47,11 @@ pub use run::{
     counterfactual, poses, simulate, simulate_many,
 };
 pub use scenario::{
-    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ContactMethod, Doubt, Drive,
-    Drivetrain, End, Ends, FieldPattern, Flippers, ForceSupport, ForceTrack, Gait, GearWheel,
-    GrouserBeltTrack, Hold, HybridWheels, LineOfWheels, MAX_POINTS, Robot, SCHEMA, Scenario,
-    ScenarioError, SegmentalTrack, SeizureCriteria, ShoeShape, Solver, Start, Stepfield, Terrain,
-    TorqueSharing, Track, TrackOutline, Wheel,
+    BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,
+    ContactMethod, Doubt, Drive, Drivetrain, End, Ends, FieldPattern, Flippers, ForceSupport,
+    ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels, MAX_POINTS,
+    Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria, ShoeShape, Solver,
+    Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -120,6 +120,76 @@ def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
     assert abs(standing.metrics["distance"]) < 0.1
 
 
+def test_more_torque_changes_nothing_else() -> None:
+    """The state goes on bit by bit: with the same torque given anew, so does the run."""
+    run = c2d.simulate(CLEARING.replace({"robot.drivetrain.max_torque": 1.0}))
+    assert run.outcome is c2d.Outcome.STALLED
+    same = run.branch(max_torque=1.0, duration=1.0)
+    rest = run.branch(duration=1.0)
+    assert np.array_equal(same.position, rest.position)
+    strong = run.branch(max_torque=20.0)
+    assert strong.scenario.robot.drivetrain.max_torque == 20.0
+    assert strong.outcome is c2d.Outcome.CLEARED
+    a_little = run.branch(max_torque=1.0 + 1e-9, duration=1.0)
+    assert np.abs(a_little.position - rest.position).max() < 1e-7
+
+
+def test_the_belly_can_be_taken_off() -> None:
+    """A blade between the tracks stops the belly alone."""
+    flat, blade = c2d.terrains.flat(), c2d.terrains.knife_edge(0.06)
+    lanes = c2d.terrains.lanes(flat, flat, middle=blade)
+    run = c2d.simulate(c2d.Scenario(ROBOT, lanes, goal=1.0))
+    assert run.outcome in (c2d.Outcome.HUNG_UP, c2d.Outcome.SLIPPING)
+    assert (run.contacts["body_kind"] == c2d.BodyKind.BELLY).any()
+    off = run.branch(belly=None)
+    assert off.scenario.robot.belly is None
+    assert np.array_equal(off.position[0], run.position[-1])
+    assert not (off.contacts["body_kind"] == c2d.BodyKind.BELLY).any()
+    assert off.outcome is c2d.Outcome.CLEARED
+    on = run.branch(belly=ROBOT.belly, duration=1.0)
+    assert np.array_equal(on.position, run.branch(duration=1.0).position)
+
+
+def test_a_push_rises_evenly_to_its_force() -> None:
+    """On ice the speed is the impulse over the mass: half the force while it rises, then all."""
+    ice = c2d.Scenario(ROBOT, c2d.terrains.flat(friction=0.0), drive=c2d.Drive(speed=0.0))
+    run = c2d.simulate(ice, duration=1.0)
+    force, rise = 8.0, 0.5
+    pushed = run.branch(at=0.5, push=(force, rise), duration=1.0)
+    time = pushed.time - pushed.time[0]
+    impulse = np.where(time < rise, 0.5 * force * time**2 / rise, force * (time - 0.5 * rise))
+    # Within a step the force is its mean: half a step on, its impulse is off by an eighth of h^2.
+    off = force / rise * LONGEST_STEP**2 / 8.0 / ROBOT.mass
+    assert pushed.velocity[:, 0] == pytest.approx(impulse / ROBOT.mass, abs=off)
+    assert pushed.velocity[-1, 0] == pytest.approx(impulse[-1] / ROBOT.mass, abs=1e-9)
+
+
+def test_a_braked_robot_holds_a_push_up_to_its_friction() -> None:
+    stands = c2d.Scenario(ROBOT, c2d.terrains.flat(friction=0.5), drive=c2d.Drive(speed=0.0))
+    strong = stands.replace({"robot.drivetrain.max_torque": 100.0})
+    run = c2d.simulate(strong, duration=0.5)
+    limit = 0.5 * ROBOT.mass * strong.gravity
+    for share, slides in ((0.98, False), (1.02, True)):
+        pushed = run.branch(at=0.2, push=(share * limit, 0.5), duration=2.0)
+        assert (pushed.metrics["distance"] > 1e-3) == slides
+
+
+def test_its_own_track_can_be_closed(seized: c2d.Run) -> None:
+    closed = seized.branch(track="closed", duration=4.0)
+    assert closed.scenario.robot.track == c2d.ClosedTrack(c2d.LineOfWheels(4))
+    assert closed.outcome is c2d.Outcome.CLEARED
+
+
+def test_an_unchanged_command_goes_on_where_it_is() -> None:
+    """A schedule that has changed the speed before does not begin again."""
+    drive = c2d.Drive(speed=0.1, schedule=((0.5, 0.3),))
+    run = c2d.simulate(c2d.Scenario(ROBOT, c2d.terrains.flat(), drive=drive, duration=4.0))
+    branch = run.branch(at=3.0, duration=0.5)
+    assert branch.commanded_speed[-1] == pytest.approx(0.3)
+    slower = run.branch(at=3.0, drive=c2d.Drive(speed=0.1), duration=1.0)
+    assert slower.commanded_speed[-1] == pytest.approx(0.1)
+
+
 def test_a_branch_can_keep_its_summary_alone(seized: c2d.Run) -> None:
     whole = seized.branch(at=1.0, duration=1.0, sample_interval=0.05)
     assert np.diff(whole.time)[1:-1] == pytest.approx(0.05)
@@ -197,6 +267,13 @@ def test_a_run_without_a_result_is_not_branched() -> None:
         ({"friction": "0.5"}, "terrain.friction"),
         ({"drive": 0.4}, "drive"),
         ({"drive": c2d.Drive(speed=9.0)}, "drive.speed"),
+        ({"max_torque": -1.0}, "robot.drivetrain.max_torque"),
+        ({"belly": [(0, 0), (1, 0)]}, "robot.belly"),
+        ({"push": 5.0}, "push"),
+        ({"push": (5.0,)}, "push"),
+        ({"push": (math.nan, 1.0)}, "push"),
+        ({"push": (1e7, 1.0)}, "push"),
+        ({"push": (5.0, -1.0)}, "push.rise_time"),
         ({"duration": -1.0}, "duration"),
         ({"duration": math.inf}, "duration"),
         ({"sample_interval": 0.0}, "sample_interval"),

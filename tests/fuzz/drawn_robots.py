@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import crawler2d as c2d
-from crawler2d.parameters.track import Track
+from crawler2d.parameters.track import OpenTrack, Track
 
 TINY = 1e-20
 """Low end of what is drawn where any number above 0 is legal."""
@@ -110,7 +110,7 @@ def drawn_chain(draw: Draw, outline: c2d.TrackOutline) -> c2d.SegmentalTrack:
     )
 
 
-def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) -> Track:
+def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) -> OpenTrack:
     """Any model; an arm's has no chain of shoes."""
     smallest, half = smallest_end(outline), 0.5 * outline.axle_distance
     radius = draw.size(1e-3, max(1e-3, 0.999 * smallest), (0.3 * smallest, 0.9 * smallest))
@@ -121,14 +121,14 @@ def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) 
         x, y = draw.signed(100.0, half), draw.signed(100.0, smallest)
         return x, y, draw.size(1e-3, 100.0, (radius, radius))
 
-    def force() -> Track:
+    def force() -> OpenTrack:
         friction = draw.size_or_zero(1e-12, 100.0, (0.05, 1.0))
         count = draw.whole(2, 200, (2, 9))
         return c2d.ForceTrack(
             support=draw.choice(("skids", "wheels")), skid_friction=friction, wheel_count=count
         )
 
-    wheels: tuple[Callable[[], Track], ...] = (
+    wheels: tuple[Callable[[], OpenTrack], ...] = (
         lambda: c2d.LineOfWheels(draw.whole(2, 200, (2, 12)), wheel_radius=given, wheel=wheel),
         lambda: c2d.CircumferentialWheels(
             draw.whole(3, 200, (6, 40)), wheel_radius=draw.maybe(0.7, radius), wheel=wheel
@@ -137,13 +137,13 @@ def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) 
             tuple(placed() for _ in range(draw.whole(1, 200, (2, 9)))), wheel=wheel
         ),
     )
-    belts: tuple[Callable[[], Track], ...] = (
+    belts: tuple[Callable[[], OpenTrack], ...] = (
         lambda: c2d.BeltTrack(),  # noqa: PLW0108 - typed so
         lambda: c2d.GrouserBeltTrack(
             grouser_count=draw.maybe_whole(0.6, draw.whole(1, 200, (3, 40)))
         ),
     )
-    of_robots: tuple[Callable[[], Track], ...] = (
+    of_robots: tuple[Callable[[], OpenTrack], ...] = (
         *(wheels[0], force),
         *(lambda: drawn_chain(draw, outline),) * 2,
     )
@@ -218,6 +218,7 @@ def drawn_robot(draw: Draw) -> c2d.Robot:
     own = flippers.track if flippers else None
     share = wheels and isinstance(own, of_wheels) and draw.random() < 0.5
     weight = 10.0 * mass * radius
+    closed = draw.random() < 0.08
     return c2d.Robot(
         "drawn",
         mass=mass,
@@ -235,5 +236,5 @@ def drawn_robot(draw: Draw) -> c2d.Robot:
             max_torque=draw.size_or_zero(1e-12, 1e6, (0.01 * weight, 5.0 * weight)),
             torque_sharing="wheel" if share else "track",
         ),
-        track=track,
+        track=c2d.ClosedTrack(track, surface=draw.choice(("own", "smooth"))) if closed else track,
     )

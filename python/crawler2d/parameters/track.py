@@ -14,6 +14,7 @@ from crawler2d.parameters.plain import Parameters
 __all__ = [
     "BeltTrack",
     "CircumferentialWheels",
+    "ClosedTrack",
     "ForceTrack",
     "GearWheel",
     "GrouserBeltTrack",
@@ -311,7 +312,7 @@ class ForceTrack(Parameters):
     wheel_count: int = 5
 
 
-Track = (
+OpenTrack = (
     LineOfWheels
     | CircumferentialWheels
     | HybridWheels
@@ -320,4 +321,45 @@ Track = (
     | SegmentalTrack
     | ForceTrack
 )
+"""Any track model that can be closed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedTrack(Parameters):
+    """A belt closed round the bodies of another model: what that model would be without pockets.
+
+    It is taut round the circumscribed circles of the bodies, on the chassis and on every arm, and
+    has all of their mass and motor force. Where `BeltTrack` follows the robot's outline, this
+    follows the model: on an arm of smaller wheels, or round wheels placed by hand. A belly that
+    lies inside it is covered.
+
+    Parameters
+    ----------
+    of : track model
+        The model round whose bodies it runs; not a closed one.
+    surface : {"own", "smooth"}
+        "own": grousers where the model has some, as high as the model's, as thick and as far apart
+        as the outline's, within the same circles. "smooth": none.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> wheels = c2d.LineOfWheels(4)
+    >>> robot = c2d.robots.engineer(flippers=None, track=wheels)
+    >>> str(c2d.simulate(robot, c2d.terrains.step(0.08)).outcome)
+    'seized'
+    >>> closed = robot.with_track(c2d.ClosedTrack(wheels))
+    >>> str(c2d.simulate(closed, c2d.terrains.step(0.08)).outcome)
+    'cleared'
+    """
+
+    kind: ClassVar[str] = "closed"
+    place: ClassVar[str] = "robot.track"
+
+    of: OpenTrack
+    _: KW_ONLY
+    surface: Literal["own", "smooth"] = "own"
+
+
+Track = OpenTrack | ClosedTrack
 """Any track model."""

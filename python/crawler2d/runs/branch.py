@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
+from crawler2d.parameters.track import ClosedTrack
 from crawler2d.results.findings import Counterfactual
 from crawler2d.runs.recording import Recording, recording, yes_or_no
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from crawler2d.parameters.scenario import Scenario
+    from crawler2d.parameters.settings import Drive
+    from crawler2d.parameters.track import Track
     from crawler2d.results.record import Record
 
 __all__ = ["branch_scenario", "branch_time", "simulate_branch", "try_belt"]
@@ -38,24 +43,55 @@ def branch_time(run: Record, at: float | str) -> float:
     return time
 
 
-def branch_scenario(run: Record, changes: dict[str, Any]) -> Scenario:
+def branch_scenario(
+    run: Record,
+    *,
+    track: Track | Literal["closed"] | None,
+    friction: float | None,
+    max_torque: float | None,
+    belly: ArrayLike | Literal["built"] | None,
+    drive: Drive | None,
+    duration: float | None,
+) -> Scenario:
     """Change the given fields of a run's scenario."""
-    paths = {
-        "track": "robot.track",
-        "friction": "terrain.friction",
-        "drive": "drive",
-        "duration": "duration",
+    changes = {
+        "robot.track": _closed(run.scenario.robot.track) if track == "closed" else track,
+        "terrain.friction": friction,
+        "robot.drivetrain.max_torque": max_torque,
+        "drive": drive,
+        "duration": duration,
     }
-    given = {paths[name]: value for name, value in changes.items() if value is not None}
+    given: dict[str, Any] = {path: value for path, value in changes.items() if value is not None}
+    if not (isinstance(belly, str) and belly == "built"):
+        given["robot.belly"] = belly
     return run.scenario.replace(given)
 
 
+def _closed(track: Track) -> ClosedTrack:
+    return track if isinstance(track, ClosedTrack) else ClosedTrack(track)
+
+
 def simulate_branch(
-    run: Record, time: float, variant: Scenario, record: Recording, sample_interval: float
+    run: Record,
+    time: float,
+    variant: Scenario,
+    *,
+    push: tuple[float, float] | None,
+    record: Recording,
+    sample_interval: float,
 ) -> dict[str, Any]:
     """Repeat the run up to a time, and continue as another scenario."""
     recorded = recording(sample_interval, record)
-    return _core.branch(run.scenario.to_json(), time, variant.to_json(), *recorded)
+    return _core.branch(run.scenario.to_json(), time, variant.to_json(), _pushed(push), *recorded)
+
+
+def _pushed(push: tuple[float, float] | None) -> tuple[float, float]:
+    """Read a force and the time in which it rises; none is a force of 0."""
+    if push is None:
+        return 0.0, 0.0
+    if not isinstance(push, tuple) or len(push) != 2:
+        raise ScenarioError("push", push, "must be a tuple of a force and a time")
+    return real_number(push[0], "push"), real_number(push[1], "push.rise_time")
 
 
 def try_belt(run: Record, time: float, grousers: bool) -> Counterfactual:

@@ -124,9 +124,12 @@ class Run(Record):
         self,
         at: float | Literal["stop"] = "stop",
         *,
-        track: Track | None = None,
+        track: Track | Literal["closed"] | None = None,
         friction: float | None = None,
+        max_torque: float | None = None,
+        belly: ArrayLike | Literal["built"] | None = "built",
         drive: Drive | None = None,
+        push: tuple[float, float] | None = None,
         duration: float | None = None,
         record: Recording = "full",
         sample_interval: float = 0.01,
@@ -134,20 +137,29 @@ class Run(Record):
         """Continue from an instant of this run with something changed.
 
         The run is repeated bit by bit up to that instant, and continues from the same pose and
-        speeds; what is not changed goes on as before. Ground that is inside the new track is let
-        out without a push: the track is dented there, and the dent heals as the robot moves on.
+        speeds; what is not changed goes on as before. Another torque or friction, a push, or a
+        belly taken off change nothing else. Of another track, only pose and speeds are those of
+        the run: ground that is inside it is let out without a push, the track is dented there, and
+        the dent heals as the robot moves on.
 
         Parameters
         ----------
         at : float or "stop"
             [s] The instant; "stop" is that of the diagnosis. The branch begins with the end of the
             step that reaches it.
-        track : track model, optional
-            Another model of the robot's track.
+        track : track model or "closed", optional
+            Another model of the robot's track; "closed" is `ClosedTrack` of its own.
         friction : float, optional
             [-] Another friction of the ground.
+        max_torque : float, optional
+            [N m] Another torque of one sprocket, see `Drivetrain`.
+        belly : array_like, shape (n, 2), optional
+            [m] Another belly, see `Robot`; None takes it off, "built" leaves it as it is.
         drive : Drive, optional
             Another command.
+        push : tuple of two floats, optional
+            [N], [s] A horizontal force at the centre of mass, above 0 towards +x, and the time in
+            which it rises from 0, evenly; then it stays.
         duration : float, optional
             [s] How long to continue; None takes the scenario's duration, from that instant.
         record : {"full", "summary"}
@@ -175,9 +187,18 @@ class Run(Record):
         ('seized', 'cleared')
         """
         time = branching.branch_time(self, at)
-        changes = {"track": track, "friction": friction, "drive": drive, "duration": duration}
-        variant = branching.branch_scenario(self, changes)
-        result = branching.simulate_branch(self, time, variant, record, sample_interval)
+        variant = branching.branch_scenario(
+            self,
+            track=track,
+            friction=friction,
+            max_torque=max_torque,
+            belly=belly,
+            drive=drive,
+            duration=duration,
+        )
+        result = branching.simulate_branch(
+            self, time, variant, push=push, record=record, sample_interval=sample_interval
+        )
         return Run(variant, result, trunk=(self.scenario, time))
 
     def counterfactual(

@@ -116,7 +116,7 @@ def gear_pairs(models: Mapping[str, StudyModel]) -> dict[str, str]:
     pairs = {}
     for name, model in models.items():
         track = model.track
-        if isinstance(track, (BeltTrack, GrouserBeltTrack, SegmentalTrack, ForceTrack)):
+        if not isinstance(track, (LineOfWheels, CircumferentialWheels, HybridWheels)):
             continue
         if not isinstance(track.wheel, GearWheel):
             continue

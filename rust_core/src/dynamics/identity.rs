@@ -125,6 +125,11 @@ impl Identity {
         self.lost.drain(..too_many);
     }
 
+    /// Forgets the contacts of all but the first parts.
+    pub(super) fn keep_parts(&mut self, parts: usize) {
+        self.lost.retain(|lost| lost.contact.part < parts);
+    }
+
     /// Takes the nearest contact of the last step, if it is near enough; each is taken once. Those before
     /// `from` are too far left for this and all later contacts.
     fn take_nearest(

@@ -67,7 +67,7 @@ impl Dynamics {
             && identity.fits(contacts, &self.model, lanes)
     }
 
-    /// Starts from the impulses that a step of the same model left.
+    /// Starts from the impulses that a step left of the same model, or of one that had a belly besides.
     pub(crate) fn start_from(&mut self, impulses: Impulses) {
         if let (Some(push), Some(force)) = (&mut self.push, impulses.push) {
             push.force = force;
@@ -75,6 +75,10 @@ impl Dynamics {
         self.motors = impulses.motors;
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;
+        // The belly is the last part.
+        let parts = self.model.parts.len();
+        self.loaded.retain(|l| l.contact.part < parts);
+        self.identity.keep_parts(parts);
         for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
             chain.start_from(impulses);
         }

@@ -4,16 +4,19 @@ use std::sync::Arc;
 
 use super::{BodyKind, Model, Mount, Part, Shape};
 use crate::geometry::{Disc, Envelope, Grouser};
-use crate::scenario::{ScenarioError, TrackOutline};
+use crate::scenario::{ClosedSurface, ScenarioError, TrackOutline};
 
 impl Model {
     /// The same robot with a closed belt, taut round the circumscribed circles of each track's bodies, with all their
-    /// motor force and mass. With an outline, the belt has that outline's grousers where the track has some, as high
-    /// as the track's and within the same circles.
+    /// motor force and mass. Grousers are as high as the track's, where it has some, and within the same circles.
     ///
     /// # Errors
-    /// The pitch makes more grousers than a belt may have.
-    pub(crate) fn closed(&self, grousers: Option<&TrackOutline>) -> Result<Self, ScenarioError> {
+    /// The outline's pitch makes more grousers than a belt may have.
+    pub(super) fn closed(
+        &self,
+        surface: ClosedSurface,
+        outline: &TrackOutline,
+    ) -> Result<Self, ScenarioError> {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
         let belt = Envelope::new(&round(Mount::Chassis));
         // A closed belt covers a belly that lies inside it.
@@ -28,8 +31,11 @@ impl Model {
         let mut parts = Vec::new();
         for lane in 0..tracks {
             for mount in self.mounts_of_tracks() {
-                let height = grousers.map_or(0.0, |outline| self.grouser_height(mount, outline));
-                let shapes = shapes(round(mount), height, grousers)?;
+                let height = match surface {
+                    ClosedSurface::Own => self.grouser_height(mount, outline),
+                    ClosedSurface::Smooth => 0.0,
+                };
+                let shapes = shapes(round(mount), height, outline)?;
                 parts.extend(shapes.into_iter().map(|(kind, shape)| Part {
                     kind,
                     shape,
@@ -55,15 +61,18 @@ impl Model {
         })
     }
 
-    /// Whether any of its tracks has grousers.
+    /// Whether any of its tracks has grousers that a closed belt could have.
     pub(crate) fn has_grousers(&self, outline: &TrackOutline) -> bool {
         self.mounts_of_tracks()
             .any(|mount| self.grouser_height(mount, outline) > 0.0)
     }
 
     /// [m] Height of the grousers of the track on a mount: gears have their own, chains and belts those of the
-    /// outline.
+    /// outline. A belt has none if the outline gives no thickness.
     fn grouser_height(&self, mount: Mount, outline: &TrackOutline) -> f64 {
+        if outline.grouser_thickness <= 0.0 {
+            return 0.0;
+        }
         let of_part = |part: &Part| match &part.shape {
             Shape::Gear { gear, .. } => gear.radius - gear.root_radius,
             Shape::Hull { grouser_height, .. } if *grouser_height > 0.0 => outline.grouser_height,
@@ -84,7 +93,7 @@ impl Model {
 fn shapes(
     tips: Vec<Disc>,
     height: f64,
-    outline: Option<&TrackOutline>,
+    outline: &TrackOutline,
 ) -> Result<Vec<(BodyKind, Shape)>, ScenarioError> {
     let discs: Vec<Disc> = tips
         .into_iter()
@@ -94,7 +103,7 @@ fn shapes(
         })
         .collect();
     let mut shapes = Vec::new();
-    if let Some(outline) = outline.filter(|_| height > 0.0) {
+    if height > 0.0 {
         let line = Arc::new(Envelope::new(&discs));
         let grousers = Grouser::along(&line, None, height, outline)?;
         shapes.extend(grousers.map(|g| (BodyKind::Grouser, Shape::Grouser(g))));

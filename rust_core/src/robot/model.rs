@@ -2,7 +2,7 @@
 
 use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
-use crate::scenario::{Robot, ScenarioError};
+use crate::scenario::{Robot, ScenarioError, Track};
 
 /// Everything about a robot that does not change during a run.
 #[derive(Clone, Debug)]
@@ -92,7 +92,10 @@ impl Model {
             let path = "robot.moment_of_inertia";
             return Err(ScenarioError::new(path, robot.moment_of_inertia, rule));
         }
-        Ok(model)
+        match &robot.track {
+            Track::Closed(closed) => model.closed(closed.surface, &robot.outline),
+            _ => Ok(model),
+        }
     }
 
     /// Positions of the moving parts at time 0, with the tracks advanced by `track_phase` [m].

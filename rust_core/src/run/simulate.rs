@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
+use crate::scenario::ClosedSurface;
 use crate::terrain::Edge;
 
 /// The results of a run.
@@ -62,14 +63,15 @@ pub(crate) fn simulate_within(
     advance(&mut Simulation::new(checked), end, record, limits, begin)
 }
 
-/// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration.
+/// Simulates `scenario` up to the time `at` [s], then continues as `variant` for its whole duration, with a push that
+/// rises to a force [N] in a time [s].
 ///
 /// # Errors
-/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
+/// As [`simulate`], [`Error::Scenario`] if the push is out of range, and [`Error::Interrupted`] once `cancel` is asked.
 pub fn branch(
     scenario: &Checked,
     at: f64,
-    variant: &Checked,
+    (variant, push): (&Checked, (f64, f64)),
     record: Record,
     cancel: &Cancel,
 ) -> Result<Run, Error> {
@@ -77,11 +79,12 @@ pub fn branch(
     let budget = budget::of_batch(std::slice::from_ref(variant), record, 1)?;
     let trunk = replay(scenario, at, cancel)?;
     let mut simulation = trunk.branch(variant);
+    simulation.raise_push(push.0, push.1)?;
     let end = simulation.time() + variant.scenario().duration;
     advance(&mut simulation, end, record, (&budget, cancel), begin)
 }
 
-/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there, smooth or with grousers.
+/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there.
 ///
 /// # Errors
 /// As [`simulate`], [`Error::Scenario`] if the belt is to have grousers but the track has none, and
@@ -89,15 +92,10 @@ pub fn branch(
 pub fn counterfactual(
     scenario: &Checked,
     at: f64,
-    grousers: bool,
+    surface: ClosedSurface,
     cancel: &Cancel,
 ) -> Result<Counterfactual, Error> {
-    let simulation = replay(scenario, at, cancel)?;
-    if grousers {
-        simulation.counterfactual_with_grousers(cancel)
-    } else {
-        simulation.counterfactual(cancel)
-    }
+    replay(scenario, at, cancel)?.counterfactual(surface, cancel)
 }
 
 /// The simulation of a scenario at the end of its first step that reaches a time [s].
@@ -139,7 +137,7 @@ fn advance(
     let events = simulation.events();
     let mut diagnosis = simulation.diagnosis();
     if let Some(diagnosis) = diagnosis.as_mut().filter(|_| record.counterfactual) {
-        diagnosis.counterfactual = Some(simulation.counterfactual(cancel)?);
+        diagnosis.counterfactual = Some(simulation.counterfactual(ClosedSurface::Smooth, cancel)?);
     }
     let outcome = diagnosis
         .as_ref()

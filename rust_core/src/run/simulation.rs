@@ -6,6 +6,7 @@ mod drive;
 mod gait;
 mod moment;
 mod pace;
+mod push;
 mod snapshot;
 mod step;
 #[cfg(test)]
@@ -17,6 +18,7 @@ use std::sync::Arc;
 use self::gait::{Driver, Target};
 pub(super) use self::pace::{FARTHEST_TURN, SAME_TIME};
 use self::pace::{Pace, Rule};
+use self::push::Push;
 use super::Checked;
 use super::checked::fastest_turn;
 use super::record::Columns;
@@ -59,6 +61,8 @@ pub struct Simulation {
     targets: [Target; 2],
     set_point: f64,
     set_point_before: f64,
+    /// The push at the centre of mass, along x.
+    push: Push,
     dents: Dents,
     /// The same for the step that is being tried.
     dents_now: Dents,
@@ -136,6 +140,7 @@ impl Simulation {
             steps: 0,
             set_point: 0.0,
             set_point_before: 0.0,
+            push: Push::default(),
             dents: Dents::default(),
             dents_now: Dents::default(),
             contacts: Vec::new(),

@@ -160,7 +160,7 @@ impl Flippers {
         let radii = [self.root_radius, self.tip_radius];
         let (path, track) = match &self.track {
             Some(track) => ("robot.flippers.track", track),
-            None => ("robot.track", &robot.track),
+            None => ("robot.track", robot.track.open()),
         };
         if self.track.is_some() {
             add_doubts_of_wheels(track, path, radii, self.length, doubts);
@@ -205,6 +205,10 @@ fn add_doubts_of_wheels(
                 doubts.at_most(path(1), *y, farthest, "the length of the outline");
                 doubts.at_most(path(2), *radius, most, what);
             }
+        }
+        Track::Closed(closed) => {
+            let path = joined(path, "of");
+            add_doubts_of_wheels(&closed.of, &path, radii, length, doubts);
         }
         Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {}
     }

@@ -30,8 +30,8 @@ pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub(crate) use text::parse;
 pub use track::{
-    BeltTrack, ChainMechanism, CircumferentialWheels, ForceSupport, ForceTrack, GrouserBeltTrack,
-    HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,
+    BeltTrack, ChainMechanism, CircumferentialWheels, ClosedSurface, ClosedTrack, ForceSupport,
+    ForceTrack, GrouserBeltTrack, HybridWheels, LineOfWheels, SegmentalTrack, ShoeShape, Track,
 };
 pub(crate) use track::{MAX_SHOES, MAX_WHEELS};
 pub(crate) use wheel::MAX_GROUSERS;

@@ -117,14 +117,18 @@ impl Robot {
             ))
         };
         let is_force = |track: &Track| matches!(track, Track::Force(_));
+        let own = self.track.open();
         match &flippers.track {
-            None if matches!(self.track, Track::Hybrid(_)) => {
+            None if matches!(own, Track::Hybrid(_)) => {
                 refused("must be given, because the robot's own track has wheels placed by hand")
             }
             Some(Track::Segmental(_)) => refused(
                 "must not be segmental, because chains run round the chassis only (grouser_belt comes closest)",
             ),
-            Some(track) if is_force(track) != is_force(&self.track) => {
+            Some(Track::Closed(_)) => {
+                refused("must not be closed, because a closed robot.track closes the arms' too")
+            }
+            Some(track) if is_force(track) != is_force(own) => {
                 refused("must be a force track if robot.track is one, and only then")
             }
             Some(track) => track.check(self.drivetrain.torque_sharing),

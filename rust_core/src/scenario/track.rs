@@ -36,6 +36,8 @@ pub enum Track {
     Segmental(SegmentalTrack),
     /// No track at all: the drive pushes the chassis.
     Force(ForceTrack),
+    /// A belt closed round the bodies of another model.
+    Closed(ClosedTrack),
 }
 
 /// Wheels on one straight line, overlapping, touching or spaced.
@@ -144,9 +146,29 @@ pub enum ForceSupport {
     Wheels,
 }
 
+/// A belt taut round the bodies of another model, on the chassis and on every arm: what that model would be without
+/// pockets.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClosedTrack {
+    /// The model round whose bodies it runs.
+    pub of: Box<Track>,
+    /// Whether it has grousers.
+    pub surface: ClosedSurface,
+}
+
+/// The surface of a closed track.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClosedSurface {
+    /// Grousers where the model has some: as high as the model's, as thick and as far apart as the outline's.
+    Own,
+    /// No grousers.
+    Smooth,
+}
+
 impl Track {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
-        const KINDS: [&str; 7] = [
+        const KINDS: [&str; 8] = [
             "line",
             "circumferential",
             "hybrid",
@@ -154,6 +176,7 @@ impl Track {
             "grouser_belt",
             "segmental",
             "force",
+            "closed",
         ];
         let track = match f.text("kind")? {
             "line" => Self::Line(LineOfWheels {
@@ -186,6 +209,16 @@ impl Track {
                 skid_friction: f.number("skid_friction", Range::between(0.0, 100.0, ""))?,
                 wheel_count: f.integer("wheel_count", 2, MAX_WHEELS)?,
             }),
+            "closed" => Self::Closed(ClosedTrack {
+                of: Box::new(read_open(&mut f)?),
+                surface: f.choice(
+                    "surface",
+                    &[
+                        ("own", ClosedSurface::Own),
+                        ("smooth", ClosedSurface::Smooth),
+                    ],
+                )?,
+            }),
             other => return Err(f.error("kind", other, one_of(Some(other), &KINDS))),
         };
         f.finish()?;
@@ -198,7 +231,16 @@ impl Track {
             Self::Line(LineOfWheels { wheel, .. })
             | Self::Circumferential(CircumferentialWheels { wheel, .. })
             | Self::Hybrid(HybridWheels { wheel, .. }) => Some(wheel),
+            Self::Closed(closed) => closed.of.wheel(),
             Self::Belt(_) | Self::GrouserBelt(_) | Self::Segmental(_) | Self::Force(_) => None,
+        }
+    }
+
+    /// The model itself, or the one round which it is closed.
+    pub(crate) fn open(&self) -> &Self {
+        match self {
+            Self::Closed(closed) => &closed.of,
+            open => open,
         }
     }
 
@@ -213,6 +255,13 @@ impl Track {
             ));
         }
         Ok(())
+    }
+}
+
+fn read_open(f: &mut Fields) -> Result<Track, ScenarioError> {
+    match Track::read(f.child("of")?)? {
+        Track::Closed(_) => Err(f.error("of", "a closed track", "must not be closed itself")),
+        open => Ok(open),
     }
 }
 

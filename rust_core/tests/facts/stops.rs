@@ -1,7 +1,8 @@
 //! Why a robot stops: hand-solved cases, and what a closed belt does in its place.
 
 use crawler2d_core::{
-    Cancel, Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain, Wheel, simulate,
+    Cancel, ClosedSurface, Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain,
+    Wheel, simulate,
 };
 
 use crate::common::*;
@@ -87,8 +88,15 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
         cases += 1;
         let depth = stopped.diagnosis().unwrap().intrusion.unwrap().place.depth;
         deepest = deepest.max(depth);
-        freed += u32::from(stopped.counterfactual(&Cancel::default()).unwrap().freed);
-        most = most.max(gain_when_braked(stopped.with_closed_belt().unwrap()));
+        freed += u32::from(
+            stopped
+                .counterfactual(ClosedSurface::Smooth, &Cancel::default())
+                .unwrap()
+                .freed,
+        );
+        most = most.max(gain_when_braked(
+            stopped.with_closed_track(ClosedSurface::Smooth).unwrap(),
+        ));
     }
     println!(
         "seed {seed}: {cases} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
@@ -126,15 +134,20 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
             continue;
         };
         cases += 1;
-        smooth += u32::from(stopped.counterfactual(&Cancel::default()).unwrap().freed);
+        smooth += u32::from(
+            stopped
+                .counterfactual(ClosedSurface::Smooth, &Cancel::default())
+                .unwrap()
+                .freed,
+        );
         freed += u32::from(
             stopped
-                .counterfactual_with_grousers(&Cancel::default())
+                .counterfactual(ClosedSurface::Own, &Cancel::default())
                 .unwrap()
                 .freed,
         );
         most = most.max(gain_when_braked(
-            stopped.with_closed_belt_with_grousers().unwrap(),
+            stopped.with_closed_track(ClosedSurface::Own).unwrap(),
         ));
     }
     println!(

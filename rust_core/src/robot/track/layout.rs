@@ -30,9 +30,11 @@ pub(crate) fn wheels(robot: &Robot) -> Result<Vec<Disc>, ScenarioError> {
         Track::Force(force) if force.support == ForceSupport::Wheels => {
             Ok(line(outline, force.wheel_count, None))
         }
-        Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {
-            Ok(Vec::new())
-        }
+        Track::Belt(_)
+        | Track::GrouserBelt(_)
+        | Track::Segmental(_)
+        | Track::Force(_)
+        | Track::Closed(_) => Ok(Vec::new()),
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct TrackModel {
     pub chains: Vec<ChainOfShoes>,
 }
 
-/// Builds the track model of a robot, including those of its flippers.
+/// Builds the track model of a robot, including those of its flippers; of a closed track, the one that is to be closed.
 ///
 /// # Errors
 /// Wheels that do not fit the robot.
@@ -41,6 +41,16 @@ pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
         Track::GrouserBelt(belt) => grouser_belt::build(robot, belt),
         Track::Segmental(track) => segmental::build(robot, track),
         Track::Force(force) => force::build(robot, force),
+        Track::Closed(closed) => {
+            let open = Robot {
+                track: (*closed.of).clone(),
+                ..robot.clone()
+            };
+            return build(&open).map_err(|error| ScenarioError {
+                path: error.path.replacen("robot.track", "robot.track.of", 1),
+                ..error
+            });
+        }
     }?;
     if let Some(flippers) = &robot.flippers {
         flipper::add(robot, flippers, &mut track)?;

@@ -1,8 +1,9 @@
-//! Branches: the same instant with another track, friction or command, or with a closed belt.
+//! Branches: the same instant as another scenario.
 
 use std::sync::Arc;
 
 use super::Simulation;
+use super::gait::Driver;
 use crate::contact::Dents;
 use crate::diagnosis::Counterfactual;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
@@ -11,94 +12,40 @@ use crate::limits::Cancel;
 use crate::observe::Seen;
 use crate::robot::Model;
 use crate::run::Checked;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{ClosedSurface, ClosedTrack, Robot, Scenario, ScenarioError, Track};
 use crate::terrain::Ground;
 
 impl Simulation {
     /// The robot of `variant` in this pose, with these speeds.
     ///
-    /// What is unchanged continues bit by bit. Another robot or track takes over the pose and the speeds; ground
-    /// inside it is let out without a push. Outcome, stops and progress count from here.
+    /// What is unchanged continues bit by bit, also with another torque limit or without its belly. Another robot or
+    /// track takes over the pose and the speeds; ground inside it is let out without a push. Outcome, stops and
+    /// progress count from here.
     #[must_use]
     pub fn branch(&self, variant: &Checked) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();
-        let mut branch = self.with(variant, ground, model);
-        branch.command = variant.drive.speed;
-        if variant.robot == self.scenario.robot {
-            branch.state = self.state.clone();
-            branch.dynamics.start_from(self.dynamics.impulses());
-            branch.dents = self.dents.clone();
-            branch.pace = self.pace;
-            (branch.before, branch.free) = (self.before.clone(), self.free);
-            branch.seen_ahead = self.seen_ahead;
+        if has_the_same_parts(&self.scenario.robot, &variant.robot) {
+            self.continued(variant, ground, model)
+        } else {
+            self.rebuilt(variant, ground, model)
         }
+    }
+
+    /// The same state of a robot with the same parts, or without its belly.
+    fn continued(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
+        let mut branch = Self::of(scenario, ground, model, self.state.clone());
+        branch.commanded_like(self);
+        branch.dynamics.start_from(self.dynamics.impulses());
+        branch.dents = self.dents.clone();
+        branch.pace = self.pace;
+        (branch.before, branch.free) = (self.before.clone(), self.free);
+        branch.seen_ahead = self.seen_ahead;
         branch
     }
 
-    /// Tries a closed belt with the same envelope, force and friction in this pose.
-    ///
-    /// # Errors
-    /// [`Error::Simulation`] if the state has become non-finite, [`Error::Interrupted`] once `cancel` is requested.
-    pub fn counterfactual(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
-        self.try_belt(self.with_closed_belt()?, cancel)
-    }
-
-    /// The same for a belt with grousers as high as those of the track.
-    ///
-    /// # Errors
-    /// As [`Self::counterfactual`], and [`Error::Scenario`] if the track has none.
-    pub fn counterfactual_with_grousers(&self, cancel: &Cancel) -> Result<Counterfactual, Error> {
-        self.try_belt(self.with_closed_belt_with_grousers()?, cancel)
-    }
-
-    /// The same instant, with such a belt.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if the track has no grousers, or the pitch makes more than a belt may have.
-    pub fn with_closed_belt_with_grousers(&self) -> Result<Self, Error> {
-        let (model, outline) = (self.dynamics.model(), &self.scenario.robot.outline);
-        if !model.has_grousers(outline) || outline.grouser_thickness <= 0.0 {
-            let rule = "must have grousers to be compared with a belt with grousers";
-            let error = ScenarioError::new("robot.track", "this model", rule);
-            return Err(error.into());
-        }
-        let closed = model.closed(Some(outline))?;
-        Ok(self.with(&self.scenario, Arc::clone(&self.ground), closed))
-    }
-
-    fn try_belt(&self, mut belt: Self, cancel: &Cancel) -> Result<Counterfactual, Error> {
-        let criteria = &self.scenario.criteria;
-        let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
-        let start = belt.reading().position.x;
-        let (mut distance, mut time): (f64, f64) = (0.0, f64::INFINITY);
-        while belt.time() - self.time() < criteria.escape_time && !belt.is_over() {
-            belt.step()?;
-            cancel.check()?;
-            distance = distance.max(direction * (belt.reading().position.x - start));
-            if distance > criteria.escape_distance {
-                time = time.min(belt.time() - self.time());
-            }
-        }
-        Ok(Counterfactual {
-            freed: time.is_finite(),
-            distance,
-            time,
-            outcome: belt.outcome_now(),
-        })
-    }
-
-    /// The same instant with a closed belt round the bodies of the track.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] if there is no such belt.
-    pub fn with_closed_belt(&self) -> Result<Self, Error> {
-        let model = self.dynamics.model().closed(None)?;
-        Ok(self.with(&self.scenario, Arc::clone(&self.ground), model))
-    }
-
     /// Another model in this pose, with its drives at the mean speed of the present ones.
-    fn with(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
+    fn rebuilt(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
         let now = self.reading();
         let center =
             now.position + self.state.pose(self.dynamics.model()).rotation * model.center_of_mass;
@@ -124,15 +71,86 @@ impl Simulation {
         };
         state.run_shoes(&model, now.track_speed);
         let mut branch = Self::of(scenario, ground, model, state);
-        (branch.time, branch.began) = (self.time, self.time);
-        branch.command = self.command;
-        branch.driver = self.driver;
-        (branch.set_point, branch.set_point_before) = (self.set_point, self.set_point);
-        branch.dynamics.outer_force = self.dynamics.outer_force;
-        branch.monitor.seen = Seen::from(branch.time());
+        branch.commanded_like(self);
         let mut contacts = branch.contacts_now();
         branch.dynamics.take_over(&mut contacts);
         branch.dents = Dents::of(&contacts);
         branch
     }
+
+    /// Tries a closed belt in this pose: smooth, or with the grousers of the track.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`] if the state has become non-finite, [`Error::Interrupted`] once `cancel` is requested,
+    /// [`Error::Scenario`] as [`Self::with_closed_track`].
+    pub fn counterfactual(
+        &self,
+        surface: ClosedSurface,
+        cancel: &Cancel,
+    ) -> Result<Counterfactual, Error> {
+        let mut belt = self.with_closed_track(surface)?;
+        let criteria = &self.scenario.criteria;
+        let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
+        let start = belt.reading().position.x;
+        let (mut distance, mut time): (f64, f64) = (0.0, f64::INFINITY);
+        while belt.time() - self.time() < criteria.escape_time && !belt.is_over() {
+            belt.step()?;
+            cancel.check()?;
+            distance = distance.max(direction * (belt.reading().position.x - start));
+            if distance > criteria.escape_distance {
+                time = time.min(belt.time() - self.time());
+            }
+        }
+        Ok(Counterfactual {
+            freed: time.is_finite(),
+            distance,
+            time,
+            outcome: belt.outcome_now(),
+        })
+    }
+
+    /// The same instant with a closed belt round the bodies of the track.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the belt is to have grousers and the track has none, or the outline's pitch makes more than
+    /// a belt may have.
+    pub fn with_closed_track(&self, surface: ClosedSurface) -> Result<Self, Error> {
+        let mut scenario = self.scenario.clone();
+        let robot = &mut scenario.robot;
+        let has_grousers = || self.dynamics.model().has_grousers(&robot.outline);
+        if surface == ClosedSurface::Own && !has_grousers() {
+            let rule = "must have grousers to be compared with a belt with grousers";
+            let error = ScenarioError::new("robot.track", "this model", rule);
+            return Err(error.into());
+        }
+        robot.track = Track::Closed(ClosedTrack {
+            of: Box::new(robot.track.open().clone()),
+            surface,
+        });
+        let model = Model::on(robot, &self.ground)?;
+        Ok(self.rebuilt(&scenario, Arc::clone(&self.ground), model))
+    }
+
+    /// Takes over the time and what is commanded then, unless its scenario has another command.
+    fn commanded_like(&mut self, other: &Self) {
+        (self.time, self.began) = (other.time, other.time);
+        if self.scenario.drive == other.scenario.drive {
+            (self.command, self.driver) = (other.command, other.driver);
+        } else {
+            (self.command, self.driver) = (self.scenario.drive.speed, Driver::default());
+        }
+        (self.set_point, self.set_point_before) = (other.set_point, other.set_point);
+        self.push = other.push;
+        self.monitor.seen = Seen::from(self.time);
+    }
+}
+
+/// Whether two robots differ in their torque limit and a missing belly at most.
+fn has_the_same_parts(one: &Robot, other: &Robot) -> bool {
+    let mut like = one.clone();
+    like.drivetrain.max_torque = other.drivetrain.max_torque;
+    if other.belly.is_none() {
+        like.belly = None;
+    }
+    like == *other
 }

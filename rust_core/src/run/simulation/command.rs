@@ -4,8 +4,9 @@ use super::Simulation;
 use super::drive;
 use super::gait::Sight;
 use super::pace::SAME_TIME;
+use super::push::Push;
 use crate::error::Error;
-use crate::geometry::{Vector, direction};
+use crate::geometry::direction;
 use crate::robot::Mount;
 use crate::scenario::{Drive, End, Flippers, Gait, ScenarioError};
 
@@ -47,7 +48,13 @@ impl Simulation {
         } else {
             f64::INFINITY
         };
-        next.fold(self.time + ramp, f64::min)
+        let risen = self.push.end();
+        let risen = if risen > self.time {
+            risen
+        } else {
+            f64::INFINITY
+        };
+        next.fold((self.time + ramp).min(risen), f64::min)
     }
 
     /// [m/s] The set-point of the drivetrain after a time [s].
@@ -120,7 +127,7 @@ impl Simulation {
         flipper_angles: [(End, Option<f64>); 2],
         push: Option<f64>,
     ) -> Result<(), Error> {
-        let before = (self.command, self.driver, self.dynamics.outer_force);
+        let before = (self.command, self.driver, self.push);
         let mut give = || {
             push.map_or(Ok(()), |push| self.set_push(push))?;
             for (end, angle) in flipper_angles {
@@ -130,14 +137,14 @@ impl Simulation {
         };
         let given = give();
         if given.is_err() {
-            (self.command, self.driver, self.dynamics.outer_force) = before;
+            (self.command, self.driver, self.push) = before;
         }
         given
     }
 
     /// [N] The push at the centre of mass, along x.
     pub fn push(&self) -> f64 {
-        self.dynamics.outer_force.x
+        self.push.at(self.time)
     }
 
     /// Sets the push at the centre of mass to a force [N] along x, from now on.
@@ -145,11 +152,23 @@ impl Simulation {
     /// # Errors
     /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N.
     pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
-        if !(-1e6..=1e6).contains(&force) {
+        self.raise_push(force, 0.0)
+    }
+
+    /// Lets the push rise evenly to a force [N] in a time [s], from now on.
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N, or the time is negative or exceeds 1e5 s.
+    pub fn raise_push(&mut self, force: f64, rise_time: f64) -> Result<(), Error> {
+        if !Push::may_be(force) {
             let rule = "must be >= -1e6 N and <= 1e6 N";
             return Err(ScenarioError::new("push", force, rule).into());
         }
-        self.dynamics.outer_force = Vector::new(force, 0.0);
+        if !(0.0..=1e5).contains(&rise_time) {
+            let rule = "must be >= 0 s and <= 100000 s";
+            return Err(ScenarioError::new("push.rise_time", rise_time, rule).into());
+        }
+        self.push = self.push.raised(force, self.time, rise_time);
         Ok(())
     }
 }

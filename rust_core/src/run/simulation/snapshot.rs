@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::Simulation;
 use super::gait::Driver;
 use super::pace::Pace;
+use super::push::Push;
 use crate::contact::Dents;
 use crate::dynamics::{Impulses, State};
 use crate::error::Error;
@@ -43,7 +44,7 @@ struct Moment {
     command: f64,
     driver: Driver,
     set_point: f64,
-    push: f64,
+    push: Push,
     state: State,
     impulses: Impulses,
     dents: Dents,
@@ -64,7 +65,7 @@ impl Simulation {
             command: self.command,
             driver: self.driver,
             set_point: self.set_point,
-            push: self.push(),
+            push: self.push,
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),
@@ -122,7 +123,7 @@ impl Simulation {
         simulation.command = moment.command;
         simulation.driver = moment.driver;
         (simulation.set_point, simulation.set_point_before) = (moment.set_point, moment.set_point);
-        simulation.set_push(moment.push)?;
+        simulation.push = moment.push;
         simulation.state = moment.state;
         simulation.dynamics.start_from(moment.impulses);
         simulation.dents = moment.dents;
@@ -156,6 +157,7 @@ impl Simulation {
             && y < FAR + self.ground.highest()
             && moment.command.abs() <= fastest
             && moment.set_point.abs() <= fastest
+            && moment.push.fits()
             && moment.driver.fits(&self.scenario.drive)
             && moment.state.fits(model)
             && self.dynamics.fits(&moment.impulses, lanes)

@@ -4,6 +4,7 @@ use super::Simulation;
 use super::pace::{Rule, SAME_TIME, arrive};
 use crate::dynamics::{Effort, SetPoint, Trend};
 use crate::error::{Error, SimulationError};
+use crate::geometry::Vector;
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
 /// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
@@ -193,6 +194,7 @@ impl Simulation {
         self.dents_now.clone_from(&self.dents);
         let last = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents_now.forgive(&mut self.contacts, &last);
+        self.dynamics.outer_force = Vector::new(self.push.at(self.time + half), 0.0);
         self.dynamics.prepare(&self.state, &self.contacts, h);
         travel
     }

@@ -125,9 +125,7 @@ fn whatever_a_snapshot_forgot_would_change_what_comes_next() {
         ("command", |s, fresh| s.command = fresh.command),
         ("driver", |s, fresh| s.driver = fresh.driver),
         ("set point", |s, fresh| s.set_point = fresh.set_point),
-        ("push", |s, fresh| {
-            s.dynamics.outer_force = fresh.dynamics.outer_force;
-        }),
+        ("push", |s, fresh| s.push = fresh.push),
         ("state", |s, fresh| s.state = fresh.state),
         ("impulses", |s, fresh| {
             s.dynamics.start_from(fresh.dynamics.impulses());
