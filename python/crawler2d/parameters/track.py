@@ -339,7 +339,7 @@ class ClosedTrack(Parameters):
         The model round whose bodies it runs; not a closed one.
     surface : {"own", "smooth"}
         "own": grousers where the model has some, as high as the model's, as thick and as far apart
-        as the outline's, within the same circles. "smooth": none.
+        as the outline's, within the same circles; none if that thickness is 0. "smooth": none.
 
     Examples
     --------

@@ -138,9 +138,9 @@ class Run(Record):
 
         The run is repeated bit by bit up to that instant, and continues from the same pose and
         speeds; what is not changed goes on as before. Another torque or friction, a push, or a
-        belly taken off change nothing else. Of another track, only pose and speeds are those of
-        the run: ground that is inside it is let out without a push, the track is dented there, and
-        the dent heals as the robot moves on.
+        belly taken off change nothing else. Of another track or belly, only pose and speeds are
+        those of the run: ground that is inside it is let out without a push, the track is dented
+        there, and the dent heals as the robot moves on.
 
         Parameters
         ----------

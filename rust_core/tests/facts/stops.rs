@@ -17,6 +17,12 @@ fn ends_in_a_stop(scenario: &Scenario) -> Simulation {
     simulation
 }
 
+/// Whether a closed belt gets away from the pose of a stop.
+fn gets_away(stopped: &Simulation, surface: ClosedSurface) -> bool {
+    let belt = stopped.counterfactual(surface, &Cancel::default());
+    belt.expect("the state stays finite").freed
+}
+
 /// [J] Kinetic and potential energy of robot and track.
 fn energy(simulation: &Simulation) -> f64 {
     let (now, scenario) = (simulation.reading(), simulation.scenario());
@@ -88,12 +94,7 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
         cases += 1;
         let depth = stopped.diagnosis().unwrap().intrusion.unwrap().place.depth;
         deepest = deepest.max(depth);
-        freed += u32::from(
-            stopped
-                .counterfactual(ClosedSurface::Smooth, &Cancel::default())
-                .unwrap()
-                .freed,
-        );
+        freed += u32::from(gets_away(&stopped, ClosedSurface::Smooth));
         most = most.max(gain_when_braked(
             stopped.with_closed_track(ClosedSurface::Smooth).unwrap(),
         ));
@@ -134,18 +135,8 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
             continue;
         };
         cases += 1;
-        smooth += u32::from(
-            stopped
-                .counterfactual(ClosedSurface::Smooth, &Cancel::default())
-                .unwrap()
-                .freed,
-        );
-        freed += u32::from(
-            stopped
-                .counterfactual(ClosedSurface::Own, &Cancel::default())
-                .unwrap()
-                .freed,
-        );
+        smooth += u32::from(gets_away(&stopped, ClosedSurface::Smooth));
+        freed += u32::from(gets_away(&stopped, ClosedSurface::Own));
         most = most.max(gain_when_braked(
             stopped.with_closed_track(ClosedSurface::Own).unwrap(),
         ));

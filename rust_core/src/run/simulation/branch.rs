@@ -46,22 +46,20 @@ impl Simulation {
 
     /// Another model in this pose, with its drives at the mean speed of the present ones.
     fn rebuilt(&self, scenario: &Scenario, ground: Arc<Ground>, model: Model) -> Self {
-        let now = self.reading();
-        let center =
-            now.position + self.state.pose(self.dynamics.model()).rotation * model.center_of_mass;
+        let (now, pose) = (self.reading(), self.state.pose(self.dynamics.model()));
+        let center = now.position + pose.rotation * model.center_of_mass;
         let drive = DriveState {
             spin: now.angular_velocity - now.track_speed / model.drive_radius,
             position: now.track_position,
             ..DriveState::default()
         };
-        let now_pose = self.state.pose(self.dynamics.model());
         let mut state = State {
             center,
             angle: now.chassis_angle,
             velocity: self.state.velocity_at(center),
             angular_velocity: now.angular_velocity,
             drives: vec![drive; model.drives],
-            shoes: shoes_at_rest(&model, now_pose, now.track_position),
+            shoes: shoes_at_rest(&model, pose, now.track_position),
             idlers: idlers_at_rest(&model, now.track_position),
             flippers: if model.flippers.len() == self.state.flippers.len() {
                 self.state.flippers.clone()

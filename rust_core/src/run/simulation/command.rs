@@ -48,13 +48,8 @@ impl Simulation {
         } else {
             f64::INFINITY
         };
-        let risen = self.push.end();
-        let risen = if risen > self.time {
-            risen
-        } else {
-            f64::INFINITY
-        };
-        next.fold((self.time + ramp).min(risen), f64::min)
+        let risen = Some(self.push.end()).filter(|end| *end > self.time);
+        next.chain(risen).fold(self.time + ramp, f64::min)
     }
 
     /// [m/s] The set-point of the drivetrain after a time [s].
