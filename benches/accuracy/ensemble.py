@@ -81,7 +81,7 @@ def simulate(plans: Sequence[Plan], repeats: Sequence[int], threads: int | None)
         runs = simulate_passed(
             [plan.scenario for plan in chosen],
             [plan.checked for plan in chosen],
-            (*recording(0.01, "summary"), False),
+            (*recording(0.01, "summary"), []),
             threads=thread_count(threads),
             progress=False,
         )

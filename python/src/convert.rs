@@ -1,8 +1,8 @@
 //! Converts the core's plain data to dictionaries of `NumPy` arrays.
 
 use crawler2d_core::{
-    BodyKind, Condition, ContactTable, Edge, Event, Intrusion, Mechanism, Model, Outcome, Record,
-    Run, Side, Trace, WheelBody,
+    BodyKind, Change, ContactTable, Edge, Event, Intrusion, Mechanism, Model, Outcome, Record, Run,
+    Side, Trace, Wanted, WheelBody,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArrayDyn};
@@ -11,8 +11,8 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::{diagnosis, errors};
 
-/// What to record of a run, from the arguments.
-pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -> PyResult<Record> {
+/// What to record of a run, from the arguments; `trials` are names of what to try at a stop.
+pub(crate) fn record(sample_interval: f64, record: &str, trials: &[String]) -> PyResult<Record> {
     if !(sample_interval > 0.0 && sample_interval <= 1e5) {
         let rule = "must be > 0 s and <= 100000 s";
         return Err(errors::argument(
@@ -21,23 +21,33 @@ pub(crate) fn record(sample_interval: f64, record: &str, counterfactual: bool) -
             rule,
         ));
     }
-    match record {
-        "full" => Ok(Record {
-            sample_interval,
-            history: true,
-            counterfactual,
-        }),
-        "summary" => Ok(Record {
-            sample_interval,
-            history: false,
-            counterfactual,
-        }),
-        other => Err(errors::argument(
-            "record",
-            other,
-            "must be one of full, summary",
-        )),
-    }
+    let history = match record {
+        "full" => true,
+        "summary" => false,
+        other => {
+            let rule = "must be one of full, summary";
+            return Err(errors::argument("record", other, rule));
+        }
+    };
+    Ok(Record {
+        sample_interval,
+        history,
+        trials: wanted(trials)?,
+    })
+}
+
+/// The trials of these names.
+pub(crate) fn wanted(trials: &[String]) -> PyResult<Wanted> {
+    let changes = trials.iter().map(|name| change(name));
+    Ok(Wanted::of(changes.collect::<PyResult<Vec<_>>>()?))
+}
+
+/// The change of a name.
+pub(crate) fn change(name: &str) -> PyResult<Change> {
+    Change::of_name(name).ok_or_else(|| {
+        let names = Change::ALL.map(Change::name).join("\", \"");
+        errors::argument("trials", name, &format!("must be one of \"{names}\""))
+    })
 }
 
 /// A finished run.
@@ -215,7 +225,7 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let stops = Outcome::ALL.iter().filter(|outcome| outcome.is_stop());
     names.set_item("stop", stops.map(|stop| stop.name()).collect::<Vec<_>>())?;
     names.set_item("mechanism", Mechanism::ALL.map(Mechanism::name))?;
-    names.set_item("condition", Condition::ALL.map(Condition::name))?;
+    names.set_item("trial", Change::ALL.map(Change::name))?;
     Ok(names)
 }
 

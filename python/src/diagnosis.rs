@@ -1,8 +1,6 @@
 //! The diagnosis of a stop as dictionaries and `NumPy` columns.
 
-use crawler2d_core::{
-    Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
-};
+use crawler2d_core::{Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -10,13 +8,17 @@ use pyo3::types::{PyDict, PyTuple};
 /// A diagnosis; values that are not known are None.
 pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    let names = |set: &Vec<Condition>| PyTuple::new(py, set.iter().map(|c| c.name()));
-    let cause = d.cause.iter().map(names).collect::<PyResult<Vec<_>>>()?;
+    let trials = d.trials.iter().map(|made| trial(py, made));
     let place = d.intrusion.as_ref();
     result.set_item("outcome", d.outcome.name())?;
+    result.set_item("symptom", d.symptom.name())?;
+    result.set_item("passing", d.is_passing())?;
+    result.set_item(
+        "trials",
+        PyTuple::new(py, trials.collect::<PyResult<Vec<_>>>()?)?,
+    )?;
+    result.set_item("jammed", d.jammed)?;
     result.set_item("mechanism", d.mechanism.map(Mechanism::name))?;
-    result.set_item("cause", PyTuple::new(py, cause)?)?;
-    result.set_item("seized_at_tips", d.seized_at_tips)?;
     result.set_item("time", d.time)?;
     result.set_item("since", d.since)?;
     result.set_item("position", PyTuple::new(py, d.position)?)?;
@@ -30,26 +32,21 @@ pub(crate) fn of<'py>(py: Python<'py>, d: &Diagnosis) -> PyResult<Bound<'py, PyD
     result.set_item("stationary", d.stationary)?;
     result.set_item("imbalance", d.imbalance)?;
     result.set_item("certified", d.certified)?;
-    result.set_item("escape_force", d.escape_force)?;
-    result.set_item("free_escape_force", d.free_escape_force)?;
-    let belt = d.counterfactual.as_ref();
-    result.set_item(
-        "counterfactual",
-        belt.map(|c| counterfactual(py, c)).transpose()?,
-    )?;
     Ok(result)
 }
 
-/// What a closed belt does from a stop.
-pub(crate) fn counterfactual<'py>(
-    py: Python<'py>,
-    c: &Counterfactual,
-) -> PyResult<Bound<'py, PyDict>> {
+/// What came of a change at a stop.
+pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
-    result.set_item("freed", c.freed)?;
-    result.set_item("distance", c.distance)?;
-    result.set_item("time", c.time)?;
-    result.set_item("outcome", c.outcome.name())?;
+    result.set_item("name", trial.name)?;
+    result.set_item("freed", trial.freed)?;
+    result.set_item("starts", trial.starts)?;
+    result.set_item("freeing", trial.freeing)?;
+    result.set_item("distance", trial.distance)?;
+    result.set_item("time", trial.time)?;
+    result.set_item("outcome", trial.outcome.name())?;
+    result.set_item("jammed", trial.jammed)?;
+    result.set_item("duration", trial.duration)?;
     Ok(result)
 }
 
@@ -60,6 +57,8 @@ fn intrusion<'py>(py: Python<'py>, i: &LoadedIntrusion) -> PyResult<Bound<'py, P
     result.set_item("bodies", PyTuple::new(py, i.place.bodies)?)?;
     let kinds = i.kinds.map(|kind| kind as i64);
     result.set_item("body_kinds", PyTuple::new(py, kinds)?)?;
+    result.set_item("side", i.place.side.name())?;
+    result.set_item("carrier", i.carrier)?;
     result.set_item("depth", i.place.depth)?;
     result.set_item("root_depth", i.place.root_depth)?;
     result.set_item("x", i.place.x)?;

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 mod _core {
     use std::sync::Mutex;
 
-    use crawler2d_core::{Cancel, Checked, ClosedSurface, Error, Progress, Record, Run};
+    use crawler2d_core::{Cancel, Checked, Error, Progress, Record, Run};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -97,9 +97,9 @@ mod _core {
         text: PyBackedStr,
         sample_interval: f64,
         record: &str,
-        counterfactual: bool,
+        trials: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let record = convert::record(sample_interval, record, counterfactual)?;
+        let record = convert::record(sample_interval, record, &trials)?;
         let checked = built(py, text, Checked::from_json)?;
         let (results, interrupted) = run_all(py, vec![checked], 1, record, None)?;
         if let Some(signal) = interrupted {
@@ -120,10 +120,10 @@ mod _core {
         threads: usize,
         sample_interval: f64,
         record: &str,
-        counterfactual: bool,
+        trials: Vec<String>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyList>, bool)> {
-        let record = convert::record(sample_interval, record, counterfactual)?;
+        let record = convert::record(sample_interval, record, &trials)?;
         let scenarios = scenarios
             .iter()
             .map(|passed| passed.checked.clone())
@@ -161,7 +161,7 @@ mod _core {
         sample_interval: f64,
         record: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let record = convert::record(sample_interval, record, false)?;
+        let record = convert::record(sample_interval, record, &[])?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let run = beside(py, &cancel, move || {
@@ -172,25 +172,74 @@ mod _core {
         convert::run(py, run)
     }
 
-    /// Simulates up to a time, then tries a closed belt.
+    /// Simulates up to a time at which it has stopped, and makes trials there.
     #[pyfunction]
-    fn counterfactual(
+    fn trials(
         py: Python<'_>,
         text: PyBackedStr,
         at: f64,
-        grousers: bool,
-    ) -> PyResult<Bound<'_, PyDict>> {
+        names: Vec<String>,
+    ) -> PyResult<Bound<'_, PyList>> {
+        let wanted = convert::wanted(&names)?;
         let cancel = Cancel::default();
         let asked = cancel.clone();
         let found = beside(py, &cancel, move || {
-            let surface = if grousers {
-                ClosedSurface::Own
-            } else {
-                ClosedSurface::Smooth
-            };
-            crawler2d_core::counterfactual(&Checked::from_json(&text)?, at, surface, &asked)
+            crawler2d_core::make_trials(&Checked::from_json(&text)?, at, wanted, &asked)
         })?;
-        diagnosis::counterfactual(py, &found)
+        let found = found.iter().map(|trial| diagnosis::trial(py, trial));
+        PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Simulates up to a time at which it has stopped, and tries to continue as another scenario, pushed.
+    #[pyfunction]
+    fn what_if(
+        py: Python<'_>,
+        text: PyBackedStr,
+        at: f64,
+        variant: PyBackedStr,
+        push: (f64, f64),
+    ) -> PyResult<Option<Bound<'_, PyDict>>> {
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            let scenario = Checked::from_json(&text)?;
+            let variant = Checked::from_json_like(&variant, Some(&scenario))?;
+            crawler2d_core::what_if(&scenario, at, (&variant, push), &asked)
+        })?;
+        found.map(|trial| diagnosis::trial(py, &trial)).transpose()
+    }
+
+    /// The scenario of a trial, and its run.
+    #[pyfunction]
+    fn run_of_trial<'py>(
+        py: Python<'py>,
+        text: PyBackedStr,
+        at: f64,
+        name: &str,
+        sample_interval: f64,
+        record: &str,
+    ) -> PyResult<Option<(String, Bound<'py, PyDict>)>> {
+        let record = convert::record(sample_interval, record, &[])?;
+        let change = convert::change(name)?;
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::run_of_trial(&Checked::from_json(&text)?, at, change, record, &asked)
+        })?;
+        found
+            .map(|(variant, run)| Ok((variant.to_json(), convert::run(py, run)?)))
+            .transpose()
+    }
+
+    /// Simulates up to a time at which it has stopped, and measures the push that moves it on.
+    #[pyfunction]
+    fn escape_force(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<(f64, f64, bool)> {
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::escape_force(&Checked::from_json(&text)?, at, &asked)
+        })?;
+        Ok((found.low, found.high, found.tips))
     }
 
     /// Version and build of the compiled core.

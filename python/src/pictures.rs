@@ -15,7 +15,7 @@ pub(crate) fn of<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py,
         lanes.append((lane.side as i64, points(py, &lane.points)))?;
     }
     let carriers = PyList::empty(py);
-    for mount in model.mounts_of_tracks() {
+    for mount in model.mounts() {
         carriers.append(carrier(py, model, (mount, ground.tracks - 1))?)?;
     }
     let result = PyDict::new(py);
@@ -70,7 +70,7 @@ fn carrier<'py>(
 
     let mut circles: Vec<[f64; 3]> = Vec::new();
     let mut numbers: Vec<usize> = Vec::new();
-    let mut closed = false;
+    let mut closed = !model.has_track(mount);
     let circuit = PyDict::new(py);
     let (mut grousers, mut starts): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
     let of_track = |part: &Part| part.lane == lane && part.mount == mount;

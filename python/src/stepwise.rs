@@ -1,11 +1,11 @@
 //! A simulation that Python advances and commands step by step.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{Cancel, Checked, End, Error};
+use crawler2d_core::{Cancel, Checked, End, Error, Outcome};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
@@ -22,6 +22,8 @@ pub(crate) struct Simulation {
     turn: Mutex<()>,
     /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
+    /// Its outcome, once it is certain, and after how many steps: to know it takes trials.
+    outcome: Mutex<Option<(u64, Outcome)>>,
 }
 
 /// Time between two checks for Ctrl-C.
@@ -68,8 +70,19 @@ impl Simulation {
     }
 
     /// The diagnosis, if the robot is stopped.
-    fn diagnosis<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let why = self.with(py, |simulation| Ok(simulation.diagnosis()))?;
+    fn diagnosis<'py>(
+        &self,
+        py: Python<'py>,
+        trials: Vec<String>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let wanted = convert::wanted(&trials)?;
+        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
+        let asked = cancel.clone();
+        let why = beside(py, &cancel, move || {
+            call(&inner, |simulation| {
+                crawler2d_core::diagnose(simulation, wanted, &asked)
+            })
+        })?;
         why.map(|d| diagnosis::of(py, &d)).transpose()
     }
 
@@ -131,14 +144,15 @@ impl Simulation {
 
     /// The current state.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (reading, contacts, outcome, flippers) = self.with(py, |simulation| {
+        let (reading, contacts, ended_at, flippers) = self.with(py, |simulation| {
             Ok((
                 simulation.reading(),
                 simulation.contact_table(),
-                simulation.outcome(),
+                simulation.is_over().then(|| simulation.steps()),
                 simulation.flipper_angles().collect::<Vec<_>>(),
             ))
         })?;
+        let outcome = ended_at.map(|steps| self.outcome(py, steps)).transpose()?;
         let state = PyDict::new(py);
         state.set_item("time", reading.time)?;
         state.set_item(
@@ -156,7 +170,7 @@ impl Simulation {
         state.set_item("track_position", reading.track_position)?;
         state.set_item("flipper_angles", flippers.into_pyarray(py))?;
         state.set_item("contacts", convert::contacts(py, contacts)?)?;
-        state.set_item("outcome", outcome.map(crawler2d_core::Outcome::name))?;
+        state.set_item("outcome", outcome.map(Outcome::name))?;
         Ok(state)
     }
 
@@ -183,7 +197,27 @@ impl Simulation {
             is_slow: AtomicBool::new(points > MANY.0 || parts > MANY.1),
             inner: Arc::new(Mutex::new(Some(simulation))),
             turn: Mutex::new(()),
+            outcome: Mutex::new(None),
         }
+    }
+
+    /// The outcome after this many steps, after which it is certain.
+    fn outcome(&self, py: Python<'_>, steps: u64) -> PyResult<Outcome> {
+        let known = || self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((at, outcome)) = *known()
+            && at == steps
+        {
+            return Ok(outcome);
+        }
+        let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
+        let asked = cancel.clone();
+        let outcome = beside(py, &cancel, move || {
+            call(&inner, |simulation| {
+                crawler2d_core::outcome_of(simulation, &asked)
+            })
+        })?;
+        *known() = Some((steps, outcome));
+        Ok(outcome)
     }
 
     /// Waits until no other thread advances it; Ctrl-C is answered meanwhile.

@@ -30,9 +30,7 @@ mod terrain;
 mod version;
 
 pub use contact::Intrusion;
-pub use diagnosis::{
-    Condition, Counterfactual, Diagnosis, LoadedIntrusion, Mechanism, StopContact,
-};
+pub use diagnosis::{Change, Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial, Wanted};
 pub use dynamics::ChainReading;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
@@ -43,8 +41,9 @@ pub use robot::{
     Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    Checked, ContactTable, Metrics, Poses, Progress, Record, Run, Simulation, Trace, branch,
-    counterfactual, poses, simulate, simulate_many,
+    Checked, ContactTable, EscapeForce, Metrics, Poses, Progress, Record, Run, Simulation, Trace,
+    branch, diagnose, escape_force, make_trials, outcome_of, poses, run_of_trial, simulate,
+    simulate_many, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

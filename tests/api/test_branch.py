@@ -1,5 +1,6 @@
-"""The same instant with something changed, and a closed belt in the pose of a stop."""
+"""The same instant with something changed."""
 
+import functools
 import math
 import pickle
 from typing import Any
@@ -8,7 +9,6 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.results.findings import Counterfactual
 from crawler2d.runs.labelled import UNITS
 from tests.shared import GEAR, ROBOT
 
@@ -91,22 +91,8 @@ def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
     terrain = c2d.terrains.step(0.105, friction=0.7)
     starts = [c2d.Start(track_phase=phase * 1e-3) for phase in range(0, 48, 8)]
     runs = [c2d.simulate(robot, terrain, start=start) for start in starts]
-    smooth = sum(run.counterfactual().freed for run in runs)
-    assert sum(run.counterfactual(grousers=True).freed for run in runs) > smooth + 2
-
-
-def test_a_belt_with_grousers_does_as_the_same_belt_does() -> None:
-    """Where it is the track itself, there is nothing that could get away."""
-    robot = c2d.robots.engineer(flippers=None, track=c2d.GrouserBeltTrack())
-    run = c2d.simulate(robot, c2d.terrains.step(0.25))
-    belt = run.counterfactual(grousers=True)
-    assert not belt.freed
-    assert belt.distance < 0.01
-
-
-def test_a_track_without_grousers_is_not_compared_with_grousers(seized: c2d.Run) -> None:
-    with pytest.raises(c2d.ScenarioError, match=r"robot\.track must have grousers"):
-        seized.counterfactual(grousers=True)
+    smooth = sum(run.what_if("closed smooth track").freed for run in runs)
+    assert sum(run.what_if("closed track").freed for run in runs) > smooth + 2
 
 
 def test_friction_and_command_can_be_changed(seized: c2d.Run) -> None:
@@ -218,27 +204,25 @@ def test_a_branch_survives_pickling_with_its_trunk(seized: c2d.Run) -> None:
 
 @pytest.mark.parametrize("at", [-1, 6.1, 1e9, math.nan, math.inf, None, "stopp", "", True, 1j, [1]])
 def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None:
-    for call in (seized.branch, seized.counterfactual):
-        error = refusal(lambda call=call: call(at=at))
-        assert error.path == "at"
-        end = seized.metrics["time"]
-        assert error.rule == f'must be "stop" or a time from 0 to {end:.6g} s'
+    error = refusal(lambda: seized.branch(at=at))
+    assert error.path == "at"
+    end = seized.metrics["time"]
+    assert error.rule == f'must be "stop" or a time from 0 to {end:.6g} s'
 
 
 def test_a_run_that_did_not_stop_has_no_stop_to_branch_at() -> None:
     run = c2d.simulate(CLEARING, record="summary")
-    for call in (run.branch, run.counterfactual):
+    for call in (run.branch, run.trials, run.what_if, run.escape_force):
         error = refusal(call)
         assert (error.path, error.value) == ("at", "stop")
         assert "did not end in a stop" in error.rule
     assert run.branch(at=1.0, duration=0.1).outcome is c2d.Outcome.TIMED_OUT
-    assert run.counterfactual(at=1.0).freed
 
 
 def test_a_branch_is_not_branched_again(seized: c2d.Run) -> None:
     branch = seized.branch(at=1.0, duration=0.5)
-    for call in (branch.branch, branch.counterfactual):
-        error = refusal(lambda call=call: call(at=1.2))
+    for call in (lambda: branch.branch(at=1.2), branch.trials, branch.what_if, branch.escape_force):
+        error = refusal(call)
         assert error.path == "run"
         assert "branch the original run" in error.rule
 
@@ -248,11 +232,11 @@ def test_a_run_without_a_result_is_not_branched() -> None:
     (refused,) = c2d.simulate_many([wrong], on_error="record")
     diverged = c2d.Run(SEIZING, {}, c2d.SimulationDiverged("chassis is not finite"))
     for run, why in ((refused, "terrain.height must be > 0 m"), (diverged, "not finite")):
-        for call in (run.branch, run.counterfactual):
-            for at in ("stop", 0.0):
-                error = refusal(lambda call=call, at=at: call(at=at))
-                assert error.path == "run"
-                assert why in error.rule
+        at_once = functools.partial(run.branch, at=0.0)
+        for call in (run.branch, at_once, run.trials, run.what_if, run.escape_force):
+            error = refusal(call)
+            assert error.path == "run"
+            assert why in error.rule
 
 
 @pytest.mark.parametrize(
@@ -295,21 +279,10 @@ def test_the_friction_of_lanes_is_not_one_value() -> None:
     assert "left, right, middle" in error.rule
 
 
-def test_a_belt_is_tried_on_demand_as_with_the_run(seized: c2d.Run) -> None:
-    with_it = c2d.simulate(SEIZING, record="summary", counterfactual=True).diagnosis
-    assert with_it is not None
-    found = seized.counterfactual()
-    assert isinstance(found, Counterfactual)
-    assert found == with_it.counterfactual
-    assert found.freed
-    assert found.outcome is c2d.Outcome.CLEARED
-    assert seized.diagnosis is not None
-    assert found == seized.counterfactual(at=seized.diagnosis.time)
-
-
-def test_a_belt_is_given_the_time_of_the_criteria() -> None:
-    hasty = SEIZING.replace({"criteria.escape_time": 0.02})
-    found = c2d.simulate(hasty, record="summary").counterfactual()
-    assert (found.freed, found.time) == (False, math.inf)
-    far = SEIZING.replace({"criteria.escape_distance": 5.0})
-    assert not c2d.simulate(far, record="summary").counterfactual().freed
+def test_a_branch_goes_on_while_its_push_rises(seized: c2d.Run) -> None:
+    """A robot that stands still under a small push may leave under a larger one."""
+    low, high, _ = seized.escape_force()
+    for force, leaves in ((0.9 * low, False), (1.2 * high, True)):
+        branch = seized.branch(push=(force, 6.0), duration=12.0)
+        assert branch.time[-1] - branch.time[0] > 8.0 or branch.outcome is c2d.Outcome.CLEARED
+        assert (np.hypot(*(branch.position - branch.position[0]).T).max() > 5e-3) == leaves

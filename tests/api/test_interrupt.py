@@ -72,6 +72,7 @@ except KeyboardInterrupt:
 BRANCH = """
 import time
 import crawler2d as c2d
+from crawler2d.runs.trials import trial_at
 
 robot = c2d.robots.engineer(flippers=None)
 solver = c2d.Solver(time_step=1e-3)
@@ -79,7 +80,7 @@ scenario = c2d.Scenario(robot, c2d.terrains.flat(length=900.0), duration=1000.0,
 run = c2d.Run(scenario, {{"outcome": "timed_out", "metrics": {{"time": 1000.0}}}})
 print("ready", flush=True)
 try:
-    run.{call}
+    {call}
 except KeyboardInterrupt:
     print(time.monotonic(), flush=True)
 """
@@ -138,11 +139,11 @@ def test_a_run_answers_ctrl_c(say: Say) -> None:
 @pytest.mark.parametrize(
     "call",
     [
-        'branch(at=900.0, record="summary")',
-        'branch(at=0.1, duration=1000.0, record="summary")',
-        "counterfactual(at=900.0)",
+        'run.branch(at=900.0, record="summary")',
+        'run.branch(at=0.1, duration=1000.0, record="summary")',
+        'trial_at(run, 900.0, "torque x 2")',
     ],
-    ids=["on the way to a branch", "in a branch", "on the way to a belt"],
+    ids=["on the way to a branch", "in a branch", "on the way to a trial"],
 )
 def test_a_branch_answers_ctrl_c(call: str, say: Say) -> None:
     latency, _ = interrupted(BRANCH.format(call=call), 0.2)

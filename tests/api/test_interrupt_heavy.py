@@ -31,7 +31,7 @@ field = c2d.Scenario(
 CALLS = {
     "simulate": "c2d.simulate(dense, record='summary')",
     "batch": "c2d.simulate_many([dense, chain] * 4, threads=2, record='summary')",
-    "counterfactual": "c2d.simulate(chain, duration=1000.0, counterfactual=True)",
+    "trials": "c2d.simulate(chain, duration=1000.0, trials='all')",
     "advance": "sim.advance(100.0)",
     "advance a chain": "of_chain.advance(100.0)",
     "build": "c2d.Simulation(wide)",

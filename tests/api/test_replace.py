@@ -140,7 +140,8 @@ def test_the_original_does_not_change(scenario: Scenario) -> None:
     [
         (
             "robot.track.cuont",
-            "a known field: LineOfWheels has count, wheel_radius, wheel (did you mean count?)",
+            "a known field: LineOfWheels has count, wheel_radius, wheel, as_track "
+            "(did you mean count?)",
         ),
         ("Duration", "(did you mean duration?)"),
         ("terrain.height", "a known field: Flat has length, friction"),

@@ -111,7 +111,7 @@ def test_a_zero_below_zero_is_the_same_scenario_and_the_same_run(
     assert "-0.0" in changed
     assert _core.identity(changed) == plain.identity
     assert _core.canonical(changed) == _core.canonical(text)
-    runs = [_core.simulate(each, 0.01, "full", False)["trace"] for each in (text, changed)]
+    runs = [_core.simulate(each, 0.01, "full", [])["trace"] for each in (text, changed)]
     for name, column in runs[0].items():
         assert column.tobytes() == runs[1][name].tobytes()
 

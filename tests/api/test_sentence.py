@@ -9,12 +9,14 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.table import Table
-from crawler2d.results.findings import Condition, Counterfactual, Intrusion
+from crawler2d.results.findings import Intrusion, Tried
 
 CONTACTS = {
     "body": [2, 1, 0],
     "body_kind": [0, 0, 0],
     "edge": [1, 1, -1],
+    "normal_x": [0.0, 0.0, 0.0],
+    "normal_y": [1.0, 1.0, 1.0],
     "normal_force": [150.0, 40.0, 60.0],
     "surface_speed": [-0.4, -0.4, 0.4],
     "slides": [True, True, True],
@@ -25,23 +27,47 @@ PIECE = Intrusion(
     edges=(3,),
     bodies=(4, 3),
     body_kinds=(0, 0),
+    side="both",
+    carrier="chassis",
     depth=0.041,
     root_depth=0.041,
     x=0.6,
     y=0.1,
     force=190.0,
 )
-BELT = Counterfactual(freed=True, distance=0.3, time=0.4, outcome=c2d.Outcome.CLEARED)
+OUT = c2d.Outcome
+
+
+def tried(name: str, time: float = math.inf, **fields: Any) -> Tried:
+    """Make a trial: it frees the robot if it takes a finite time."""
+    freed = math.isfinite(time)
+    plain: dict[str, Any] = {
+        "name": name,
+        "freed": freed,
+        "starts": 1,
+        "freeing": int(freed),
+        "distance": 0.3 if freed else -0.001,
+        "time": time,
+        "outcome": OUT.CLEARED if freed else OUT.SLIPPING,
+        "jammed": False,
+        "duration": 5.125,
+    }
+    return Tried(**(plain | fields))
+
+
+BELT = tried("closed track", 0.34)
 
 
 def made(contacts: Any = None, **fields: Any) -> c2d.Diagnosis:
     """Make a diagnosis: wheels 2 and 1 slide on edge 3, unless told otherwise."""
     columns = {name: np.array(column) for name, column in (CONTACTS | (contacts or {})).items()}
     plain: dict[str, Any] = {
-        "outcome": c2d.Outcome.SEIZED,
+        "outcome": OUT.SEIZED,
+        "symptom": OUT.SLIPPING,
+        "passing": False,
+        "trials": (),
+        "jammed": True,
         "mechanism": c2d.Mechanism.STRADDLED,
-        "cause": ((Condition.POCKET,),),
-        "seized_at_tips": True,
         "time": 9.0,
         "since": 6.0,
         "position": (0.5, 0.1),
@@ -54,24 +80,89 @@ def made(contacts: Any = None, **fields: Any) -> c2d.Diagnosis:
         "stationary": True,
         "imbalance": 1e-9,
         "certified": True,
-        "escape_force": 61.2,
-        "free_escape_force": 400.0,
-        "counterfactual": None,
     }
     return c2d.Diagnosis(**(plain | {"contacts": Table(columns)} | fields))
 
 
-INSIDE = "edge 3 reaches 41 mm into the track between wheels 3 and 4, at x = 0.600 m, y = 0.100 m"
+INSIDE = "the ground at x = 0.600 m, y = 0.100 m stands 41 mm inside the track"
 ON_IT = "wheel 2 slides on it under a load of 150 N, wheel 1 under 40 N"
+SEIZED = f"seized between wheels 3 and 4: {INSIDE}; {ON_IT}"
 
 
-def test_a_sentence_says_what_is_inside_what_bears_and_what_would_free_it() -> None:
-    assert str(made()) == (
-        f"seized, straddled: {INSIDE}; {ON_IT}; a closed track or a push of 61 N would free it"
+def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
+    assert str(made()) == SEIZED
+    controls = (tried("unchanged"), tried("rebuilt"))
+    assert str(made(trials=controls)) == SEIZED
+    assert str(made(trials=(*controls, BELT, tried("torque x 2", jammed=True)))) == (
+        f"{SEIZED}. Tried: closed track: free after 0.3 s, then clears; "
+        "twice the torque: is jammed again"
     )
-    assert str(made(counterfactual=BELT)) == (
-        f"seized, straddled: {INSIDE}; {ON_IT}; a push of 61 N would free it; "
-        "a closed belt escapes from the same pose"
+
+
+@pytest.mark.parametrize(
+    ("trial", "said"),
+    [
+        (BELT, "closed track: free after 0.3 s, then clears"),
+        (
+            tried("closed track, clear of the ground", 1.26),
+            "closed track, set down clear of the ground: free after 1.3 s, then clears",
+        ),
+        (
+            tried("closed smooth track", outcome=OUT.TIMED_OUT),
+            "smooth closed track: still moving, but not free",
+        ),
+        (
+            tried("friction x 2", 0.4, outcome=OUT.STALLED, jammed=True),
+            "twice the friction: free after 0.4 s, then is jammed again",
+        ),
+        (
+            tried("friction x 2", 0.4, outcome=OUT.TIMED_OUT),
+            "twice the friction: free after 0.4 s",
+        ),
+        (
+            tried("no belly", 2.0, outcome=OUT.TIPPED_OVER),
+            "without its belly: free after 2.0 s, then tips over",
+        ),
+        (tried("no belly", outcome=OUT.TIPPED_OVER), "without its belly: tips over"),
+        (tried("torque x 10", outcome=OUT.LEFT_TERRAIN), "ten times the torque: leaves the ground"),
+        (tried("flippers level", outcome=OUT.DETRACKED), "flippers level: throws its track"),
+        (
+            tried("torque x 2", distance=0.0034, jammed=True),
+            "twice the torque: is jammed again 3 mm further on",
+        ),
+        (tried("torque x 2", distance=0.0034), "twice the torque: slips 3 mm further on"),
+        (tried("torque x 2", outcome=OUT.STALLED), "twice the torque: is stalled"),
+        (tried("one motor", outcome=OUT.CYCLING), "one motor for all wheels: goes to and fro"),
+        (tried("flippers level", outcome=OUT.HUNG_UP), "flippers level: hangs on its belly"),
+        # A robot that rattles is tried from several instants.
+        (
+            tried("torque x 2", 0.6, starts=5, freeing=4),
+            "twice the torque: free after 0.6 s, then clears (4 of 5 times free)",
+        ),
+        (
+            tried("torque x 2", starts=3, freeing=1),
+            "twice the torque: slips (1 of 3 times free)",
+        ),
+    ],
+)
+def test_what_came_of_a_trial_is_said_in_a_few_words(trial: Tried, said: str) -> None:
+    assert str(made(trials=(trial,))) == f"{SEIZED}. Tried: {said}"
+
+
+@pytest.mark.parametrize(
+    ("control", "said"),
+    [
+        ("unchanged", "It goes on by itself: free after 0.3 s, then clears"),
+        ("rebuilt", "With its track built anew it goes on: free after 0.3 s, then clears"),
+    ],
+)
+def test_of_a_passing_stop_no_more_is_said_than_that_it_passed(control: str, said: str) -> None:
+    passing = made(
+        passing=True, outcome=OUT.TIMED_OUT, trials=(dataclasses.replace(BELT, name=control),)
+    )
+    assert str(passing) == (
+        f"in passing, slipping: {INSIDE} between wheels 3 and 4; {ON_IT}; "
+        f"the track slips at 0.40 m/s. {said}".replace("; the track slips at 0.40 m/s", "")
     )
 
 
@@ -125,25 +216,34 @@ def test_bodies_on_the_edge_are_named_by_what_they_do(
     contacts: Any, mechanism: str, said: str
 ) -> None:
     d = made(contacts, mechanism=c2d.Mechanism(mechanism))
-    assert f"; {said}" in str(d)
+    assert f"; {said}" in f"{d};"
 
 
 @pytest.mark.parametrize(
     ("piece", "said"),
     [
-        ({}, "41 mm into the track between wheels 3 and 4, at x = 0.600 m, y = 0.100 m;"),
-        ({"x": -1e-9}, "between wheels 3 and 4, at x = 0.000 m"),
-        ({"root_depth": 0.029}, "into the track (29 mm past the grouser roots) between wheels 3"),
-        ({"root_depth": 0.0}, "into the track (not as far as the grouser roots) between wheels 3"),
-        ({"root_depth": 0.0, "bodies": (4, 4)}, "the track between two grousers of wheel 4, at"),
-        ({"bodies": (4, 4)}, "the track at wheel 4, at x = 0.600 m"),
+        ({}, "seized between wheels 3 and 4: the ground at x = 0.600 m, y = 0.100 m stands 41 mm"),
+        ({"x": -1e-9}, "the ground at x = 0.000 m"),
+        ({"root_depth": 0.029}, "inside the track (29 mm past the grouser roots);"),
+        ({"root_depth": 0.0}, "inside the track (not as far as the grouser roots);"),
+        ({"side": "left"}, "41 mm inside the left track;"),
+        ({"carrier": "front flipper"}, "41 mm inside the track of the front flipper;"),
+        (
+            {"carrier": "rear flipper", "side": "right"},
+            "41 mm inside the track of the right rear flipper;",
+        ),
+        (
+            {"root_depth": 0.0, "bodies": (4, 4)},
+            "seized between two grousers of wheel 4: the ground",
+        ),
+        ({"bodies": (4, 4)}, "seized at wheel 4: the ground"),
         # What a chain runs on has no numbers that a reader could count.
-        ({"body_kinds": (9, 9)}, "under the shoes between a road wheel and the next, at x = 0.600"),
-        ({"body_kinds": (9, 7)}, "under the shoes between a road wheel and the sprocket, at x"),
-        ({"bodies": (44, 44), "body_kinds": (6, 6)}, "the track between two shoes, at x = 0.600"),
+        ({"body_kinds": (9, 9)}, "seized under the shoes between a road wheel and the next:"),
+        ({"body_kinds": (9, 7)}, "seized under the shoes between a road wheel and the sprocket:"),
+        ({"bodies": (44, 44), "body_kinds": (6, 6)}, "seized between two shoes: the ground"),
         (
             {"bodies": (0, 0), "body_kinds": (1, 1), "root_depth": 0.029},
-            "the track between two grousers of the belt, at x = 0.600 m",
+            "seized between two grousers of the belt: the ground",
         ),
     ],
 )
@@ -151,28 +251,10 @@ def test_ground_inside_is_told_by_its_place_and_depth(piece: Any, said: str) -> 
     assert said in str(made(intrusion=dataclasses.replace(PIECE, **piece)))
 
 
-POCKET, BELLY, TORQUE, FRICTION = Condition
-
-
-@pytest.mark.parametrize(
-    ("fields", "said"),
-    [
-        ({"cause": ((POCKET,), (FRICTION,))}, "a closed track, twice the friction or a push of 61"),
-        # A tie is told without the pocket where a belt has been tried.
-        (
-            {"cause": ((POCKET,), (FRICTION,)), "counterfactual": BELT},
-            "; twice the friction or a push of 61 N would free it; a closed belt escapes",
-        ),
-        ({"cause": ((BELLY, TORQUE),)}, "removing the belly plus more torque or a push"),
-        ({"escape_force": 0.2}, "a closed track or the slightest push would free it"),
-        ({"escape_force": math.inf}, "a closed track would free it, but no push would"),
-        ({"cause": (), "escape_force": math.inf}, "; no push would free it"),
-        ({"escape_force": None}, "; a closed track would free it"),
-        ({"cause": (), "escape_force": None, "certified": False, "imbalance": 0.034}, "balance"),
-    ],
-)
-def test_what_would_free_it_is_told_once(fields: Any, said: str) -> None:
-    assert said in str(made(**fields))
+def test_where_ground_inside_is_not_what_stops_the_robot_it_is_told_beside() -> None:
+    for outcome in (OUT.SLIPPING, OUT.STALLED):
+        said = str(made(outcome=outcome, symptom=outcome))
+        assert said.startswith(f"{outcome}: {INSIDE} between wheels 3 and 4; {ON_IT}")
 
 
 @pytest.mark.parametrize(
@@ -180,40 +262,28 @@ def test_what_would_free_it_is_told_once(fields: Any, said: str) -> None:
     [
         (
             {"outcome": "stalled", "stalled_share": 1.0},
-            "stalled: the motors are at their torque limit; a push of 61 N would free it, but "
-            "more torque would not",
+            "stalled: the motors are at their torque limit",
         ),
         (
-            {"outcome": "stalled", "stalled_share": 0.6, "escape_force": math.inf},
-            "stalled: 60 % of the motors are at their torque limit; neither more torque nor any "
-            "push would free it",
+            {"outcome": "stalled", "stalled_share": 0.6},
+            "stalled: 60 % of the motors are at their torque limit",
+        ),
+        ({"outcome": "slipping"}, "slipping: the track slips at 0.40 m/s"),
+        (
+            {"outcome": "hung_up", "belly_share": 0.995},
+            "hung up: the belly carries 100 % of the load",
         ),
         (
-            {"outcome": "stalled", "stalled_share": 1.0, "escape_force": None},
-            "stalled: the motors are at their torque limit; more torque would not free it",
+            {"outcome": "cycling", "progress": 0.031},
+            "cycling: it moves to and fro; it still creeps at 3 % of the commanded speed",
         ),
         (
-            {"outcome": "slipping", "escape_force": 20.0},
-            "slipping: the track slips at 0.40 m/s; a push of 20 N would free it, but twice the "
-            "friction would not",
-        ),
-        (
-            {"outcome": "hung_up", "belly_share": 0.995, "cause": ((BELLY,),)},
-            "hung up: the belly carries 100 % of the load; removing the belly or a push of "
-            "61 N would free it",
-        ),
-        (
-            {"outcome": "cycling", "cause": ((FRICTION,),), "progress": 0.031},
-            "cycling: the track slips at 0.40 m/s; it still creeps at 3 % of the commanded speed; "
-            "twice the friction or a push of 61 N would free it",
-        ),
-        (
-            {"outcome": "slipping", "certified": False, "escape_force": None, "imbalance": 0.034},
+            {"outcome": "slipping", "certified": False, "imbalance": 0.034},
             "slipping: the track slips at 0.40 m/s; no contact forces balance it: the smallest "
             "residual is 3.4 % of the weight",
         ),
         (
-            {"outcome": "slipping", "certified": False, "escape_force": None, "imbalance": None},
+            {"outcome": "slipping", "certified": False, "imbalance": None},
             "slipping: the track slips at 0.40 m/s; the balance of forces could not be computed",
         ),
     ],
@@ -221,27 +291,54 @@ def test_what_would_free_it_is_told_once(fields: Any, said: str) -> None:
 def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
     fields: dict[str, Any], said: str
 ) -> None:
-    contacts = {"in_pocket": [False] * 3}
-    given: dict[str, Any] = {"mechanism": None, "intrusion": None, "cause": (), **fields}
-    assert str(made(contacts, **given | {"outcome": c2d.Outcome(given["outcome"])})) == said
+    outcome = OUT(fields["outcome"])
+    given: dict[str, Any] = {"mechanism": None, "intrusion": None, "jammed": False, **fields}
+    given |= {"outcome": outcome, "symptom": outcome}
+    assert str(made({"in_pocket": [False] * 3}, **given)) == said
 
 
 @pytest.mark.parametrize(
-    ("belt", "said"),
+    ("angle", "normal", "side", "said"),
     [
-        ({}, "; a closed belt escapes from the same pose"),
+        (0.1, (0.0, 1.0), "underside", "hung up: the belly carries 40 % of the load"),
         (
-            {"freed": False, "distance": 0.0123},
-            "does not escape from the same pose either (it advances 12 mm)",
+            1.05,
+            (0.0, 1.0),
+            "tail",
+            "hung up on the tail of its hull: the tail carries 40 % of the load",
         ),
         (
-            {"freed": False, "distance": 0.0},
-            "; a closed belt does not escape from the same pose either",
+            -1.05,
+            (0.0, 1.0),
+            "nose",
+            "hung up on the nose of its hull: the nose carries 40 % of the load",
         ),
+        # On an edge, a steep robot lies on its underside all the same.
+        (1.05, (-0.87, 0.5), "underside", "hung up: the belly carries 40 % of the load"),
     ],
 )
-def test_a_tried_belt_ends_the_sentence(belt: Any, said: str) -> None:
-    assert str(made(counterfactual=dataclasses.replace(BELT, **belt))).endswith(said)
+def test_a_robot_that_stands_on_its_tail_is_told_from_one_that_lies_on_its_belly(
+    angle: float, normal: tuple[float, float], side: str, said: str
+) -> None:
+    contacts = {
+        "body_kind": [3, 0, 0],
+        "in_pocket": [False] * 3,
+        "normal_x": [normal[0], 0.0, 0.0],
+        "normal_y": [normal[1], 1.0, 1.0],
+    }
+    hung = made(
+        contacts,
+        outcome=OUT.HUNG_UP,
+        symptom=OUT.HUNG_UP,
+        chassis_angle=angle,
+        belly_share=0.4,
+        mechanism=None,
+        intrusion=None,
+        jammed=False,
+    )
+    assert hung.belly_side == side
+    assert str(hung) == said
+    assert made().belly_side == ""
 
 
 @pytest.mark.parametrize(("kind", "name"), [(1, "the belt"), (2, "the skid")])
@@ -249,14 +346,7 @@ def test_the_body_of_a_closed_track_is_no_wheel(kind: int, name: str) -> None:
     # Ground that a branch found inside of it.
     contacts = {"body": [0, 0, 0], "body_kind": [kind] * 3, "in_pocket": [True, False, False]}
     piece = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(kind, kind))
-    said = str(made(contacts, intrusion=piece))
-    assert f"into the track at {name}, at x = 0.600 m" in said
+    said = str(made(contacts, intrusion=piece, outcome=OUT.SLIPPING))
+    assert f"inside the track at {name};" in said
     assert f"; {name} slides on it under a load of 150 N;" in said
     assert "wheel" not in said
-
-
-def test_of_a_belt_nobody_is_told_that_a_belt_does_the_same() -> None:
-    inside = dataclasses.replace(PIECE, bodies=(0, 0), body_kinds=(1, 1))
-    for piece in (inside, None):
-        fields = {"intrusion": piece, "outcome": c2d.Outcome.SLIPPING, "counterfactual": BELT}
-        assert "closed belt" not in str(made({"body_kind": [1, 4, 4]}, **fields))

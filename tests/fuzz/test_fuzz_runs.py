@@ -75,8 +75,8 @@ def simulated(draw: Draw, scenario: Scenario) -> tuple[str, list[str]]:
     # Down to a tenth of a step, about.
     shortest = 0.1 * scenario.duration / STEPS
     interval = draw.size(shortest, 1.0, (shortest, 0.01))
-    asked = draw.random() < 0.1
-    run = c2d.simulate(scenario, record=record, sample_interval=interval, counterfactual=asked)
+    trials: Any = draw.choice((None, None, None, "auto", "all"))
+    run = c2d.simulate(scenario, record=record, sample_interval=interval, trials=trials)
     return str(run.outcome), of_run(run)
 
 

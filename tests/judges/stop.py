@@ -146,7 +146,7 @@ class Stop:
                 normal=normal / np.hypot(*normal),
                 motion=w @ motions[group],
                 friction=self.friction_of(body, lane),
-                pieces=self.pieces_at(point, lane),
+                pieces=self.pieces_at(point, lane, carrier),
                 normal_force=total,
                 friction_force=float(table["friction_force"][group] @ self.share[group]),
                 surface_speed=w @ table["surface_speed"][group],
@@ -177,16 +177,15 @@ class Stop:
                 same, way = same[~near], way[~near]
         return found
 
-    def pieces_at(self, point: Array, lane: int) -> tuple[int, ...]:
-        """Which pieces of the ground a contact bears on: of each belt the nearest, if any."""
+    def pieces_at(self, point: Array, lane: int, carrier: int) -> tuple[int, ...]:
+        """Which piece of the ground inside its own track a contact bears on, the nearest."""
         way = self.grounds[lane].along(point[None])[0]
-        near: dict[int, tuple[float, int]] = {}
+        near = (math.inf, -1)
         for i, (piece, loop) in enumerate(zip(self.pieces, self.loops, strict=True)):
             distance = min(max(first - way, way - last) for first, last in piece.spans)
-            if loop.lane == lane and distance <= BESIDE:
-                best = near.get(loop.carrier, (math.inf, -1))
-                near[loop.carrier] = min(best, (distance, i))
-        return tuple(i for _, i in near.values())
+            if (loop.lane, loop.carrier) == (lane, carrier) and distance <= BESIDE:
+                near = min(near, (distance, i))
+        return near[1:] if near[1] >= 0 else ()
 
     def _loads(self) -> None:
         self.forces = [0.0] * len(self.pieces)
@@ -201,7 +200,8 @@ class Stop:
             for i in self.loaded
             if self.pieces[i].root_normal is not None and len(set(self.beside(i))) == 2
         ]
-        self.most_loaded = max(self.loaded, key=self.forces.__getitem__, default=None)
+        inside = self.pockets or self.loaded
+        self.most_loaded = max(inside, key=self.forces.__getitem__, default=None)
 
     def beside(self, piece: int) -> list[int]:
         """The bodies on either side of a piece."""

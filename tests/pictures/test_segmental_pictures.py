@@ -100,7 +100,7 @@ def test_a_chain_that_stalls_is_told_by_its_shoes(shape: Any) -> None:
     run = stalled(shape)
     assert run.outcome == c2d.Outcome.STALLED
     told = str(run.diagnosis)
-    assert "into the track between two shoes, at x" in told
+    assert "inside the track between two shoes;" in told
     name = {"rectangle": "a grouser", "trapezoid": "a shoe"}[shape]
     assert f"; {name} bears on it with" in told
     assert "wheel" not in told

@@ -56,23 +56,25 @@ def table() -> xr.Dataset:
     mechanisms = np.where(outcomes == "seized", "undercut", "")
     mechanisms[1, 1, :3] = "blocked"
     mechanisms[0, 1, 0] = "straddled"
-    causes = np.where(outcomes == "seized", "pocket", np.where(stopped, "torque", ""))
-    causes = causes.astype("<U20")
-    causes[0, 1, 3] = "pocket or torque"
+    every_other = np.arange(10) % 2 == 0
     figures = {
         "time": zero + 10.0,
         "wall_time": zero + 0.1,
         "max_penetration": zero + np.array([[[1e-4]], [[3e-4]]]),
         "intrusion_depth": zero + np.arange(10) * 1e-3,
         "intrusion_root_depth": zero + np.arange(10) * 0.5e-3,
-        "seized_at_tips": outcomes == "seized",
-        "belt_freed": stopped & (np.arange(10) % 2 == 0),
+        "jammed": outcomes == "seized",
+        "passing": outcomes == "timed_out",
+        "freed_by_closed_track": stopped & every_other,
+        "freed_by_closed_track_clear_of_the_ground": stopped & (np.arange(10) == 1),
+        "freed_by_torque_x2": outcomes == "stalled",
+        "freed_by_friction_x2": stopped & (outcomes == "seized") & every_other,
+        "freed_by_no_belly": outcomes == "hung_up",
     }
     return xr.Dataset(
         {
             "outcome": (dims, outcomes.astype(str)),
             "mechanism": (dims, mechanisms),
-            "cause": (dims, causes),
             **{name: (dims, values) for name, values in figures.items()},
             # Three poses of each cell: 1.2 mm apart, in metres.
             "final_x": (dims, zero + 1.2e-3 * (np.arange(10) % 3)),
@@ -149,22 +151,23 @@ def test_a_climb_tells_the_greatest_height_and_the_gaps_below_it(table: xr.Datas
     assert lines[-1].split() == ["second", "Fig.", "3", "none", "100", "0.30"]
 
 
-def test_stops_tell_outcomes_mechanisms_and_what_a_belt_does(table: xr.Dataset) -> None:
+def test_stops_tell_outcomes_mechanisms_and_what_frees_the_robot(table: xr.Dataset) -> None:
     first, second = stops(table, "step", belt="first")
     assert (first.count, first.cleared, first.seized, first.stopped) == (40, 24, 6, 6)
     assert (first.mechanism, first.of_mechanism) == ("undercut", 5)
-    assert (first.seized_alone, second.seized_alone) == (5, 1)
-    assert (first.at_tips, first.unnatural_stops, first.unnatural_passes) == (6, 3, 0)
+    assert (first.jammed, first.unnatural_stops, first.unnatural_passes) == (6, 4, 0)
+    assert (first.freed_by_torque, first.freed_by_friction, first.freed_by_no_belly) == (0, 3, 0)
+    assert (first.passing, second.passing) == (0, 0)
     assert first.depth == pytest.approx(2.5e-3)  # of 0 to 5 mm
     assert first.root_depth == pytest.approx(1.25e-3)
     assert (second.count, second.cleared, second.seized, second.stalled) == (39, 2, 1, 36)
     assert (second.mechanism, second.of_mechanism) == ("", 33)
-    assert (second.at_tips, second.unnatural_passes) == (1, 2)
+    assert (second.jammed, second.freed_by_torque, second.unnatural_passes) == (1, 36, 2)
     assert (second.hung_up, second.slipping, second.cycling) == (0, 0, 0)
     *_, one, other = stops_report.stops_text([first, second]).splitlines()
-    assert one.split()[:6] == ["first", "step", "40", "24", "-", "6"]
+    assert one.split()[:6] == ["first", "step", "40", "24", "6", "-"]
     assert "undercut, 5" in one
-    assert one.split()[-6:] == ["83", "100", "50", "-", "2.5", "1.2"]
+    assert one.split()[-8:] == ["100", "67", "0", "50", "0", "-", "2.5", "1.2"]
     assert "none, 33" in other
     assert other.split()[-3:] == ["2", "2.0", "1.0"]
 
@@ -174,7 +177,7 @@ def test_a_model_that_never_stops_has_no_shares_of_stops(table: xr.Dataset) -> N
     assert (row.stopped, row.mechanism, row.of_mechanism) == (0, "", 0)
     assert math.isnan(row.depth)
     line = stops_report.stops_text([row]).splitlines()[-1]
-    assert line.split() == ["first", "step", "10", "10", *["-"] * 13]
+    assert line.split() == ["first", "step", "10", "10", *["-"] * 14]
 
 
 def test_gear_wheels_are_set_against_round_ones_with_intervals(table: xr.Dataset) -> None:

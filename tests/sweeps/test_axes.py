@@ -148,7 +148,7 @@ def test_an_element_and_a_field_that_are_called_alike_are_named_in_full() -> Non
 
 
 def test_no_axis_takes_the_name_of_a_column_of_the_table_or_of_its_rates() -> None:
-    table = sweep(BASE, {}, repeats=2, counterfactual=True, wall_time=True, vary={}, progress=False)
+    table = sweep(BASE, {}, repeats=2, trials="all", wall_time=True, vary={}, progress=False)
     assert {*METRICS, *COLUMNS} >= {*map(str, table.variables), *map(str, rate(table).variables)}
     wheels = BASE.replace({"robot.track": c2d.LineOfWheels(3)})
     found = quiet(wheels, {"robot.track.count": [3, 5]})

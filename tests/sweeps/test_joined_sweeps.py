@@ -87,6 +87,6 @@ def test_sweeps_of_two_seeds_do_not_merge() -> None:
 
 
 def test_a_column_that_only_one_of_two_sweeps_has_is_kept() -> None:
-    plain, tried = over(LOW), over(LOW, counterfactual=True, wall_time=True)
+    plain, tried = over(LOW), over(LOW, trials="auto", wall_time=True)
     merged = xr.merge([plain, tried], **OUTER)
     xr.testing.assert_equal(merged, tried)

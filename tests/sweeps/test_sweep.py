@@ -126,36 +126,46 @@ def test_stops_have_their_mechanism_and_others_none(table: xr.Dataset) -> None:
     assert set(table["mechanism"].values.ravel().tolist()) <= {"", *c2d.Mechanism}
     cleared = table["outcome"] == "cleared"
     assert (table["mechanism"].where(cleared, "") == "").all()
-    assert (table["cause"].where(cleared, "") == "").all()
-    assert not table["seized_at_tips"].where(cleared, False).any()
-    assert "belt_freed" not in table
-    assert "belt_distance" not in table
+    for name in ("symptom", "stop_bodies", "stop_carrier", "belly_side", "then_closed_track"):
+        assert (table[name].where(cleared, "") == "").all(), name
+    for name in ("jammed", "passing", "tried_closed_track", "freed_by_closed_track"):
+        assert not table[name].where(cleared, False).any(), name
+    assert table["stop_x"].where(cleared).isnull().all()
+    assert "tried_torque_x2" not in table
 
 
-def test_a_tried_belt_has_its_columns() -> None:
+def test_a_trial_that_was_asked_for_has_its_columns() -> None:
     seizing = BASE.replace({"terrain.height": 0.10, "duration": 8.0})
     models = {"line of 4": c2d.LineOfWheels(4), "skids": c2d.ForceTrack()}
     over = {"robot.track": models, "terrain.height": [0.02, 0.10]}
-    found = quiet(seizing, over, counterfactual=True)
+    found = quiet(seizing, over, trials=("friction x 2", "torque x 2"))
     stopped = found["outcome"].isin([str(o) for o in c2d.Outcome if o.is_stop])
     assert 0 < stopped.sum() < stopped.size
-    assert (found["belt_distance"].notnull() == stopped).all()
-    assert not (found["belt_freed"] & ~stopped).any()
+    for name in ("torque_x2", "friction_x2"):
+        assert (found[f"tried_{name}"] == stopped).all()
+        assert not (found[f"freed_by_{name}"] & ~stopped).any()
+        assert ((found[f"then_{name}"] != "") == stopped).all()
     at_edge = found.sel(track="line of 4", height=0.10)
     assert at_edge["outcome"].values.tolist() == ["seized"] * 2
     assert at_edge["mechanism"].values.tolist() == ["straddled"] * 2
-    assert at_edge["cause"].values.tolist() == ["pocket"] * 2
-    assert at_edge["seized_at_tips"].values.tolist() == at_edge["belt_freed"].values.tolist()
-    assert found["belt_distance"].attrs["units"] == "m"
-    # Trying a belt changes nothing else.
+    assert at_edge["jammed"].values.all()
+    assert at_edge["freed_by_closed_track"].values.all()
+    assert at_edge["stop_bodies"].values.tolist() == ["1-2"] * 2
+    assert at_edge["stop_carrier"].values.tolist() == ["chassis"] * 2
+    assert at_edge["stop_side"].values.tolist() == ["both"] * 2
+    assert at_edge["stop_edge"].values.tolist() == [1] * 2
+    assert found["stop_x"].attrs["units"] == "m"
+    # Trials change nothing else.
     plain = quiet(seizing, over)
-    xr.testing.assert_identical(found.drop_vars(["belt_freed", "belt_distance"]), plain)
+    extra = [name for name in found if str(name).endswith(("torque_x2", "friction_x2"))]
+    assert len(extra) == 6
+    xr.testing.assert_identical(found.drop_vars(extra), plain)
 
 
-def test_a_belt_that_was_asked_for_has_its_columns_though_nothing_stopped() -> None:
-    found = quiet(BASE, {"terrain.height": [0.01]}, counterfactual=True)
-    assert found["belt_freed"].values.tolist() == [[False, False]]
-    assert found["belt_distance"].isnull().all()
+def test_a_trial_that_was_asked_for_has_its_columns_though_nothing_stopped() -> None:
+    found = quiet(BASE, {"terrain.height": [0.01]}, trials=("no belly",))
+    assert found["freed_by_no_belly"].values.tolist() == [[False, False]]
+    assert found["then_no_belly"].values.tolist() == [["", ""]]
 
 
 def test_the_number_of_threads_does_not_change_the_table() -> None:

@@ -93,6 +93,9 @@ class LineOfWheels(Parameters):
         the spacing the wheels touch; larger ones overlap, smaller ones leave gaps.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
+    as_track : bool
+        Whether the wheels stand for a track. False: nothing runs round them, as on a wheeled robot
+        or between the flippers of MARV, and no ground between them is inside a track.
 
     Examples
     --------
@@ -107,6 +110,7 @@ class LineOfWheels(Parameters):
     _: KW_ONLY
     wheel_radius: float | None = None
     wheel: Wheel = RoundWheel()
+    as_track: bool = True
 
 
 @dataclass(frozen=True, slots=True)

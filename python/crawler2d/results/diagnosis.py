@@ -1,4 +1,4 @@
-"""Why a robot stopped: outcome, mechanism and cause, with the figures behind them."""
+"""Why a robot stopped: what is seen, what was tried, and the figures behind them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from crawler2d.common.table import Table
-from crawler2d.results.findings import Condition, Counterfactual, Findings, Intrusion, Mechanism
+from crawler2d.results.findings import Findings, Intrusion, Mechanism, Tried
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.sentence import sentence
 
@@ -24,17 +24,25 @@ class Diagnosis(Findings):
     Attributes
     ----------
     outcome : Outcome
-        Which kind of stop it is.
+        Which kind of stop it is, after what was tried: "seized" if the robot is `jammed` and a
+        closed track gets free, else the symptom; "timed_out" if it was `passing`.
+    symptom : Outcome
+        What is seen, before anything is tried: cycling, hung_up, stalled or slipping.
+    passing : bool
+        Whether the stop would not have lasted: the unchanged robot got free when it went on, or
+        when its track was built anew.
+    trials : tuple of Tried
+        What was tried, in this order, and what came of it.
+    freed_by : tuple of str
+        Names of the trials that freed the robot.
+    belly_side : {"", "underside", "tail", "nose"}
+        Where the ground pushes against the belly: at its tail if the robot stands on that.
+    jammed : bool
+        Whether ground between two bodies of a track, deeper than their root circles, bears on that
+        track.
     mechanism : Mechanism or None
-        How the most loaded ground inside the track is held, whether that is the cause or not. None
+        How the most loaded ground inside the track is held, whether that is the reason or not. None
         if there is no such ground, or if one body sticks to it and turns with it.
-    cause : tuple of tuple of Condition
-        The smallest sets of conditions without which there is no equilibrium: pockets (closed),
-        belly (removed), torque limit (lifted), friction (doubled). More than one set is a tie. None
-        means that there is no certificate, or that relaxing all of them would not free the robot.
-    seized_at_tips : bool
-        Whether closing the pockets would end the equilibrium if the track reached out to the
-        circumscribed circles. Ground between the grousers of one wheel then counts as in a pocket.
     time, since : float
         [s] When the stop was examined, and when it began.
     position : tuple of float
@@ -42,7 +50,8 @@ class Diagnosis(Findings):
     chassis_angle : float
         [rad] Chassis angle, nose up > 0.
     intrusion : Intrusion or None
-        The most loaded ground inside the track, if it carries more than `criteria.intrusion_load`.
+        The most loaded ground inside the track, if it carries more than `criteria.intrusion_load`:
+        where it is `jammed`, or else anywhere.
     contacts : Table
         The contacts that bear: the columns of `Run.contacts` without `time` and `penetration`, plus
         `slides` and `in_pocket`.
@@ -61,13 +70,6 @@ class Diagnosis(Findings):
         weight.
     certified : bool
         The imbalance is within `criteria`: the pose may be an equilibrium.
-    escape_force, free_escape_force : float or None
-        [N] Largest push at the centre of mass, along the command, that can still be balanced.
-        `escape_force`: here or within the next 5 mm, while surfaces keep sliding and motors keep
-        pushing. `free_escape_force`: here, with every contact and motor free to hold within its
-        limits. inf: wedged. None without a certificate, and for a state that keeps rattling.
-    counterfactual : Counterfactual or None
-        How a closed belt fares from this pose, if the run was made with ``counterfactual=True``.
     """
 
     @classmethod
@@ -76,11 +78,10 @@ class Diagnosis(Findings):
         values = dict(plain)
         mechanism, inside = values["mechanism"], values["intrusion"]
         values["outcome"] = Outcome(values["outcome"])
+        values["symptom"] = Outcome(values["symptom"])
+        values["trials"] = tuple(map(Tried.from_core, values["trials"]))
         values["mechanism"] = None if mechanism is None else Mechanism(mechanism)
         values["intrusion"] = None if inside is None else Intrusion(**inside)
-        values["cause"] = tuple(tuple(map(Condition, names)) for names in values["cause"])
-        belt = values["counterfactual"]
-        values["counterfactual"] = None if belt is None else Counterfactual.from_core(belt)
         values["contacts"] = Table(values["contacts"])
         return cls(**values)
 
@@ -88,8 +89,7 @@ class Diagnosis(Findings):
         """Write the dictionary that `from_core` reads."""
         plain = {field.name: getattr(self, field.name) for field in fields(self)}
         plain["contacts"] = dict(self.contacts)
-        belt = self.counterfactual
-        plain["counterfactual"] = None if belt is None else asdict(belt)
+        plain["trials"] = tuple(asdict(tried) for tried in self.trials)
         plain["intrusion"] = None if self.intrusion is None else asdict(self.intrusion)
         return plain
 

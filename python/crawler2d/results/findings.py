@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, Literal
 
 from crawler2d.common.table import Table
+from crawler2d.results.bodies import BodyKind
+from crawler2d.results.glossary import MECHANISMS, listed
 from crawler2d.results.outcome import Outcome
 
-__all__ = ["Condition", "Counterfactual", "Findings", "Intrusion", "Mechanism"]
+__all__ = ["Findings", "Intrusion", "Mechanism", "Tried"]
 
 
 class Mechanism(StrEnum):
@@ -24,14 +27,14 @@ class Mechanism(StrEnum):
     STRADDLED = "straddled"
     UNDERCUT = "undercut"
 
+    @property
+    def meaning(self) -> str:
+        """What it means, in a few words."""
+        return MECHANISMS[self.value]
 
-class Condition(StrEnum):
-    """A condition of an equilibrium that can be relaxed."""
 
-    POCKET = "pocket"
-    BELLY = "belly"
-    TORQUE = "torque"
-    FRICTION = "friction"
+if Mechanism.__doc__ is not None:  # not so with python -OO
+    Mechanism.__doc__ += "\n\n" + listed(MECHANISMS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +51,10 @@ class Intrusion:
         The bodies on either side of the deepest point, in order of belt travel.
     body_kinds : tuple of int
         Kinds of these bodies, as in the contacts.
+    side : {"both", "left", "right"}
+        Which track it is in; "both" where the tracks meet the same ground.
+    carrier : {"chassis", "front flipper", "rear flipper"}
+        What carries that track.
     depth, root_depth : float
         [m] Depth inside the belt round the circumscribed circles and round the root circles.
     x, y : float
@@ -60,6 +67,8 @@ class Intrusion:
     edges: tuple[int, ...]
     bodies: tuple[int, int]
     body_kinds: tuple[int, int]
+    side: str
+    carrier: str
     depth: float
     root_depth: float
     x: float
@@ -68,41 +77,60 @@ class Intrusion:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Counterfactual:
-    """How a closed belt fares in the pose of a stop; see `Run.counterfactual`.
+class Tried:
+    """What came of one change at a stop; see `Trial`.
 
     Attributes
     ----------
+    name : str
+        What was changed.
     freed : bool
-        Whether it advanced more than `criteria.escape_distance` within `criteria.escape_time`. If
-        so, the wheels caused the stop: it is *unnatural*.
+        Whether that freed the robot: within `criteria.escape_time`, plus the time in which it would
+        drive `criteria.escape_distance` as commanded, it cleared, or got ahead of its greatest x by
+        `criteria.escape_distance` and had neither tipped over nor left the terrain.
+    starts, freeing : int
+        From how many instants it was tried, and from how many of these it freed the robot. A robot
+        that stands still is tried from one; one that rattles from up to five, a fifth of a stop
+        window apart, of which four must free it.
     distance : float
-        [m] How far it advanced in that time, in the commanded direction.
+        [m] How far the robot got ahead of its greatest x; less than 0 if it did not come so far.
     time : float
-        [s] How long it took to escape; inf if it did not.
+        [s] How long it took to get free; inf if it did not.
     outcome : Outcome
-        Its outcome at the end of that time.
+        How it ended: cleared, tipped over, timed out while it was moving, or what was seen of the
+        next stop, of which nothing was tried.
+    jammed : bool
+        Whether it ended in a stop with ground between two bodies of a track again.
+    duration : float
+        [s] For how long it was tried, unless it ended before.
     """
 
+    name: str
     freed: bool
+    starts: int
+    freeing: int
     distance: float
     time: float
     outcome: Outcome
+    jammed: bool
+    duration: float
 
     @classmethod
-    def from_core(cls, plain: Mapping[str, Any]) -> Counterfactual:
+    def from_core(cls, plain: Mapping[str, Any]) -> Tried:
         """Convert the dictionary that the core returns."""
         return cls(**{**plain, "outcome": Outcome(plain["outcome"])})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Findings:
-    """The fields of a `Diagnosis`, which documents them."""
+    """The fields of a `Diagnosis`, which documents them, and what follows from them."""
 
     outcome: Outcome
+    symptom: Outcome
+    passing: bool
+    trials: tuple[Tried, ...]
+    jammed: bool
     mechanism: Mechanism | None
-    cause: tuple[tuple[Condition, ...], ...]
-    seized_at_tips: bool
     time: float
     since: float
     position: tuple[float, float]
@@ -116,6 +144,26 @@ class Findings:
     stationary: bool
     imbalance: float | None
     certified: bool
-    escape_force: float | None
-    free_escape_force: float | None
-    counterfactual: Counterfactual | None
+
+    @property
+    def freed_by(self) -> tuple[str, ...]:
+        """Names of the trials that freed the robot."""
+        return tuple(tried.name for tried in self.trials if tried.freed)
+
+    @property
+    def belly_side(self) -> Literal["", "underside", "tail", "nose"]:
+        """Where the ground pushes against the belly; "" if it does not.
+
+        At the tail or the nose if it pushes along the belly more than away from its underside: so
+        it does when a robot stands on the tail of its hull.
+        """
+        on_it = self.contacts["body_kind"] == BodyKind.BELLY
+        force = self.contacts["normal_force"][on_it]
+        if not force.size:
+            return ""
+        x, y = (force @ self.contacts[name][on_it] for name in ("normal_x", "normal_y"))
+        sine, cosine = math.sin(self.chassis_angle), math.cos(self.chassis_angle)
+        along, across = cosine * x + sine * y, cosine * y - sine * x
+        if abs(along) <= across:
+            return "underside"
+        return "tail" if along > 0.0 else "nose"

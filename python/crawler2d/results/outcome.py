@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 
 from crawler2d import _core
+from crawler2d.results.glossary import OUTCOMES, listed
 
 __all__ = ["Outcome"]
 
@@ -15,15 +16,15 @@ class Outcome(StrEnum):
     Examples
     --------
     >>> [str(outcome) for outcome in Outcome if outcome.is_stop]
-    ['cycling', 'seized', 'hung_up', 'stalled', 'slipping']
+    ['seized', 'cycling', 'hung_up', 'stalled', 'slipping']
     """
 
     DETRACKED = "detracked"
     TIPPED_OVER = "tipped_over"
     LEFT_TERRAIN = "left_terrain"
     CLEARED = "cleared"
-    CYCLING = "cycling"
     SEIZED = "seized"
+    CYCLING = "cycling"
     HUNG_UP = "hung_up"
     STALLED = "stalled"
     SLIPPING = "slipping"
@@ -34,5 +35,13 @@ class Outcome(StrEnum):
         """Whether the robot made no progress although commanded to move."""
         return self in _STOPS
 
+    @property
+    def meaning(self) -> str:
+        """What it means, in a few words."""
+        return OUTCOMES[self.value]
+
+
+if Outcome.__doc__ is not None:  # not so with python -OO
+    Outcome.__doc__ += "\n" + listed(OUTCOMES)
 
 _STOPS = frozenset(_core.kinds()["stop"])

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crawler2d.results.bodies import BodyKind
+from crawler2d.results.outcome import Outcome
 
 if TYPE_CHECKING:
-    from crawler2d.results.findings import Findings, Intrusion
+    from crawler2d.results.findings import Findings, Intrusion, Tried
 
 __all__ = ["sentence"]
 
@@ -34,60 +33,135 @@ _LEAST_DEPTH = 5e-4
 """[m] Smaller depths round to 0 mm."""
 _LEAST_SLIP = 5e-3
 """[m/s] Slower slip is not worth telling."""
-
-_MOVES = {
-    "pocket": "a closed track",
-    "belly": "removing the belly",
-    "torque": "more torque",
-    "friction": "twice the friction",
+_CHANGED = {
+    "closed track": "closed track",
+    "closed track, clear of the ground": "closed track, set down clear of the ground",
+    "closed smooth track": "smooth closed track",
+    "one motor": "one motor for all wheels",
+    "torque x 2": "twice the torque",
+    "torque x 10": "ten times the torque",
+    "friction x 2": "twice the friction",
+    "no belly": "without its belly",
+    "flippers level": "flippers level",
 }
-
-
-# What the mechanism adds to the bodies that bear on the ground inside.
+"""What a trial changes, in words; the controls change nothing."""
+_STAYS = {
+    Outcome.CYCLING: "goes to and fro",
+    Outcome.HUNG_UP: "hangs on its belly",
+    Outcome.STALLED: "is stalled",
+    Outcome.SLIPPING: "slips",
+}
+"""What is seen of the stop in which a trial ends."""
+_ENDS = {
+    Outcome.CLEARED: "clears",
+    Outcome.TIPPED_OVER: "tips over",
+    Outcome.LEFT_TERRAIN: "leaves the ground",
+    Outcome.DETRACKED: "throws its track",
+}
+"""How else a trial ends."""
 _HELD = {
     "interlocked": ", with the flank of a grouser against it",
     "pinched": ", closing the gap around it",
 }
+"""What the mechanism adds to the bodies that bear on the ground inside."""
 
 
 def sentence(found: Findings) -> str:
-    """Say what was found about a stop, the most telling facts first.
+    """Say what was found about a stop, then what was tried.
 
     Each clause states one fact; what follows from the outcome or from another clause is left out.
     """
     d = found
-    names = [str(d.outcome), *([] if d.mechanism is None else [str(d.mechanism)])]
-    head = ", ".join(name.replace("_", " ") for name in names)
-    tellers = (_inside, _on_it, _belly, _drives, _progress, _moved_by, _belt)
+    tellers = (_inside, _on_it, _belly, _drives, _progress, _balance)
     said = "; ".join(clause for clause in (tell(d) for tell in tellers) if clause)
-    return f"{head}: {said}" if said else head
+    facts = f"{_head(d)}: {said}" if said else _head(d)
+    told = [f"{_CHANGED[t.name]}: {_came(t)}" for t in d.trials if t.name in _CHANGED]
+    if d.passing:
+        return f"{facts}. {_goes_on(d)}"
+    return f"{facts}. Tried: {'; '.join(told)}" if told else facts
+
+
+def _head(d: Findings) -> str:
+    if d.passing:
+        return f"in passing, {_word(d.symptom)}"
+    where = _where(d.intrusion) if d.outcome == Outcome.SEIZED and d.intrusion else ""
+    on_end = d.outcome == Outcome.HUNG_UP and d.belly_side in ("tail", "nose")
+    return f"{_word(d.outcome)}{where}" + (f" on the {d.belly_side} of its hull" if on_end else "")
+
+
+def _word(outcome: Outcome) -> str:
+    return str(outcome).replace("_", " ")
+
+
+def _goes_on(d: Findings) -> str:
+    """Say which control left a passing stop."""
+    left = next(tried for tried in d.trials if tried.freed)
+    by_itself = left.name == "unchanged"
+    how = "It goes on by itself" if by_itself else "With its track built anew it goes on"
+    return f"{how}: {_came(left)}"
+
+
+def _came(tried: Tried) -> str:
+    """Say what came of a trial."""
+    if tried.freed:
+        said = f"free after {tried.time:.1f} s"
+        if tried.outcome != Outcome.TIMED_OUT:
+            said += f", then {_end(tried)}"
+    elif tried.outcome == Outcome.TIMED_OUT:
+        said = "still moving, but not free"
+    else:
+        said = _end(tried)
+        if tried.distance >= _LEAST_DEPTH and tried.outcome in _STAYS:
+            said += f" {1e3 * tried.distance:.0f} mm further on"
+    if tried.starts > 1:
+        said += f" ({tried.freeing} of {tried.starts} times free)"
+    return said
+
+
+def _end(tried: Tried) -> str:
+    if tried.jammed:
+        return "is jammed again"
+    return _ENDS.get(tried.outcome) or _STAYS[tried.outcome]
 
 
 def _inside(d: Findings) -> str:
+    """Say what ground is inside the track, and where, unless the head says that."""
     piece = d.intrusion
     if piece is None:
         return ""
-    rear, front = sorted(piece.bodies)
-    kind = BodyKind(piece.body_kinds[0])
-    has_grousers = piece.depth - piece.root_depth > _LEAST_DEPTH
-    if rear != front and kind.is_in_chain:
-        where = f"under the shoes between {' and '.join(_in_chain(piece))}"
-    elif rear != front:
-        where = f"between wheels {rear} and {front}"
-    elif kind.is_in_chain:
-        where = "between two shoes"
-    elif has_grousers:
-        where = f"between two grousers of {_NAMES.get(kind, f'wheel {rear}')}"
-    else:
-        where = f"at {_NAMES.get(kind, f'wheel {rear}')}"
+    where = "" if d.outcome == Outcome.SEIZED and not d.passing else _where(piece)
     roots = ""
-    if has_grousers and rear != front:
+    if _has_grousers(piece) and piece.bodies[0] != piece.bodies[1]:
         is_past = piece.root_depth > _LEAST_DEPTH
         how_far = f"{1e3 * piece.root_depth:.0f} mm past" if is_past else "not as far as"
         roots = f" ({how_far} the grouser roots)"
-    place = f"at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
-    reach = f"edge {piece.edge} reaches {1e3 * piece.depth:.0f} mm into the track"
-    return f"{reach}{roots} {where}, {place}"
+    place = f"the ground at x = {piece.x:z.3f} m, y = {piece.y:z.3f} m"
+    return f"{place} stands {1e3 * piece.depth:.0f} mm inside {_track(piece)}{roots}{where}"
+
+
+def _has_grousers(piece: Intrusion) -> bool:
+    return piece.depth - piece.root_depth > _LEAST_DEPTH
+
+
+def _track(piece: Intrusion) -> str:
+    side = "" if piece.side == "both" else f"{piece.side} "
+    if piece.carrier == "chassis":
+        return f"the {side}track"
+    return f"the track of the {side}{piece.carrier}"
+
+
+def _where(piece: Intrusion) -> str:
+    """Say between which bodies a piece of ground is."""
+    rear, front = sorted(piece.bodies)
+    kind = BodyKind(piece.body_kinds[0])
+    if rear != front and kind.is_in_chain:
+        return f" under the shoes between {' and '.join(_in_chain(piece))}"
+    if rear != front:
+        return f" between wheels {rear} and {front}"
+    if kind.is_in_chain:
+        return " between two shoes"
+    name = _NAMES.get(kind, f"wheel {rear}")
+    return f" between two grousers of {name}" if _has_grousers(piece) else f" at {name}"
 
 
 def _in_chain(piece: Intrusion) -> list[str]:
@@ -132,21 +206,13 @@ def _name(d: Findings, body: int) -> str:
     return _NAMES.get(kind, f"wheel {body}")
 
 
-def _is_belt(d: Findings) -> bool:
-    """Whether the track is a belt, with or without grousers."""
-    if d.intrusion is not None:
-        return d.intrusion.body_kinds[0] == BodyKind.BELT
-    kinds = d.contacts["body_kind"]
-    of_chain = [kind for kind in BodyKind if kind == BodyKind.SHOE or kind.is_in_chain]
-    is_chain = np.isin(kinds, of_chain).any()
-    return bool(np.isin(kinds, (BodyKind.BELT, BodyKind.GROUSER)).any() and not is_chain)
-
-
 def _belly(d: Findings) -> str:
     on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == BodyKind.BELLY)
-    if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != "hung_up"):
+    if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != Outcome.HUNG_UP):
         return ""
-    return f"the belly carries {_percent(d.belly_share)} of the load"
+    side = d.belly_side
+    what = f"the {side}" if side in ("tail", "nose") else "the belly"
+    return f"{what} carries {_percent(d.belly_share)} of the load"
 
 
 def _drives(d: Findings) -> str:
@@ -154,9 +220,11 @@ def _drives(d: Findings) -> str:
     if d.stalled_share > 0.0:
         of = "" if d.stalled_share == 1.0 else f"{_percent(d.stalled_share)} of "
         return f"{of}the motors are at their torque limit"
+    if d.symptom == Outcome.CYCLING:
+        return "it moves to and fro"
     track = d.contacts["body_kind"] != BodyKind.BELLY
     forces = d.contacts["normal_force"][track]
-    if d.outcome not in ("slipping", "cycling") or forces.sum() == 0.0:
+    if d.outcome != Outcome.SLIPPING or forces.sum() == 0.0:
         return ""
     slip = float(np.average(np.abs(d.contacts["surface_speed"][track]), weights=forces))
     return f"the track slips at {slip:.2f} m/s" if slip > _LEAST_SLIP else ""
@@ -168,50 +236,15 @@ def _progress(d: Findings) -> str:
     return f"it still creeps at {_percent(d.progress)} of the commanded speed"
 
 
-def _moved_by(d: Findings) -> str:
-    """Say what would end the equilibrium: relaxing a condition, or a push."""
-    if not d.certified:
-        if d.imbalance is None:
-            return "the balance of forces could not be computed"
-        residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
-        return f"no contact forces balance it: {residual}"
-    # If a closed belt has been tried, `_belt` says how it fared.
-    tried = () if d.counterfactual is None else (("pocket",),)
-    ways = [" plus ".join(_MOVES[each] for each in way) for way in d.cause if way not in tried]
-    push = d.escape_force
-    wedged = push is not None and math.isinf(push)
-    if push is not None and not wedged:
-        ways.append(f"a push of {push:.0f} N" if push >= 0.5 else "the slightest push")
-    helpless = {"stalled": "more torque", "slipping": "twice the friction"}
-    known = d.sliding_share if d.outcome == "slipping" else d.stalled_share
-    in_vain = [helpless[d.outcome]] if not d.cause and known and d.outcome in helpless else []
-    if wedged:
-        in_vain.append("any push")
-    if ways:
-        no_help = "no push would" if wedged else f"{in_vain[0]} would not" if in_vain else ""
-        but = f", but {no_help}" if no_help else ""
-        return f"{_listed(ways)} would free it{but}"
-    if len(in_vain) == 2:
-        return f"neither {in_vain[0]} nor {in_vain[1]} would free it"
-    if wedged:
-        return "no push would free it"
-    return f"{in_vain[0]} would not free it" if in_vain else ""
-
-
-def _belt(d: Findings) -> str:
-    if d.counterfactual is None or _is_belt(d):
+def _balance(d: Findings) -> str:
+    """Say so if the forces do not balance."""
+    if d.certified:
         return ""
-    if d.counterfactual.freed:
-        return "a closed belt escapes from the same pose"
-    advance = 1e3 * d.counterfactual.distance
-    how_far = f" (it advances {advance:.0f} mm)" if advance >= 0.5 else ""
-    return f"a closed belt does not escape from the same pose either{how_far}"
+    if d.imbalance is None:
+        return "the balance of forces could not be computed"
+    residual = f"the smallest residual is {100 * d.imbalance:.2g} % of the weight"
+    return f"no contact forces balance it: {residual}"
 
 
 def _percent(share: float) -> str:
     return f"{100 * share:.0f} %"
-
-
-def _listed(names: Sequence[str]) -> str:
-    *first, last = names
-    return f"{', '.join(first)} or {last}" if first else last

@@ -17,9 +17,10 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.progress import Progress, reporter
-from crawler2d.runs.recording import Recording, recording, yes_or_no
+from crawler2d.runs.recording import Recording, recording
 from crawler2d.runs.run import Run
 from crawler2d.runs.threads import thread_count
+from crawler2d.runs.trials import Trials, trial_names
 
 __all__ = ["simulate", "simulate_many", "simulate_passed"]
 
@@ -30,7 +31,7 @@ def simulate(
     *,
     record: Recording = "full",
     sample_interval: float = 0.01,
-    counterfactual: bool = False,
+    trials: Trials = "auto",
     **fields: Any,
 ) -> Run:
     """Simulate one scenario to its end.
@@ -45,8 +46,10 @@ def simulate(
         Whether to keep the history, or only outcome, metrics and events.
     sample_interval : float
         [s] Time between samples of the history: they fall on its multiples, and on the end.
-    counterfactual : bool
-        Whether to try a closed belt if the run ends in a stop; see `Run.counterfactual`.
+    trials : {"auto", "all"} or sequence of str, optional
+        What to try if the run ends in a stop, see `Run.trials`. What the outcome needs is always
+        tried: whether the stop lasts and, if the robot is jammed, a closed track. None adds
+        nothing, "auto" twice the torque and twice the friction.
     **fields : object
         Other fields of the scenario, such as ``duration=5.0``.
 
@@ -73,8 +76,7 @@ def simulate(
     <Outcome.CLEARED: 'cleared'>
     """
     complete = _complete(scenario, terrain).replace(fields)
-    asked = yes_or_no(counterfactual, "counterfactual")
-    recorded = (*recording(sample_interval, record), asked)
+    recorded = (*recording(sample_interval, record), list(trial_names(trials)))
     return Run(complete, _core.simulate(complete.to_json(), *recorded))
 
 
@@ -84,7 +86,7 @@ def simulate_many(
     threads: int | None = None,
     record: Recording = "full",
     sample_interval: float = 0.01,
-    counterfactual: bool = False,
+    trials: Trials = None,
     progress: bool | Progress | None = False,
     on_error: Literal["raise", "record"] = "raise",
 ) -> list[Run]:
@@ -101,8 +103,8 @@ def simulate_many(
         Whether to keep the histories, or only outcomes, metrics and events.
     sample_interval : float
         [s] Time between samples of the histories: they fall on its multiples, and on the end.
-    counterfactual : bool
-        Whether to try a closed belt for every run that ends in a stop; see `Run.counterfactual`.
+    trials : {"auto", "all"} or sequence of str, optional
+        What to try in every run that ends in a stop; see `simulate`.
     progress : bool or callable
         True shows a bar; a callable is given the number of finished runs and of all runs.
     on_error : {"raise", "record"}
@@ -137,8 +139,7 @@ def simulate_many(
     """
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    asked = yes_or_no(counterfactual, "counterfactual")
-    recorded = (*recording(sample_interval, record), asked)
+    recorded = (*recording(sample_interval, record), list(trial_names(trials)))
     count = thread_count(threads)
     batch = list(scenarios)
     checked = _checked(batch)
@@ -153,7 +154,7 @@ def simulate_many(
 def simulate_passed(
     scenarios: Sequence[Scenario],
     checked: Sequence[_core.Passed | ScenarioError],
-    recorded: tuple[float, str, bool],
+    recorded: tuple[float, str, list[str]],
     *,
     threads: int,
     progress: bool | Progress | None,

@@ -9,8 +9,7 @@ from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.track import ClosedTrack
-from crawler2d.results.findings import Counterfactual
-from crawler2d.runs.recording import Recording, recording, yes_or_no
+from crawler2d.runs.recording import Recording, recording
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from crawler2d.parameters.track import Track
     from crawler2d.results.record import Record
 
-__all__ = ["branch_scenario", "branch_time", "simulate_branch", "try_belt"]
+__all__ = ["branch_scenario", "branch_time", "pushed", "simulate_branch"]
 
 
 def branch_time(run: Record, at: float | str) -> float:
@@ -82,19 +81,14 @@ def simulate_branch(
 ) -> dict[str, Any]:
     """Repeat the run up to a time, and continue as another scenario."""
     recorded = recording(sample_interval, record)
-    return _core.branch(run.scenario.to_json(), time, variant.to_json(), _pushed(push), *recorded)
+    text, changed = run.scenario.to_json(), variant.to_json()
+    return _core.branch(text, time, changed, pushed(push), *recorded)
 
 
-def _pushed(push: tuple[float, float] | None) -> tuple[float, float]:
+def pushed(push: tuple[float, float] | None) -> tuple[float, float]:
     """Read a force and the time in which it rises; none is a force of 0."""
     if push is None:
         return 0.0, 0.0
     if not isinstance(push, tuple) or len(push) != 2:
         raise ScenarioError("push", push, "must be a tuple of a force and a time")
     return real_number(push[0], "push"), real_number(push[1], "push.rise_time")
-
-
-def try_belt(run: Record, time: float, grousers: bool) -> Counterfactual:
-    """Repeat the run up to a time, and try a closed belt there."""
-    asked = yes_or_no(grousers, "grousers")
-    return Counterfactual.from_core(_core.counterfactual(run.scenario.to_json(), time, asked))

@@ -7,8 +7,19 @@ from typing import TYPE_CHECKING, Literal, overload
 from crawler2d.results.record import Record
 from crawler2d.runs import branch as branching
 from crawler2d.runs.recording import Recording
+from crawler2d.runs.trials import (
+    EscapeForce,
+    Trial,
+    escape_force_at,
+    run_of_trial,
+    trial_at,
+    trial_names,
+    trials_at,
+    variant_tried_at,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
     from pathlib import Path
 
@@ -18,7 +29,6 @@ if TYPE_CHECKING:
 
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
-    from crawler2d.results.findings import Counterfactual
 
 __all__ = ["Run"]
 
@@ -201,42 +211,131 @@ class Run(Record):
         )
         return Run(variant, result, trunk=(self.scenario, time))
 
-    def counterfactual(
-        self, at: float | Literal["stop"] = "stop", *, grousers: bool = False
-    ) -> Counterfactual:
-        """Try a closed belt in the same pose, with the same envelope, force, friction and speeds.
-
-        Parameters
-        ----------
-        at : float or "stop"
-            [s] The instant; "stop" is that of the diagnosis. The belt begins with the end of the
-            step that reaches it.
-        grousers : bool
-            Whether the belt has grousers that travel with it, as `GrouserBeltTrack` has: as high as
-            those of the track, at the pitch of the outline. For gear wheels and shoes that is the
-            fair comparison, because a smooth belt lacks their grip. Where ground lies deeper inside
-            than the grousers are high, arriving grousers hook on ground that no belt would have
-            inside: then an escape means more than a failure. Of the smooth belt, both count.
+    def trials(self) -> tuple[Trial[Run], ...]:
+        """Try everything that might free the robot from the stop that the run ended in.
 
         Returns
         -------
-        Counterfactual
-            Whether it escapes, and how far it gets.
+        tuple of Trial
+            What was changed, by `Trial.name`, and what came of it, in this order; what makes no
+            sense for the robot is left out:
+
+            - "unchanged": the run goes on; "rebuilt": its own track is built anew. If either frees
+              it, the stop was passing, and no more is claimed of it;
+            - "closed track": `ClosedTrack` of its own, in this pose; "closed track, clear of the
+              ground": the same at rest, in the nearest pose in which no ground is inside it. A pose
+              with an edge between two wheels is one that no belt comes to. "closed smooth track":
+              in this pose, without grousers;
+            - "one motor" for each track in place of one for each wheel;
+            - "torque x 2", "torque x 10", "friction x 2", "no belly";
+            - "flippers level": turned to angle 0.
 
         Raises
         ------
         ScenarioError
-            If `at` is not a time of the run, or is "stop" and the run did not end in one; if this
-            run is a branch itself; if `grousers` is True and the track has none.
+            If the run did not end in a stop, or is a branch itself.
 
         Examples
         --------
         >>> import crawler2d as c2d
         >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
-        >>> c2d.simulate(robot, c2d.terrains.step(0.10)).counterfactual().freed
-        True
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
+        >>> [trial.name for trial in run.trials() if trial.freed]
+        ['closed track']
         """
-        return branching.try_belt(self, branching.branch_time(self, at), grousers)
+        time = branching.branch_time(self, "stop")
+        tried = trials_at(self, time, trial_names("all"))
+        return tuple(Trial.of(each, self._shown(time, each.name)) for each in tried)
+
+    def what_if(
+        self,
+        name: str | None = None,
+        *,
+        track: Track | Literal["closed"] | None = None,
+        friction: float | None = None,
+        max_torque: float | None = None,
+        belly: ArrayLike | Literal["built"] | None = "built",
+        drive: Drive | None = None,
+        push: tuple[float, float] | None = None,
+    ) -> Trial[Run]:
+        """Try one thing at the stop that the run ended in.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of those of `trials`; without it, the changes are those of `branch`.
+        track, friction, max_torque, belly, drive, push
+            See `branch`.
+
+        Returns
+        -------
+        Trial
+            What came of it.
+
+        Raises
+        ------
+        ScenarioError
+            If the run did not end in a stop, or is a branch itself; if the name is unknown or makes
+            no sense for the robot; if a change breaks a rule.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
+        >>> run.what_if("torque x 2").freed, run.what_if(track=c2d.BeltTrack()).freed
+        (False, True)
+        """
+        time = branching.branch_time(self, "stop")
+        if name is not None:
+            tried = trial_at(self, time, name)
+            return Trial.of(tried, self._shown(time, name))
+        variant = branching.branch_scenario(
+            self,
+            track=track,
+            friction=friction,
+            max_torque=max_torque,
+            belly=belly,
+            drive=drive,
+            duration=None,
+        )
+        tried = variant_tried_at(self, time, variant, branching.pushed(push))
+        shown = variant.replace({"duration": tried.duration})
+
+        def show() -> Run:
+            result = branching.simulate_branch(
+                self, time, shown, push=push, record="full", sample_interval=0.01
+            )
+            return Run(shown, result, trunk=(self.scenario, time))
+
+        return Trial.of(tried, show)
+
+    def _shown(self, time: float, name: str) -> Callable[[], Run]:
+        """Give the way to the run of a trial."""
+
+        def show() -> Run:
+            variant, result = run_of_trial(self, time, name)
+            return Run(variant, result, trunk=(self.scenario, time))
+
+        return show
+
+    def escape_force(self) -> EscapeForce:
+        """Measure the push that moves the robot on from the stop that the run ended in.
+
+        A horizontal force at the centre of mass, in the commanded direction, is raised by a tenth
+        every half a second, from a hundredth of the weight on, until the robot has moved by 5 mm.
+
+        Returns
+        -------
+        EscapeForce
+            [N] The last level that was held and the first that moved it.
+
+        Raises
+        ------
+        ScenarioError
+            If the run did not end in a stop, or is a branch itself.
+        """
+        return escape_force_at(self, branching.branch_time(self, "stop"))
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled dataset.

@@ -221,7 +221,7 @@ class Simulation:
         Diagnosis or None
             None if it has not stopped.
         """
-        why = self._core.diagnosis()
+        why = self._core.diagnosis([])
         return None if why is None else Diagnosis.from_core(why)
 
     def state(self) -> State:

@@ -11,7 +11,8 @@ import numpy as np
 
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.batch import simulate_many
-from crawler2d.studies.stops import STOPS
+from crawler2d.studies.stops import STOPS, TRIED
+from crawler2d.sweeps.stops import short_name
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,13 +58,13 @@ def write_replays(
     """Simulate the clearest runs again, and write each as a page.
 
     One run for each outcome and mechanism of a stop; and the belt where it cleared what stopped
-    the first of these. The clearest run is one that a closed belt escapes from and, among these,
+    the first of these. The clearest run is one that a closed track is freed from and, among these,
     the one with the deepest edge.
 
     Parameters
     ----------
     tables : mapping of str to xarray.Dataset
-        Sweeps over track and height by obstacle, with a belt tried at every stop.
+        Sweeps over track and height by obstacle, with the trials of `TRIED`.
     folder : Path
         Folder for the pages; created if missing. Pages of earlier studies are removed.
     belt : str
@@ -74,7 +75,7 @@ def write_replays(
     chosen = list(_most_telling(tables))
     chosen += list(_passes(tables, chosen, belt))[:1]
     scenarios = [Scenario.from_json(_of(tables, place)["scenario"].item()) for place in chosen]
-    runs = simulate_many(scenarios, counterfactual=True, threads=threads)
+    runs = simulate_many(scenarios, trials="auto", threads=threads)
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.html"):
         old.unlink()
@@ -106,7 +107,8 @@ def _most_telling(tables: Mapping[str, xarray.Dataset]) -> Iterator[_Place]:
         for index in np.argwhere(np.isin(outcomes, STOPS)):
             run = table.isel(dict(zip(table["outcome"].dims, map(int, index), strict=True)))
             way = (run["outcome"].item(), run["mechanism"].item())
-            telling = (run["belt_freed"].item(), run["intrusion_depth"].item())
+            belts = [run[f"freed_by_{short_name(trial)}"].item() for trial in TRIED[:2]]
+            telling = (any(belts), run["intrusion_depth"].item())
             # Of equal runs the last: models with wheels come after the mere forces.
             if way not in best or telling >= best[way][0]:
                 best[way] = (telling, _place(obstacle, run))

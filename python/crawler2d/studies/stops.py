@@ -12,19 +12,26 @@ import numpy as np
 
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import wilson
+from crawler2d.sweeps.stops import short_name
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["FIGURES", "STOPS", "Against", "Stops", "gear_against_round", "stops"]
+__all__ = ["FIGURES", "STOPS", "TRIED", "Against", "Stops", "gear_against_round", "stops"]
 
 STOPS = tuple(str(outcome) for outcome in Outcome if outcome.is_stop)
 """Outcomes that are stops, by name."""
 
+TRIED = (
+    *("closed track", "closed track, clear of the ground"),
+    *("torque x 2", "friction x 2", "no belly"),
+)
+"""Trials that the study makes of every stop."""
+
 FIGURES = (
-    *("cleared", "seized", "seized_alone", "at_tips"),
-    *("stopped", "unnatural_stops", "unnatural_passes"),
+    *("cleared", "stopped", "seized", "jammed"),
+    *("freed_by_torque", "freed_by_friction", "unnatural_stops", "unnatural_passes"),
 )
 """Counts of `Stops` by which gear and round wheels are compared."""
 
@@ -39,24 +46,30 @@ class Stops:
     """Runs with a result."""
     cleared: int
     seized: int
+    cycling: int
     hung_up: int
     stalled: int
     slipping: int
-    cycling: int
+    passing: int
+    """Stops that the robot left by itself; they count as timed out."""
     mechanism: str
     """The commonest mechanism of the stops; "" if most have none."""
     of_mechanism: int
     """Number of stops with that mechanism."""
-    seized_alone: int
-    """Seized stops whose only cause is the pocket: nothing but closing it would free the robot."""
-    at_tips: int
-    """Stops that count as seized if the track is assumed to reach the circumscribed circles."""
+    jammed: int
+    """Stops with ground between two bodies of a track bearing on it."""
+    unnatural_stops: int
+    """Stops from which a closed track gets free, in their pose or set down clear of the ground."""
+    freed_by_torque: int
+    """Stops that twice the torque ends."""
+    freed_by_friction: int
+    """Stops that twice the friction ends."""
+    freed_by_no_belly: int
+    """Stops that taking the belly off ends."""
     depth: float
     """[m] Median depth of the edges in seized stops, below the circumscribed circles; nan: none."""
     root_depth: float
     """[m] The same, below the root circles."""
-    unnatural_stops: int
-    """Stops from which a closed belt escapes."""
     unnatural_passes: int
     """Runs that cleared although the belt of the same repeat did not."""
 
@@ -93,7 +106,7 @@ def stops(table: xarray.Dataset, obstacle: str, belt: str = "belt") -> list[Stop
     Parameters
     ----------
     table : xarray.Dataset
-        With the dimensions track, height and repeat, and a belt tried at every stop.
+        With the dimensions track, height and repeat, and the trials of `TRIED`.
     obstacle : str
         What they ran over.
     belt : str
@@ -166,6 +179,11 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
     mechanisms = Counter(own["mechanism"].to_numpy()[stopped].tolist())
     mechanism, most = mechanisms.most_common(1)[0] if mechanisms else ("", 0)
     passes = (outcomes == "cleared") & (table["outcome"].sel(track=belt).to_numpy() != "cleared")
+
+    def freed(trial: str) -> NDArray[np.bool_]:
+        by_trial: NDArray[np.bool_] = own[f"freed_by_{short_name(trial)}"].to_numpy() & stopped
+        return by_trial
+
     return Stops(
         obstacle=obstacle,
         model=model,
@@ -174,11 +192,14 @@ def _stops(table: xarray.Dataset, obstacle: str, model: str, belt: str) -> Stops
         **{name: counts[name] for name in STOPS},
         mechanism=str(mechanism),
         of_mechanism=most,
-        seized_alone=_count(own["cause"].to_numpy() == "pocket"),
-        at_tips=_count(own["seized_at_tips"].to_numpy() & stopped),
+        passing=_count(own["passing"].to_numpy()),
+        jammed=_count(own["jammed"].to_numpy() & stopped),
+        unnatural_stops=_count(np.logical_or(*(freed(name) for name in TRIED[:2]))),
+        freed_by_torque=_count(freed("torque x 2")),
+        freed_by_friction=_count(freed("friction x 2")),
+        freed_by_no_belly=_count(freed("no belly")),
         depth=_median(own["intrusion_depth"].to_numpy()[seized]),
         root_depth=_median(own["intrusion_root_depth"].to_numpy()[seized]),
-        unnatural_stops=_count(own["belt_freed"].to_numpy() & stopped),
         unnatural_passes=_count(passes),
     )
 

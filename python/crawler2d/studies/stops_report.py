@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 __all__ = ["against_text", "replays_text", "stops_text"]
 
 
+_SHARES = (
+    *("jammed", "unnatural_stops", "freed_by_torque"),
+    *("freed_by_friction", "freed_by_no_belly"),
+)
+"""Counts of `Stops` that are told as shares of the stops."""
+
+
 def stops_text(stops: Iterable[Stops]) -> str:
     """Write how the runs of each model ended, and what held those that stopped."""
     rows = [
@@ -26,10 +33,7 @@ def stops_text(stops: Iterable[Stops]) -> str:
             *(str(n) if n else "-" for n in (row.count, row.cleared)),
             *(str(getattr(row, name) or "-") for name in STOPS),
             f"{row.mechanism or 'none'}, {row.of_mechanism}" if row.stopped else "-",
-            _of_stops(row.seized, row),
-            _of_stops(row.seized_alone, row),
-            _of_stops(row.at_tips, row),
-            _of_stops(row.unnatural_stops, row),
+            *(_of_stops(getattr(row, name), row) for name in _SHARES),
             str(row.unnatural_passes or "-"),
             *("-" if math.isnan(d) else f"{1e3 * d:.1f}" for d in (row.depth, row.root_depth)),
         )
@@ -38,16 +42,17 @@ def stops_text(stops: Iterable[Stops]) -> str:
     head = (
         *("model", "obstacle", "runs", "cleared"),
         *(name.replace("_", " ") for name in STOPS),
-        *("mechanism", "seized [%]", "alone [%]", "at tips [%]", "unnatural [%]", "passes"),
+        *("mechanism", "jammed [%]", "closed [%]", "torque [%]", "friction [%]", "no belly [%]"),
+        "passes",
         *("depth [mm]", "roots [mm]"),
     )
     return (
         "How the runs ended, all heights together. Of those that stopped: the commonest\n"
-        "mechanism; the share that seized; the share where the pocket is the only cause (no tie\n"
-        "with torque, belly or friction); the share that would count as seized if the track\n"
-        "reached the circumscribed circles; the share that is unnatural: a closed belt escapes.\n"
-        "Passes are unnatural ones: the belt of the same repeat did not clear. Depths are medians\n"
-        "of the edges that seized, below the circumscribed circles and below the root circles.\n\n"
+        "mechanism; the share with ground jammed in a track; the share that a closed track frees,\n"
+        "in the pose of the stop or set down clear of the ground; and those that twice the\n"
+        "torque, twice the friction and taking the belly off free, all by trial. Passes are\n"
+        "unnatural ones: the belt of the same repeat did not clear. Depths are medians of the\n"
+        "edges that seized, below the circumscribed circles and below the root circles.\n\n"
     ) + aligned(head, rows, left=(1, 9))
 
 
@@ -62,8 +67,8 @@ def against_text(against: Sequence[Against]) -> str:
     obstacle = against[0].obstacle
     return (
         f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
-        "[%], with Wilson's 95 % intervals. Alone: the pocket is the only cause.\n"
-        "At tips: would count as seized if the track reached the circumscribed circles.\n\n"
+        "[%], with Wilson's 95 % intervals. Freed by: twice the torque, twice the friction.\n"
+        "Unnatural: stops that a closed track leaves, passes where the belt does not get over.\n\n"
     ) + aligned(
         head,
         [(model, robot, wheel, *cells) for (robot, model, wheel), cells in rows.items()],

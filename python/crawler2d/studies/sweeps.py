@@ -12,6 +12,7 @@ from crawler2d.parameters.track import GearWheel, LineOfWheels
 from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
 from crawler2d.studies.models import StudyModel, study_models
+from crawler2d.studies.stops import TRIED
 from crawler2d.sweeps.sweep import sweep
 
 if TYPE_CHECKING:
@@ -128,20 +129,20 @@ class Study:
     progress: bool = True
 
     def on_obstacle(self, obstacle: str) -> xarray.Dataset:
-        """Run every model over one obstacle: track, height, repeat; tries a belt at every stop."""
+        """Run every model over one obstacle: track, height, repeat; makes trials of every stop."""
         heights = self.design.heights[obstacle]
         over = {**self._tracks(), "terrain.height": heights}
         base = self.base.replace({"terrain": _obstacles(heights[0])[obstacle]})
-        return self._sweep(base, over, self.design.repeats, counterfactual=True)
+        return self._sweep(base, over, self.design.repeats)
 
     def on_other_robots(self) -> xarray.Dataset:
-        """Run every model of every robot over a step: robot, track, height, repeat; tries belts."""
+        """Run every model of every robot over a step, with trials: robot, track, height, repeat."""
         over: dict[Any, Any] = {
             "robot": robots_of_the_study(),
             **self._tracks(),
             "terrain.height": self.design.robot_heights,
         }
-        return self._sweep(self.base, over, self.design.robot_repeats, counterfactual=True)
+        return self._sweep(self.base, over, self.design.robot_repeats)
 
     def on_the_flat(self) -> xarray.Dataset:
         """Run every model over flat ground: track, repeat."""
@@ -173,8 +174,6 @@ class Study:
         base: Scenario,
         over: Mapping[Any, Any],
         repeats: int,
-        *,
-        counterfactual: bool = False,
     ) -> xarray.Dataset:
         return sweep(
             base,
@@ -184,6 +183,6 @@ class Study:
             threads=self.threads,
             progress=self.progress,
             on_error="record",
-            counterfactual=counterfactual,
+            trials=TRIED,
             wall_time=True,
         )

@@ -13,7 +13,9 @@ import numpy as np
 from crawler2d.common.arrays import frozen_scalar
 from crawler2d.common.units import METRICS, unit_of
 from crawler2d.errors import ScenarioError
+from crawler2d.results.glossary import TRIALS
 from crawler2d.sweeps.labels import Label, labelled
+from crawler2d.sweeps.stops import stop_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,8 +23,16 @@ if TYPE_CHECKING:
 __all__ = ["COLUMNS", "Axis", "coordinates", "field_attributes", "read_axes", "short_names"]
 
 COLUMNS = (
-    *("repeat", "seed", "outcome", "error", "mechanism", "cause", "seized_at_tips"),
-    *("belt_freed", "belt_distance", "wall_time", "identity", "scenario"),
+    *(
+        "repeat",
+        "seed",
+        "outcome",
+        "error",
+        *stop_columns((), tuple(TRIALS)),
+        "wall_time",
+        "identity",
+        "scenario",
+    ),
     *("rate", "low", "high", "count", "distinct"),
 )
 """Columns of a sweep and its rates besides the metrics; no axis may have these names."""

@@ -121,7 +121,7 @@ def compare(
         repeats=repeats,
         seed=seed,
         vary=vary,
-        counterfactual=False,
+        trials=None,
         wall_time=False,
         threads=threads,
         progress=progress,

@@ -11,11 +11,11 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError, SimulationDiverged
-from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names
 from crawler2d.sweeps.draws import Distribution
 from crawler2d.sweeps.plan import Plan
+from crawler2d.sweeps.stops import stop_columns
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +36,7 @@ def to_table(
     runs: Sequence[Run],
     *,
     seed: int,
-    with_belts: bool,
+    trials: Sequence[str],
     with_times: bool,
 ) -> xarray.Dataset:
     """Arrange the runs, which are in the order of their plans, in a table; see `sweep`.
@@ -53,14 +53,9 @@ def to_table(
 
     variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
     why = [run.diagnosis for run in runs]
-    variables["mechanism"] = by_run([str((d and d.mechanism) or "") for d in why], str)
-    variables["cause"] = by_run([_cause(d) for d in why], str)
-    variables["seized_at_tips"] = by_run([bool(d and d.seized_at_tips) for d in why], bool)
-    belts = [d and d.counterfactual for d in why]
-    if with_belts:
-        distances = [belt.distance if belt else math.nan for belt in belts]
-        variables["belt_freed"] = by_run([bool(belt and belt.freed) for belt in belts], bool)
-        variables["belt_distance"] = by_run(distances, float, units="m")
+    for name, (kind, unit, values) in stop_columns(why, trials).items():
+        attributes = {"units": unit} if unit else {}
+        variables[name] = by_run(values, kind, **attributes)
     for name in next((run.metrics for run in runs if run.error is None), {}):
         figures = [run.metrics.get(name, math.nan) for run in runs]
         variables[name] = by_run(figures, float, units=METRICS.get(name, ""))
@@ -96,8 +91,3 @@ def _outcome(run: Run) -> str:
             return refused
         case _:  # out of memory, or a fault of the program
             return failed
-
-
-def _cause(why: Diagnosis | None) -> str:
-    """Write the sets of conditions, such as ``pocket or belly+torque``."""
-    return " or ".join("+".join(each) for each in why.cause) if why else ""

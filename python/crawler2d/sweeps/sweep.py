@@ -14,6 +14,7 @@ from crawler2d.runs.batch import simulate_passed
 from crawler2d.runs.progress import Progress
 from crawler2d.runs.recording import recording, yes_or_no
 from crawler2d.runs.threads import thread_count
+from crawler2d.runs.trials import Trials, trial_names
 from crawler2d.sweeps.axes import Axis, read_axes
 from crawler2d.sweeps.dataset import to_table
 from crawler2d.sweeps.draws import Distribution, Variation
@@ -34,7 +35,7 @@ def sweep(
     repeats: int = 20,
     seed: int = 0,
     vary: Mapping[str, Distribution] | None = None,
-    counterfactual: bool = False,
+    trials: Trials = None,
     wall_time: bool = False,
     threads: int | None = None,
     progress: bool | Progress | None = True,
@@ -64,8 +65,8 @@ def sweep(
     vary : mapping of str to distribution, optional
         What the repeats draw, by path: `uniform` and, for whole numbers, `uniform_int` replace a
         value, `scaled` multiplies it. None takes the variations below, ``{}`` none at all.
-    counterfactual : bool
-        Whether to try a closed belt for every run that ends in a stop; see `Run.counterfactual`.
+    trials : {"auto", "all"} or sequence of str, optional
+        What to try in every run that ends in a stop; see `simulate`.
     wall_time : bool
         Whether to add the computing time. It differs from run to run, so that tables with it cannot
         be merged where they overlap.
@@ -88,9 +89,13 @@ def sweep(
 
         - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
           memory, or a fault of the program), and `error` says why;
-        - `mechanism` of a stop, "" if there is none; its `cause`, such as "pocket or belly+torque"
-          for a tie of the pocket with belly and torque together; `seized_at_tips`; with
-          `counterfactual`, `belt_freed` and `belt_distance` [m], False and nan without a stop;
+        - of a stop, else "", False, nan or -1: `symptom`, `passing`, `mechanism`, `jammed` and
+          `belly_side` as in `Diagnosis`; where it is: `stop_x` [m], `stop_angle` [rad]; and where
+          ground is inside a track: `stop_edge`, `stop_side`, `stop_carrier`, `stop_bodies`, such as
+          "1-2";
+        - for each trial of `trials`, and for the closed track of jammed robots: whether it was
+          made, whether it freed the robot and how it ended, as in `Tried`: `tried_torque_x2`,
+          `freed_by_torque_x2` and `then_torque_x2`, and so on;
         - every metric of `Run.metrics`; with `wall_time`, the computing time [s] on one thread;
         - `scenario`, the JSON text of each run, and its `identity`;
         - `drawn_...`, the value drawn for each path of `vary`, and the `seed`.
@@ -169,7 +174,7 @@ def sweep(
         repeats=repeats,
         seed=seed,
         vary=vary,
-        counterfactual=counterfactual,
+        trials=trials,
         wall_time=wall_time,
         threads=threads,
         progress=progress,
@@ -184,7 +189,7 @@ def tabulate(
     repeats: int,
     seed: int,
     vary: Mapping[str, Distribution] | None,
-    counterfactual: bool,
+    trials: Trials,
     wall_time: bool,
     threads: int | None,
     progress: bool | Progress | None,
@@ -197,7 +202,8 @@ def tabulate(
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
     with_times = yes_or_no(wall_time, "wall_time")
-    recorded = (*recording(0.01, "summary"), yes_or_no(counterfactual, "counterfactual"))
+    tried = trial_names(trials)
+    recorded = (*recording(0.01, "summary"), list(tried))
     count = thread_count(threads)
     repeats = _whole(repeats, "repeats", 1, 10**6)
     seed = _whole(seed, "seed", 0, 2**64 - 1)
@@ -224,7 +230,7 @@ def tabulate(
         plans,
         runs,
         seed=seed,
-        with_belts=counterfactual,
+        trials=tried,
         with_times=with_times,
     )
     provenance = {"scenario": scenario.to_json(), "vary": str(variation.distributions)}

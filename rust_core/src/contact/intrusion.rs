@@ -7,7 +7,6 @@ mod tests;
 
 use super::Contact;
 use crate::geometry::cut::{self, Chord, Piece};
-use crate::geometry::search::maximise;
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::robot::{Mount, Part};
 use crate::terrain::{Profile, Side};
@@ -77,8 +76,6 @@ pub struct Intrusion {
     pub y: f64,
     /// [m^2] Area of the piece.
     pub area: f64,
-    /// [m] Stretches of the envelope that bound it, as distances along the envelope.
-    rim: Vec<(f64, f64)>,
     /// Stretches of the profile that bound it, as facet index plus fraction of the facet.
     stretches: Vec<(f64, f64)>,
 }
@@ -216,28 +213,9 @@ impl TrackEnvelope {
             edges,
             edge: edge.1,
             area: piece.area(&self.tips.hull).max(0.0),
-            rim: piece.rim().collect(),
             stretches: piece.chords().map(|c| span(profile, under, c)).collect(),
             ..self.at(profile.side, pose, [deepest, root])
         }
-    }
-
-    /// The outward normal, in the chassis frame, of a belt that would pass over a point of an intrusion: the
-    /// normal at the nearest point of that part of the envelope through which the ground came in.
-    pub(crate) fn outward_at(&self, intrusion: &Intrusion, point: Vector) -> Vector {
-        /// Cuts of a stretch; between two cuts the distance has a single minimum.
-        const CUTS: usize = 64;
-
-        let hull = &self.tips.hull;
-        let nearness = |way: f64| -(hull.point_at(way) - point).length();
-        let cuts = intrusion.rim.iter().flat_map(|(from, to)| {
-            let cut = (to - from).rem_euclid(hull.length()) / CUTS as f64;
-            (0..CUTS).map(move |i| (from + cut * i as f64, from + cut * (i + 1) as f64))
-        });
-        let nearest = cuts
-            .map(|(from, to)| maximise(from, to, nearness))
-            .max_by(|a, b| nearness(*a).total_cmp(&nearness(*b)));
-        hull.outward_at(hull.point_at(nearest.unwrap_or_default()))
     }
 
     /// The intrusion of an envelope that lies entirely in the ground.
@@ -268,7 +246,6 @@ impl TrackEnvelope {
             x: place.x,
             y: place.y,
             area: 0.0,
-            rim: vec![(0.0, 0.0)],
             stretches: Vec::new(),
         }
     }
@@ -291,7 +268,8 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 impl Intrusion {
     /// Whether a contact lies on the intrusion, for a robot of these parts.
     pub(crate) fn bears(&self, lanes: &[Profile], parts: &[Part], contact: &Contact) -> bool {
-        if parts[contact.part].lane != self.lane {
+        let part = &parts[contact.part];
+        if part.lane != self.lane || part.mount.carrier() != self.mount {
             return false;
         }
         let (place, length) = lanes[self.lane].place_on(contact.facet, contact.point);

@@ -1,11 +1,9 @@
-//! Why did it stop? Outcome, mechanism and cause of a stop, from what was observed only.
+//! What kind of stop is it, and what holds the ground inside the track? From what was observed only.
 //!
-//! No track model is known here: contacts, forces, surface speeds, torques and the geometry of
-//! the envelope decide. docs/decisions/0005 explains how, docs/conventions.md defines the words.
+//! No track model is known here: contacts, forces, surface speeds, torques and the geometry of the envelope decide.
+//! Whether the ground inside is the reason is tried afterwards (`run/trials`). docs/decisions/0012 explains how,
+//! docs/conventions.md defines the words.
 
-mod counterfactual;
-mod escape;
-mod forces;
 mod hinges;
 mod linear_program;
 mod mechanism;
@@ -15,6 +13,7 @@ mod statics;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 use statics::Statics;
 
@@ -24,24 +23,24 @@ use crate::observe::{Outcome, Stance};
 use crate::robot::BodyKind;
 use crate::terrain::Side;
 
-pub use counterfactual::Counterfactual;
 pub use mechanism::Mechanism;
-pub use statics::Condition;
+pub use trial::{Change, Trial, Wanted};
 
 pub(crate) use scene::Scene;
 
 /// Why a robot stopped although commanded to move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
-    /// Which kind of stop it is.
+    /// Which kind of stop it is, after what was tried.
     pub outcome: Outcome,
-    /// How the most loaded ground inside the track is held, if there is any.
+    /// What is seen of it, before anything is tried: cycling, hung up, stalled or slipping.
+    pub symptom: Outcome,
+    /// What was tried, and what came of it.
+    pub trials: Vec<Trial>,
+    /// Ground between two bodies of a track, deeper than their root circles, bears on that track.
+    pub jammed: bool,
+    /// How the ground inside the track is held, if there is any.
     pub mechanism: Option<Mechanism>,
-    /// The smallest sets of conditions without which there is no equilibrium; more than one set is a tie.
-    pub cause: Vec<Vec<Condition>>,
-    /// Whether closing the pockets would end the equilibrium if the track reached out to the circumscribed circles.
-    /// Ground between the grousers of one wheel then counts as in a pocket.
-    pub seized_at_tips: bool,
     /// [s] When the stop was examined.
     pub time: f64,
     /// [s] When the stop began.
@@ -50,7 +49,7 @@ pub struct Diagnosis {
     pub position: [f64; 2],
     /// [rad] Mean chassis angle.
     pub chassis_angle: f64,
-    /// The most loaded ground inside the track.
+    /// The most loaded ground inside the track: where it is jammed, or else anywhere.
     pub intrusion: Option<LoadedIntrusion>,
     /// The contacts that bear, averaged over the last one to two stop windows.
     pub contacts: Vec<StopContact>,
@@ -68,14 +67,15 @@ pub struct Diagnosis {
     pub imbalance: Option<f64>,
     /// The imbalance is within the criteria: the pose may be an equilibrium.
     pub certified: bool,
-    /// [N] Largest push at the centre of mass, along the command, that can still be balanced here or within the next
-    /// 5 mm, while surfaces keep sliding and motors keep pushing; infinite if any can. `None` without a
-    /// certificate, and for a state that keeps rattling.
-    pub escape_force: Option<f64>,
-    /// [N] The same, here, with every contact and motor free to hold within its limits.
-    pub free_escape_force: Option<f64>,
-    /// How a closed belt fares from this pose, if that was asked for.
-    pub counterfactual: Option<Counterfactual>,
+}
+
+impl Diagnosis {
+    /// Whether the stop would not have lasted: a control left it.
+    pub fn is_passing(&self) -> bool {
+        let left =
+            |trial: &Trial| trial.freed && Change::CONTROLS.iter().any(|c| c.name() == trial.name);
+        self.trials.iter().any(left)
+    }
 }
 
 /// A connected piece of ground inside the track, with what bears on it.
@@ -85,6 +85,8 @@ pub struct LoadedIntrusion {
     pub place: Intrusion,
     /// Kinds of the bodies on either side of it.
     pub kinds: [BodyKind; 2],
+    /// Name of what carries them.
+    pub carrier: &'static str,
     /// [N] Mean normal force on it.
     pub force: f64,
 }
@@ -127,15 +129,18 @@ pub(crate) struct Seen {
     pub progress: f64,
 }
 
-/// Diagnoses a stop.
-pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
+/// Examines a stop; its outcome is the symptom until something has been tried.
+pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
     let criteria = scene.criteria;
-    let weight = scene.model.mass * scene.gravity;
     let inside = scene.loaded_intrusions(stance);
-    let most_loaded = inside
-        .iter()
-        .reduce(|most, i| if i.force > most.force { i } else { most });
-    let facts = scene.facts(stance, most_loaded);
+    let most_loaded = |pieces: &mut dyn Iterator<Item = &LoadedIntrusion>| {
+        let most = pieces.reduce(|most, i| if i.force > most.force { i } else { most });
+        most.cloned()
+    };
+    let jam = most_loaded(&mut inside.iter().filter(|i| scene.is_pocket(i)));
+    let jammed = jam.is_some();
+    let intrusion = jam.or_else(|| most_loaded(&mut inside.iter()));
+    let facts = scene.facts(stance, intrusion.as_ref());
 
     let range = stance.range[0].max(stance.range[1]);
     let range = range.max(stance.range[2] * scene.half_length);
@@ -145,24 +150,10 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
     } else {
         criteria.mean_imbalance
     };
-    let pockets: Vec<&LoadedIntrusion> = inside.iter().filter(|i| scene.is_pocket(i)).collect();
-    let statics = scene.statics(stance, &pockets);
+    let statics = scene.statics(stance);
     let imbalance = statics.as_ref().and_then(Statics::imbalance);
-    let certified = imbalance.is_some_and(|i| i <= tolerance);
-    let certificate = statics.as_ref().filter(|_| certified);
-
-    let given = scene.conditions(stance, &facts, !pockets.is_empty());
-    let cause = certificate.map_or(Vec::new(), |s| s.cause(tolerance, &given));
-    let seized = cause.contains(&vec![Condition::Pocket]);
-    let at_tips = || {
-        let statics = scene.statics(stance, &inside.iter().collect::<Vec<_>>());
-        statics.is_some_and(|s| s.ends(&[Condition::Pocket], tolerance))
-    };
-    let seized_at_tips = certified && !inside.is_empty() && (seized || at_tips());
-    let outcome = if range > criteria.cycling_distance {
+    let symptom = if range > criteria.cycling_distance {
         Outcome::Cycling
-    } else if seized {
-        Outcome::Seized
     } else if facts.belly_share >= criteria.belly_load {
         Outcome::HungUp
     } else if facts.stalled_share >= 0.5 {
@@ -170,21 +161,19 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
     } else {
         Outcome::Slipping
     };
-
-    // A state that keeps rattling has no pose to start a push from.
-    let resting = certificate.filter(|_| stationary);
-    let escape_force = resting.and_then(|s| escape::force(scene, stance, s, tolerance));
-    let free_escape = resting.and_then(|s| s.free_escape(scene.direction(), tolerance));
+    let weight = scene.model.mass * scene.gravity;
+    let held = intrusion.as_ref();
     Diagnosis {
-        outcome,
-        mechanism: most_loaded.and_then(|_| Mechanism::of(&facts, criteria, weight)),
-        cause,
-        seized_at_tips,
+        outcome: symptom,
+        symptom,
+        trials: Vec::new(),
+        jammed,
+        mechanism: held.and_then(|_| Mechanism::of(&facts, criteria, weight)),
         time: seen.time,
         since: seen.since,
         position: [stance.position.x, stance.position.y],
         chassis_angle: stance.angle,
-        intrusion: most_loaded.cloned(),
+        intrusion,
         belly_share: facts.belly_share,
         sliding_share: facts.sliding_share,
         stalled_share: facts.stalled_share,
@@ -192,9 +181,6 @@ pub(crate) fn diagnose(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis
         progress: seen.progress,
         stationary,
         imbalance,
-        certified,
-        escape_force: escape_force.map(|push| push * weight),
-        free_escape_force: free_escape.map(|push| push.force * weight),
-        counterfactual: None,
+        certified: imbalance.is_some_and(|i| i <= tolerance),
     }
 }

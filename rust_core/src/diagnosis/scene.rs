@@ -1,14 +1,14 @@
 //! A stop in its surroundings: ground inside the track, contacts that bear, and forces that could hold it.
 
 use super::mechanism::Facts;
-use super::statics::{Condition, Role, Statics, Support};
+use super::statics::{Statics, Support};
 use super::{LoadedIntrusion, StopContact};
 use crate::contact::{Contact, Intrusion, TrackEnvelope};
-use crate::dynamics::{Carrier, Direction, Levers};
-use crate::geometry::{Pose, Vector, left_of, right_of};
+use crate::dynamics::{Carrier, Levers};
+use crate::geometry::{Pose, right_of};
 use crate::observe::{Bearing, DriveMean, Stance};
-use crate::robot::{BodyKind, Model, Part, Running};
-use crate::scenario::{ContactMethod, SeizureCriteria};
+use crate::robot::{BodyKind, Model, Running};
+use crate::scenario::SeizureCriteria;
 use crate::terrain::Profile;
 
 /// What a diagnosis needs besides the stop itself.
@@ -17,8 +17,6 @@ pub(crate) struct Scene<'a> {
     pub lanes: &'a [Profile],
     /// Envelope of each track, with its lane.
     pub envelopes: &'a [TrackEnvelope],
-    /// How contacts are found.
-    pub contact: ContactMethod,
     pub criteria: &'a SeizureCriteria,
     pub gravity: f64,
     /// [m/s] Commanded speed.
@@ -52,6 +50,7 @@ impl Scene<'_> {
             let force = on_it.map(|b| b.normal_force).sum();
             let kinds = place.bodies.map(|body| self.model.parts[body].kind);
             LoadedIntrusion {
+                carrier: self.model.carrier(place.mount),
                 place,
                 kinds,
                 force,
@@ -174,83 +173,30 @@ impl Scene<'_> {
         Levers::new(contact, &body, motion, self.model)
     }
 
-    /// The conditions that apply to this stop.
-    pub(super) fn conditions(
-        &self,
-        stance: &Stance,
-        facts: &Facts,
-        is_pocket: bool,
-    ) -> Vec<Condition> {
-        let has = |condition: &Condition| match condition {
-            Condition::Pocket => is_pocket,
-            Condition::Belly => facts.belly_share > self.criteria.intrusion_load,
-            Condition::Torque => stance
-                .drives
-                .iter()
-                .take(self.model.motors)
-                .any(|d| self.is_at_limit(d)),
-            Condition::Friction => facts.contacts.iter().any(|c| c.slides),
-        };
-        Condition::ALL.into_iter().filter(has).collect()
-    }
-
-    /// The statics of a stop with these pockets; `None` without a weight.
-    pub(super) fn statics(&self, stance: &Stance, pockets: &[&LoadedIntrusion]) -> Option<Statics> {
-        if self.model.mass * self.gravity <= 0.0 {
+    /// The statics of a stop; `None` without a weight.
+    pub(super) fn statics(&self, stance: &Stance) -> Option<Statics> {
+        let weight = self.model.mass * self.gravity;
+        if weight <= 0.0 {
             return None;
         }
         let pose = Pose::new(stance.position, stance.angle);
-        let supports = stance
-            .bearings
-            .iter()
-            .map(|b| {
-                let slides = if self.slides(b) { b.slip.signum() } else { 0.0 };
-                self.support(pose, &b.contact, slides, self.role(&b.contact, pockets))
-            })
-            .collect();
-        let closed = pockets
-            .iter()
-            .map(|p| self.closed(pose, stance, &p.place))
-            .collect();
-        Some(self.balance(pose, stance, supports, closed))
-    }
-
-    /// The statics of given supports in a pose.
-    pub(super) fn balance(
-        &self,
-        pose: Pose,
-        stance: &Stance,
-        supports: Vec<Support>,
-        closed: Vec<Support>,
-    ) -> Statics {
-        let weight = self.model.mass * self.gravity;
-        let stands = |d: &DriveMean| {
-            let stands = self.is_at_limit(d) && !self.is_moving(d.speed);
-            if stands { d.force.signum() } else { 0.0 }
-        };
-        Statics::new(
+        let supports = stance.bearings.iter().map(|b| {
+            let slides = if self.slides(b) { b.slip.signum() } else { 0.0 };
+            self.support(pose, &b.contact, slides)
+        });
+        let torque = self.model.drive_force / weight;
+        Some(Statics::new(
             self.model,
-            pose.rotation.angle(),
-            (supports, closed),
-            stance.drives.iter().map(stands).collect(),
+            stance.angle,
+            supports.collect(),
             self.hinges(pose),
-            self.direction(),
-            [
-                self.model.drive_force / weight,
-                self.criteria.torque_limit,
-                self.half_length,
-            ],
-        )
+            torque,
+            self.half_length,
+        ))
     }
 
     /// A contact as a support; `slides` is the sign of its slip, 0 while it sticks.
-    pub(super) fn support(
-        &self,
-        pose: Pose,
-        contact: &Contact,
-        slides: f64,
-        role: Role,
-    ) -> Support {
+    fn support(&self, pose: Pose, contact: &Contact, slides: f64) -> Support {
         let levers = self.levers_at(pose, contact);
         let part = &self.model.parts[contact.part];
         let directions = [levers.normal, levers.tangent];
@@ -262,74 +208,11 @@ impl Scene<'_> {
             hinge,
             friction: self.friction(contact.part),
             slides,
-            role,
         }
     }
 
     /// Whether a motor is at its torque limit, on average.
     fn is_at_limit(&self, drive: &DriveMean) -> bool {
         drive.force.abs() >= self.criteria.torque_limit * self.model.drive_force
-    }
-
-    fn role(&self, contact: &Contact, pockets: &[&LoadedIntrusion]) -> Role {
-        let bears = |p: &&LoadedIntrusion| self.bears_on(&p.place, contact);
-        if pockets.iter().any(bears) {
-            Role::Pocket
-        } else if self.model.parts[contact.part].kind == BodyKind::Belly {
-            Role::Belly
-        } else {
-            Role::Track
-        }
-    }
-
-    /// The support that would bear on an intrusion, at its edge, if a belt closed the pocket. The belt moves like the
-    /// faster of the bodies on either side; over what a chain runs on, it moves like the chain.
-    fn closed(&self, pose: Pose, stance: &Stance, place: &Intrusion) -> Support {
-        let edge = &self.lanes[place.lane].edges[place.edge as usize];
-        let point = Vector::new(edge.x, edge.y);
-        let track = self.running.mounted(place.mount, pose);
-        let within = track.inverse_transform_point(point);
-        let of_track = |e: &&TrackEnvelope| e.lane == place.lane && e.mount == place.mount;
-        let envelope = self.envelopes.iter().find(of_track);
-        let outward = envelope.map_or(Vector::Y, |e| e.outward_at(place, within));
-        let normal = -(track.rotation * outward);
-        let arm = point - pose.transform_point(self.model.center_of_mass);
-        let speed = |k: usize| stance.drives[k].speed;
-        let drive_of = |body: usize| {
-            let part = &self.model.parts[body];
-            let is_shoe = |p: &&Part| p.lane == part.lane && p.mount.shoe().is_some();
-            if part.kind.is_in_chain() {
-                self.model.parts.iter().find(is_shoe)?.drive
-            } else {
-                part.drive
-            }
-        };
-        let drives = place.bodies.map(drive_of);
-        let drive = drives.into_iter().flatten().reduce(|a, b| {
-            if speed(b).abs() > speed(a).abs() {
-                b
-            } else {
-                a
-            }
-        });
-        let motion = drive.map_or(Vector::ZERO, |_| left_of(normal));
-        // A free wheel rolls on the ground under it.
-        let slides = drive.filter(|k| *k < self.model.motors).map_or(0.0, speed);
-        let directions =
-            [normal, right_of(normal)].map(|unit| Direction::new(unit, arm, motion, self.model));
-        let (hinge, [of_normal, of_tangent]) = self.hung(place.mount, pose, point, directions);
-        Support {
-            normal: of_normal,
-            tangent: of_tangent,
-            drive,
-            hinge,
-            friction: self.lanes[place.lane].friction,
-            slides: if self.is_moving(slides) {
-                right_of(normal).dot(motion) * slides
-            } else {
-                0.0
-            },
-            role: Role::Track,
-        }
     }
 }

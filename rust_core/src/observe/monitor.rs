@@ -198,7 +198,7 @@ impl Monitor {
     }
 
     /// [s] Time without progress that counts as a stop.
-    fn window(&self, command: f64) -> f64 {
+    pub(crate) fn window(&self, command: f64) -> f64 {
         let pitches = self.criteria.stop_pitches * self.grouser_pitch / command.abs();
         if pitches.is_finite() {
             self.criteria.stop_window.max(pitches)
@@ -248,6 +248,11 @@ impl Monitor {
     /// Share of the commanded distance covered in the last stop window; 1 before the first window is over.
     pub(crate) fn progress(&self) -> f64 {
         self.seen.progress.share
+    }
+
+    /// [m] How far the robot has come in the commanded direction, at most.
+    pub(crate) fn best_advance(&self) -> f64 {
+        self.seen.progress.best_advance()
     }
 
     /// Means over the last one to two stop windows.

@@ -18,10 +18,10 @@ pub enum Outcome {
     LeftTerrain,
     /// The robot is past the goal.
     Cleared,
+    /// Stopped by ground in a pocket of the track: a closed track gets free.
+    Seized,
     /// The robot moves to and fro without progress.
     Cycling,
-    /// Stopped by ground in a pocket of the track.
-    Seized,
     /// Stopped with weight on the belly.
     HungUp,
     /// Stopped by the torque limit.
@@ -39,8 +39,8 @@ impl Outcome {
         Self::TippedOver,
         Self::LeftTerrain,
         Self::Cleared,
-        Self::Cycling,
         Self::Seized,
+        Self::Cycling,
         Self::HungUp,
         Self::Stalled,
         Self::Slipping,
@@ -54,8 +54,8 @@ impl Outcome {
             Self::TippedOver => "tipped_over",
             Self::LeftTerrain => "left_terrain",
             Self::Cleared => "cleared",
-            Self::Cycling => "cycling",
             Self::Seized => "seized",
+            Self::Cycling => "cycling",
             Self::HungUp => "hung_up",
             Self::Stalled => "stalled",
             Self::Slipping => "slipping",
@@ -67,7 +67,7 @@ impl Outcome {
     pub fn is_stop(self) -> bool {
         matches!(
             self,
-            Self::Cycling | Self::Seized | Self::HungUp | Self::Stalled | Self::Slipping
+            Self::Seized | Self::Cycling | Self::HungUp | Self::Stalled | Self::Slipping
         )
     }
 }

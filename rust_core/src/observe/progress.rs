@@ -137,6 +137,11 @@ impl Progress {
         None
     }
 
+    /// [m] Greatest advance since the last change of direction.
+    pub(super) fn best_advance(&self) -> f64 {
+        self.best_advance
+    }
+
     /// Whether half a window has passed without progress, so that a stop may be near.
     pub(super) fn falters(&self) -> bool {
         self.falters

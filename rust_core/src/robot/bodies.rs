@@ -77,7 +77,7 @@ impl Model {
                 })
             })
             .collect();
-        for mount in self.mounts_of_tracks() {
+        for mount in self.mounts() {
             let circulating = match mount {
                 Mount::Flipper(k) => self.flippers[k].mass_of_track(),
                 Mount::Chassis | Mount::Shoe(_) => self.drive_masses.iter().sum::<f64>(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{BodyKind, Model, Mount, Part, Shape};
-use crate::geometry::{Disc, Envelope, Grouser};
+use crate::geometry::{Disc, Envelope, Grouser, Vector};
 use crate::scenario::{ClosedSurface, ScenarioError, TrackOutline};
 
 impl Model {
@@ -18,17 +18,28 @@ impl Model {
         outline: &TrackOutline,
     ) -> Result<Self, ScenarioError> {
         let round = |mount| -> Vec<Disc> { self.discs_of_track(0, mount).map(|d| d.0).collect() };
-        let belt = Envelope::new(&round(Mount::Chassis));
+        let has_belt = self.has_track(Mount::Chassis);
+        let belt = has_belt.then(|| Envelope::new(&round(Mount::Chassis)));
         // A closed belt covers a belly that lies inside it.
-        let reaches_out = |part: &&Part| match &part.shape {
-            Shape::Polygon { corners } if part.mount == Mount::Chassis => {
-                corners.iter().any(|c| belt.depth(*c) < 0.0)
-            }
-            _ => false,
+        let is_covered = |corners: &[Vector]| {
+            let inside = |belt: &Envelope| corners.iter().all(|c| belt.depth(*c) >= 0.0);
+            belt.as_ref().is_some_and(inside)
         };
-        let belly = self.parts.iter().filter(reaches_out).cloned();
         let tracks = self.tracks();
-        let mut parts = Vec::new();
+        let (mut parts, mut belly) = (Vec::new(), Vec::new());
+        for part in &self.parts {
+            match &part.shape {
+                Shape::Polygon { corners } if part.kind == BodyKind::Belly => {
+                    belly.extend((!is_covered(corners)).then(|| part.clone()));
+                }
+                // Wheels that no track runs round stay, all of a side on its motor.
+                _ if !self.has_track(part.mount) => parts.push(Part {
+                    drive: Some(part.lane),
+                    ..part.clone()
+                }),
+                _ => {}
+            }
+        }
         for lane in 0..tracks {
             for mount in self.mounts_of_tracks() {
                 let height = match surface {
@@ -59,12 +70,6 @@ impl Model {
             pushes_chassis: false,
             ..whole
         })
-    }
-
-    /// Whether any of its tracks has grousers that a closed belt could have.
-    pub(crate) fn has_grousers(&self, outline: &TrackOutline) -> bool {
-        self.mounts_of_tracks()
-            .any(|mount| self.grouser_height(mount, outline) > 0.0)
     }
 
     /// [m] Height of the grousers of the track on a mount: gears have their own, chains and belts those of the

@@ -32,6 +32,8 @@ pub struct Model {
     pub chains: Vec<ChainOfShoes>,
     /// Arms that pivot on it; their mass is not included in those figures either.
     pub flippers: Vec<Flipper>,
+    /// No track runs round the wheels on the chassis, and on the flippers.
+    pub wheels_alone: [bool; 2],
 }
 
 impl Model {
@@ -81,6 +83,11 @@ impl Model {
             pushes_chassis: track.pushes_chassis,
             chains: Vec::new(),
             flippers: Vec::new(),
+            wheels_alone: [
+                !robot.track.is_track(),
+                (robot.flippers.as_ref())
+                    .is_some_and(|arms| !arms.track_model(&robot.track).is_track()),
+            ],
         }
         .with_flippers(flippers)
         .with_chains(track.chains);
@@ -153,10 +160,24 @@ impl Model {
         of_tracks.map(|part| part.lane + 1).max().unwrap_or(1)
     }
 
-    /// The mounts that carry a track: the chassis and the flippers.
-    pub fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + use<> {
+    /// What carries bodies of tracks or wheels: the chassis and the flippers.
+    pub fn mounts(&self) -> impl Iterator<Item = Mount> + use<> {
         let flippers = (0..self.flippers.len()).map(Mount::Flipper);
         std::iter::once(Mount::Chassis).chain(flippers)
+    }
+
+    /// Whether a track runs round the bodies on a mount.
+    pub fn has_track(&self, on: Mount) -> bool {
+        let [chassis, flippers] = self.wheels_alone;
+        match on {
+            Mount::Chassis | Mount::Shoe(_) => !chassis,
+            Mount::Flipper(_) => !flippers,
+        }
+    }
+
+    /// The mounts that carry a track.
+    pub(crate) fn mounts_of_tracks(&self) -> impl Iterator<Item = Mount> + '_ {
+        self.mounts().filter(|mount| self.has_track(*mount))
     }
 
     /// Circumscribed and root circles of the bodies of the track on a mount and a lane.

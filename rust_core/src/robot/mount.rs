@@ -12,6 +12,14 @@ pub enum Mount {
 }
 
 impl Mount {
+    /// What carries the track that it belongs to: the chassis carries chains.
+    pub(crate) fn carrier(self) -> Self {
+        match self {
+            Self::Chassis | Self::Shoe(_) => Self::Chassis,
+            Self::Flipper(_) => self,
+        }
+    }
+
     /// Number of the shoe, if it is one.
     pub fn shoe(self) -> Option<usize> {
         match self {

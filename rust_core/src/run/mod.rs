@@ -11,6 +11,7 @@ mod record;
 mod simulate;
 mod simulation;
 mod trace;
+mod trials;
 
 pub use batch::{Progress, simulate_many};
 pub use checked::Checked;
@@ -18,6 +19,9 @@ pub use contact_table::ContactTable;
 pub use metrics::Metrics;
 pub use poses::{Poses, poses};
 pub use record::Record;
-pub use simulate::{Run, branch, counterfactual, simulate};
+pub use simulate::{
+    Run, branch, diagnose, escape_force, make_trials, outcome_of, run_of_trial, simulate, what_if,
+};
 pub use simulation::Simulation;
 pub use trace::Trace;
+pub use trials::EscapeForce;

@@ -1,5 +1,6 @@
 //! What to keep of a run, and how much that is.
 
+use crate::diagnosis::Wanted;
 use crate::robot::Model;
 use crate::scenario::Scenario;
 
@@ -10,8 +11,8 @@ pub struct Record {
     pub sample_interval: f64,
     /// Keep the trace and the contact table; without it only outcome, metrics and events.
     pub history: bool,
-    /// Try a closed belt if the run ends in a stop.
-    pub counterfactual: bool,
+    /// What to try if the run ends in a stop, besides what its outcome needs.
+    pub trials: Wanted,
 }
 
 impl Default for Record {
@@ -19,7 +20,7 @@ impl Default for Record {
         Self {
             sample_interval: 0.01,
             history: true,
-            counterfactual: false,
+            trials: Wanted::default(),
         }
     }
 }

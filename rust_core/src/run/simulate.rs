@@ -6,13 +6,14 @@ use super::contact_table::ContactTable;
 use super::record::Record;
 use super::simulation::SAME_TIME;
 use super::trace::{Recorder, Trace};
+use super::trials::{self, EscapeForce};
 use super::{Checked, Metrics, Simulation, budget};
-use crate::diagnosis::{Counterfactual, Diagnosis};
+use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
-use crate::scenario::ClosedSurface;
+use crate::scenario::Scenario;
 use crate::terrain::Edge;
 
 /// The results of a run.
@@ -84,18 +85,87 @@ pub fn branch(
     advance(&mut simulation, end, record, (&budget, cancel), begin)
 }
 
-/// Simulates `scenario` up to the time `at` [s] and tries a closed belt there.
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and makes trials there; those that make no sense
+/// for the robot are left out.
 ///
 /// # Errors
-/// As [`simulate`], [`Error::Scenario`] if the belt is to have grousers but the track has none, and
-/// [`Error::Interrupted`] once `cancel` is asked.
-pub fn counterfactual(
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
+pub fn make_trials(
     scenario: &Checked,
     at: f64,
-    surface: ClosedSurface,
+    wanted: Wanted,
     cancel: &Cancel,
-) -> Result<Counterfactual, Error> {
-    replay(scenario, at, cancel)?.counterfactual(surface, cancel)
+) -> Result<Vec<Trial>, Error> {
+    trials::make(&replay(scenario, at, cancel)?, wanted, cancel)
+}
+
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and tries to continue as `variant` with a push
+/// that rises to a force [N] in a time [s]; `None` if it has not stopped.
+///
+/// # Errors
+/// As [`branch`].
+pub fn what_if(
+    scenario: &Checked,
+    at: f64,
+    changes: (&Checked, (f64, f64)),
+    cancel: &Cancel,
+) -> Result<Option<Trial>, Error> {
+    trials::what_if(&replay(scenario, at, cancel)?, changes, cancel)
+}
+
+/// The scenario of a trial made at a stop of `scenario` at the time `at` [s], and its run; `None` if the change makes no
+/// sense for the robot.
+///
+/// # Errors
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
+pub fn run_of_trial(
+    scenario: &Checked,
+    at: f64,
+    change: Change,
+    record: Record,
+    cancel: &Cancel,
+) -> Result<Option<(Scenario, Run)>, Error> {
+    let begin = Instant::now();
+    let stop = replay(scenario, at, cancel)?;
+    let Some(mut started) = trials::start(&stop, change)? else {
+        return Ok(None);
+    };
+    let budget = budget::of_batch(std::slice::from_ref(scenario), record, 1)?;
+    let end = started.time() + trials::duration(&stop);
+    let run = advance(&mut started, end, record, (&budget, cancel), begin)?;
+    Ok(Some((started.scenario().clone(), run)))
+}
+
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and measures the push that moves it on.
+///
+/// # Errors
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
+pub fn escape_force(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<EscapeForce, Error> {
+    trials::escape_force(&replay(scenario, at, cancel)?, cancel)
+}
+
+/// Diagnoses a simulation's stop; `None` if it has not stopped.
+///
+/// # Errors
+/// [`Error::Simulation`] if the state of a trial became non-finite, [`Error::Interrupted`] once `cancel` is asked.
+pub fn diagnose(
+    simulation: &Simulation,
+    wanted: Wanted,
+    cancel: &Cancel,
+) -> Result<Option<Diagnosis>, Error> {
+    trials::judge(simulation, wanted, cancel)
+}
+
+/// The outcome if a simulation ended now.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, Error> {
+    if let Some(outcome) = simulation.monitor().ended_as() {
+        return Ok(outcome);
+    }
+    let found = diagnose(simulation, Wanted::default(), cancel)?;
+    Ok(found.map_or(Outcome::TimedOut, |found| found.outcome))
 }
 
 /// The simulation of a scenario at the end of its first step that reaches a time [s].
@@ -135,13 +205,9 @@ fn advance(
     let recorded = recorder.map(|recorder| recorder.finish(simulation));
     let (trace, contacts) = recorded.transpose()?.unwrap_or_default();
     let events = simulation.events();
-    let mut diagnosis = simulation.diagnosis();
-    if let Some(diagnosis) = diagnosis.as_mut().filter(|_| record.counterfactual) {
-        diagnosis.counterfactual = Some(simulation.counterfactual(ClosedSurface::Smooth, cancel)?);
-    }
-    let outcome = diagnosis
-        .as_ref()
-        .map_or_else(|| simulation.outcome_now(), |d| d.outcome);
+    let diagnosis = trials::judge(simulation, record.trials, cancel)?;
+    let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
+    let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
     let metrics = Metrics::of(simulation, &start, &events);
     Ok(Run {
         outcome,

@@ -1,6 +1,7 @@
 //! A simulation of one robot on one ground, step by step.
 
 mod branch;
+mod clear;
 mod command;
 mod drive;
 mod gait;
@@ -29,7 +30,7 @@ use crate::error::Error;
 #[cfg(test)]
 use crate::geometry::Pose;
 use crate::geometry::Vector;
-use crate::observe::{Event, Monitor, Outcome, Reading};
+use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
 use crate::scenario::Scenario;
 use crate::terrain::{Ground, Side};
@@ -220,23 +221,15 @@ impl Simulation {
 
     /// Whether the outcome is certain, so that a run may end.
     pub fn is_over(&self) -> bool {
-        self.monitor.is_over()
+        let criteria = &self.scenario.criteria;
+        let wait = f64::from(criteria.stationary_windows) * self.stop_window();
+        // A robot that stands may still leave under a push that has just risen.
+        let may_leave = self.time < self.push.end() + wait;
+        self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave)
     }
 
-    /// The outcome, as soon as it is certain.
-    pub fn outcome(&self) -> Option<Outcome> {
-        self.is_over().then(|| self.outcome_now())
-    }
-
-    /// The outcome if the run ended now.
-    pub fn outcome_now(&self) -> Outcome {
-        let ended = self.monitor.ended_as();
-        let stopped = || self.diagnosis().map(|d| d.outcome);
-        ended.or_else(stopped).unwrap_or(Outcome::TimedOut)
-    }
-
-    /// The diagnosis, if the robot is stopped.
-    pub fn diagnosis(&self) -> Option<Diagnosis> {
+    /// What is seen of a stop, before anything is tried; `None` if the robot is not stopped.
+    pub(crate) fn examine(&self) -> Option<Diagnosis> {
         let since = self.monitor.stop_since()?;
         if self.monitor.ended_as().is_some() {
             return None;
@@ -252,7 +245,6 @@ impl Simulation {
             model: &model,
             lanes: &self.ground.lanes,
             envelopes: self.monitor.envelopes(),
-            contact: self.scenario.solver.contact,
             criteria: &self.scenario.criteria,
             gravity: self.scenario.gravity,
             command: self.command,
@@ -260,7 +252,27 @@ impl Simulation {
             half_length: 0.5 * self.scenario.robot.outline.axle_distance,
             running,
         };
-        Some(diagnosis::diagnose(&scene, &self.monitor.stance(), &seen))
+        Some(diagnosis::examine(&scene, &self.monitor.stance(), &seen))
+    }
+
+    /// [s] Time without progress that counts as a stop.
+    pub(crate) fn stop_window(&self) -> f64 {
+        self.monitor.window(self.command)
+    }
+
+    /// [m/s] Commanded speed.
+    pub(crate) fn command(&self) -> f64 {
+        self.command
+    }
+
+    /// 1 or -1 as commanded.
+    pub(crate) fn direction(&self) -> f64 {
+        if self.command < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// [N] Weight of the whole robot.
+    pub(crate) fn weight(&self) -> f64 {
+        self.dynamics.model().total_mass() * self.scenario.gravity
     }
 
     /// The current intrusions into the envelope of each track, from the left.

@@ -160,6 +160,12 @@ impl<'a> Fields<'a> {
         self.integer(name, low, high).map(Some)
     }
 
+    pub(crate) fn flag(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
+        let value = self.value(name)?;
+        let flag = value.as_bool();
+        flag.ok_or_else(|| self.error(name, value, "must be true or false"))
+    }
+
     pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {
         /// Largest number of characters.
         const LONGEST: usize = 1000;

@@ -272,6 +272,31 @@ impl Terrain {
         Ok(terrain)
     }
 
+    /// Multiplies the friction of all its lanes.
+    pub(crate) fn scale_friction(&mut self, factor: f64) {
+        match self {
+            Self::Flat { friction, .. }
+            | Self::Step { friction, .. }
+            | Self::Ramp { friction, .. }
+            | Self::Barrier { friction, .. }
+            | Self::Ridge { friction, .. }
+            | Self::Gap { friction, .. }
+            | Self::Stairs { friction, .. }
+            | Self::HalfRound { friction, .. }
+            | Self::DiagonalBarrier { friction, .. }
+            | Self::RandomStepfield(Stepfield { friction, .. })
+            | Self::Points { friction, .. } => *friction *= factor,
+            Self::Lanes {
+                left,
+                right,
+                middle,
+            } => {
+                let lanes = [left, right].into_iter().chain(middle);
+                lanes.for_each(|lane| lane.scale_friction(factor));
+            }
+        }
+    }
+
     fn read_lane(f: &mut Fields, name: &'static str) -> Result<Box<Self>, ScenarioError> {
         let lane = Self::read(f.child(name)?)?;
         let lanes = match lane {

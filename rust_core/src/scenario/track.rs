@@ -49,6 +49,8 @@ pub struct LineOfWheels {
     pub wheel_radius: Option<f64>,
     /// The shape of each wheel.
     pub wheel: Wheel,
+    /// They stand for a track; else nothing runs round them.
+    pub as_track: bool,
 }
 
 /// Equal wheels inside the outline, each touching it, evenly spaced all the way round.
@@ -183,6 +185,7 @@ impl Track {
                 count: f.integer("count", 2, MAX_WHEELS)?,
                 wheel_radius: f.optional_number("wheel_radius", RADIUS)?,
                 wheel: Wheel::read(f.child("wheel")?)?,
+                as_track: f.flag("as_track")?,
             }),
             "circumferential" => Self::Circumferential(CircumferentialWheels {
                 count: f.integer("count", 3, MAX_WHEELS)?,
@@ -233,6 +236,33 @@ impl Track {
             | Self::Hybrid(HybridWheels { wheel, .. }) => Some(wheel),
             Self::Closed(closed) => closed.of.wheel(),
             Self::Belt(_) | Self::GrouserBelt(_) | Self::Segmental(_) | Self::Force(_) => None,
+        }
+    }
+
+    /// Whether a track runs round its bodies.
+    pub(crate) fn is_track(&self) -> bool {
+        !matches!(self.open(), Self::Line(line) if !line.as_track)
+    }
+
+    /// Whether ground can get in between its bodies.
+    pub(crate) fn has_pockets(&self) -> bool {
+        match self {
+            Self::Belt(_) | Self::GrouserBelt(_) | Self::Closed(_) => false,
+            Self::Force(force) => force.support == ForceSupport::Wheels,
+            Self::Line(_) | Self::Circumferential(_) | Self::Hybrid(_) | Self::Segmental(_) => {
+                self.is_track()
+            }
+        }
+    }
+
+    /// Whether its surface has grousers.
+    pub(crate) fn has_grousers(&self) -> bool {
+        match self {
+            Self::GrouserBelt(_) | Self::Segmental(_) => true,
+            Self::Closed(closed) => {
+                closed.surface == ClosedSurface::Own && closed.of.has_grousers()
+            }
+            _ => matches!(self.wheel(), Some(Wheel::Gear(_))),
         }
     }
 

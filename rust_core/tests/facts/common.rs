@@ -1,10 +1,10 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Flippers, ForceSupport,
-    ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
-    Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation, Terrain, Track, Wheel,
-    simulate,
+    BeltTrack, Cancel, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Flippers,
+    ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels,
+    LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation,
+    Terrain, Track, Wheel, outcome_of, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -19,6 +19,11 @@ pub(crate) fn engineer() -> Scenario {
 /// A scenario as it comes out of the door.
 pub(crate) fn checked(scenario: &Scenario) -> Checked {
     Checked::new(scenario).expect("the scenario is valid")
+}
+
+/// The outcome if a simulation ended now.
+pub(crate) fn outcome_now(simulation: &Simulation) -> Outcome {
+    outcome_of(simulation, &Cancel::default()).expect("the state stays finite")
 }
 
 /// The same on a track.
@@ -141,6 +146,7 @@ pub(crate) fn line_of(count: u32, wheel: Wheel) -> Track {
         count,
         wheel_radius: None,
         wheel,
+        as_track: true,
     })
 }
 

@@ -89,7 +89,7 @@ fn outcome_of(
             break; // on its back, where no robot drives on
         }
     }
-    (simulation.outcome_now(), worst)
+    (outcome_now(&simulation), worst)
 }
 
 /// [m] Pins may be off by so much.

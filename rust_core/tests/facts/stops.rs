@@ -1,8 +1,8 @@
 //! Why a robot stops: hand-solved cases, and what a closed belt does in its place.
 
 use crawler2d_core::{
-    Cancel, ClosedSurface, Condition, Mechanism, Outcome, Run, Scenario, Simulation, Terrain,
-    Wheel, simulate,
+    Cancel, Change, ClosedSurface, ClosedTrack, Mechanism, Outcome, Run, Scenario, Simulation,
+    Terrain, Track, Wanted, Wheel, escape_force, make_trials, simulate,
 };
 
 use crate::common::*;
@@ -17,10 +17,22 @@ fn ends_in_a_stop(scenario: &Scenario) -> Simulation {
     simulation
 }
 
-/// Whether a closed belt gets away from the pose of a stop.
-fn gets_away(stopped: &Simulation, surface: ClosedSurface) -> bool {
-    let belt = stopped.counterfactual(surface, &Cancel::default());
-    belt.expect("the state stays finite").freed
+/// Whether a change frees a robot from a stop.
+fn is_freed(stopped: &Simulation, change: Change) -> bool {
+    let at = stopped.time();
+    let scenario = checked(stopped.scenario());
+    let made = make_trials(&scenario, at, Wanted::of([change]), &Cancel::default());
+    made.expect("the state stays finite")[0].freed
+}
+
+/// The robot in a closed belt, in the pose of a stop.
+fn in_a_closed_belt(stopped: &Simulation, surface: ClosedSurface) -> Simulation {
+    let mut scenario = stopped.scenario().clone();
+    scenario.robot.track = Track::Closed(ClosedTrack {
+        of: Box::new(scenario.robot.track),
+        surface,
+    });
+    stopped.branch(&checked(&scenario))
 }
 
 /// [J] Kinetic and potential energy of robot and track.
@@ -79,7 +91,7 @@ fn seized_on(draw: &mut Draw, wheel: &Wheel) -> Option<Simulation> {
     scenario.robot.drivetrain.max_deceleration = 1e3;
     scenario.duration = 10.0;
     let simulation = ends_in_a_stop(&scenario);
-    (simulation.outcome_now() == Outcome::Seized).then_some(simulation)
+    (outcome_now(&simulation) == Outcome::Seized).then_some(simulation)
 }
 
 #[test]
@@ -92,12 +104,11 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
             continue;
         };
         cases += 1;
-        let depth = stopped.diagnosis().unwrap().intrusion.unwrap().place.depth;
-        deepest = deepest.max(depth);
-        freed += u32::from(gets_away(&stopped, ClosedSurface::Smooth));
-        most = most.max(gain_when_braked(
-            stopped.with_closed_track(ClosedSurface::Smooth).unwrap(),
-        ));
+        let inside = stopped.intrusions().into_iter().map(|i| i.depth);
+        deepest = deepest.max(inside.fold(0.0, f64::max));
+        freed += u32::from(is_freed(&stopped, Change::ClosedTrack));
+        let belt = in_a_closed_belt(&stopped, ClosedSurface::Smooth);
+        most = most.max(gain_when_braked(belt));
     }
     println!(
         "seed {seed}: {cases} seized robots, ground up to {:.0} mm inside; braked in a closed belt they gained \
@@ -135,11 +146,10 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
             continue;
         };
         cases += 1;
-        smooth += u32::from(gets_away(&stopped, ClosedSurface::Smooth));
-        freed += u32::from(gets_away(&stopped, ClosedSurface::Own));
-        most = most.max(gain_when_braked(
-            stopped.with_closed_track(ClosedSurface::Own).unwrap(),
-        ));
+        smooth += u32::from(is_freed(&stopped, Change::ClosedSmoothTrack));
+        freed += u32::from(is_freed(&stopped, Change::ClosedTrack));
+        let belt = in_a_closed_belt(&stopped, ClosedSurface::Own);
+        most = most.max(gain_when_braked(belt));
     }
     println!(
         "seed {seed}: {cases} seized robots on gear wheels; braked in a belt with grousers they gained energy for \
@@ -197,19 +207,25 @@ fn a_wheel_against_a_face_at_the_friction_limit_slips() {
     let behind = scenario.robot.center_of_mass[0] + 0.5 * length;
     let lift = (mu * (length + radius) + radius) / (1.0 + mu * mu);
     let push = weight * (behind - mu * lift) / (lift - (g + radius));
-    let found = d.escape_force.unwrap();
-    println!("escape force {found} N, by hand {push} N");
-    assert!((found / push - 1.0).abs() < 1e-3);
+    let found = escape_force(&checked(&scenario), d.time, &Cancel::default()).unwrap();
+    println!("escape force {found:?}, by hand {push} N");
+    assert!(found.low < push && push < found.high);
 }
 
 #[test]
-fn weak_motors_stall_and_more_torque_would_free_them() {
+fn weak_motors_stall_until_they_have_more_torque() {
     let mut scenario = engineer();
     scenario.terrain = step(0.06, 0.9);
-    scenario.robot.drivetrain.max_torque = 0.8;
+    scenario.robot.drivetrain.max_torque = 3.0;
     let (_, d) = why(&scenario);
     assert_eq!(d.outcome, Outcome::Stalled);
-    assert_eq!(d.cause, [[Condition::Torque]]);
+    let wanted = Wanted::of([Change::TwiceTheTorque, Change::TwiceTheFriction]);
+    let made = make_trials(&checked(&scenario), d.time, wanted, &Cancel::default()).unwrap();
+    let freed = made
+        .iter()
+        .filter(|trial| trial.freed)
+        .map(|trial| trial.name);
+    assert_eq!(freed.collect::<Vec<_>>(), ["torque x 2"]);
 }
 
 #[test]
@@ -286,10 +302,9 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
         }
         let (_, d) = why(&scenario);
         println!(
-            "friction {friction}: {} {:?} {:?} {:?}",
+            "friction {friction}: {} {:?} {:?}",
             d.outcome,
             d.mechanism,
-            d.cause,
             d.intrusion.as_ref().map(|i| (i.place.depth, i.force))
         );
         loaded += u32::from(d.intrusion.is_some());
@@ -298,13 +313,13 @@ fn a_pebble_in_a_pocket_before_a_wall_is_not_the_cause() {
     assert!(loaded > 0);
 }
 
-/// [m] How far the robot moves under a push that grows to `force` in 5 s and stays for a second; all
+/// [m] How far the robot moves under a push that grows to `force` in 5 s and stays for three; all
 /// at once it would carry the robot past where it could hold.
 fn moves_under(stopped: &Simulation, force: f64) -> f64 {
     let mut pushed = stopped.branch(&checked(stopped.scenario()));
     let start = pushed.reading().position;
     let mut farthest: f64 = 0.0;
-    for i in 0..6000 {
+    for i in 0..8000 {
         pushed
             .set_push(force * f64::from(i).min(5000.0) / 5000.0)
             .unwrap();
@@ -315,54 +330,42 @@ fn moves_under(stopped: &Simulation, force: f64) -> f64 {
 }
 
 #[test]
-fn a_seized_robot_gives_way_to_a_push_beyond_its_escape_force() {
+fn a_seized_robot_holds_the_lower_escape_force_and_gives_way_to_the_upper() {
     let seed = 21;
     let mut draw = Draw(seed);
-    let wanted = if std::env::var_os("CRAWLER2D_SOAK").is_some() {
-        200
-    } else {
-        30
-    };
-    let (mut cases, mut right, mut within_free, mut wedged, mut rattling) = (0, 0, 0, 0, 0);
+    let soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
+    let wanted = if soak { 200 } else { 30 };
+    let (mut cases, mut held, mut moved, mut wedged) = (0, 0, 0, 0);
     while cases < wanted {
         let Some(stopped) = seized(&mut draw) else {
             continue;
         };
-        let d = stopped.diagnosis().unwrap();
-        let (Some(pinned), Some(free)) = (d.escape_force, d.free_escape_force) else {
-            rattling += 1;
-            continue;
-        };
-        if pinned.is_infinite() {
+        let scenario = checked(stopped.scenario());
+        let found = escape_force(&scenario, stopped.time(), &Cancel::default()).unwrap();
+        if found.high.is_infinite() {
             wedged += 1;
             continue;
         }
         cases += 1;
-        let (more, less) = (
-            moves_under(&stopped, 1.1 * pinned),
-            moves_under(&stopped, 0.9 * pinned),
-        );
-        let ok = more > 5e-3 && less <= 5e-3;
-        right += u32::from(ok);
-        within_free += u32::from(moves_under(&stopped, (0.9 * free).min(1e5)) <= 5e-3);
-        if !ok {
+        let [less, more] = [found.low, found.high].map(|force| moves_under(&stopped, force));
+        held += u32::from(less <= 5e-3);
+        moved += u32::from(more > 5e-3);
+        if less > 5e-3 || more <= 5e-3 {
             println!(
-                "{:?} {:?}: {pinned:.1} N (free {free:.1} N), {:.2} mm at 1.1, {:.2} mm at 0.9, stationary {} {:?} stalled {}",
+                "{:?} {:?}: {found:?}, {:.2} and {:.2} mm",
                 stopped.scenario().robot.track,
                 stopped.scenario().terrain,
-                1e3 * more,
                 1e3 * less,
-                d.stationary,
-                d.mechanism,
-                d.stalled_share
+                1e3 * more,
             );
         }
     }
     println!(
-        "seed {seed}: of {cases} seized robots {right} move under 1.1 times the pinned escape force and not under 0.9; \
-         {within_free} hold 0.9 times the free one; {wedged} more are wedged, {rattling} rattle on"
+        "seed {seed}: of {cases} seized robots {held} hold the lower force and {moved} give way to the upper one; \
+         {wedged} more are wedged"
     );
-    assert!(f64::from(right) >= 0.95 * f64::from(cases));
+    // Another course of the push may end the stop a little earlier or later than the levels of a tenth.
+    assert!(f64::from(held.min(moved)) >= 0.9 * f64::from(cases));
 }
 
 #[test]

@@ -75,9 +75,8 @@ def marv(
     the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm become four chords here, at
     most 1 mm inside.
 
-    There is no track on the line between the roots: ground above that line is reported as inside
-    the track although nothing runs there. The package gives the robot's mass as 61 kg; the sum over
-    all links is 60.36 kg.
+    There is no track between the roots, so no ground is inside one there. The package gives the
+    robot's mass as 61 kg; the sum over all links is 60.36 kg.
 
     Examples
     --------
@@ -95,6 +94,7 @@ def marv(
         torque_limit=120.0,
         track=GrouserBeltTrack(),
     )
+    roots = LineOfWheels(2, as_track=False)
     chassis = 45.726
     whole = chassis + 4.0 * built.mass
     robot = Robot.simple(whole, axle_distance=0.512, radius=0.1165, name="marv", max_speed=1.0)
@@ -107,9 +107,9 @@ def marv(
         belly=(*bow, (0.3, 0.1921), (-0.3, 0.1921), *((-x, y) for x, y in reversed(bow))),
         gauge=0.496,
         drivetrain=replace(robot.drivetrain, max_acceleration=3.0),
-        track=LineOfWheels(2),
+        track=roots,
     )
-    public = (LineOfWheels(2), LineOfWheels(8))
+    public = (roots, LineOfWheels(8))
     return finished(robot, flippers=flippers, built=built, track=track, public=public)
 
 

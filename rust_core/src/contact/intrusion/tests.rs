@@ -50,6 +50,7 @@ fn tracks() -> Vec<Track> {
                 count,
                 wheel_radius,
                 wheel: wheel.clone(),
+                as_track: true,
             }));
         }
         for (count, wheel_radius) in [(24, None), (14, Some(0.02))] {

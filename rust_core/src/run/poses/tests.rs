@@ -29,6 +29,7 @@ fn scenarios() -> Vec<(String, Scenario)> {
             base_thickness: None,
             phase_fraction: 1.0 / 3.0,
         }),
+        as_track: true,
     });
     found.push(gears);
     // A gait that turns the arms from the first step on.

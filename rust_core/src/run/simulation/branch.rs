@@ -3,16 +3,14 @@
 use std::sync::Arc;
 
 use super::Simulation;
-use super::gait::Driver;
+use super::gait::has_the_same_speeds;
 use crate::contact::Dents;
-use crate::diagnosis::Counterfactual;
 use crate::dynamics::{DriveState, State, flippers_at_rest, idlers_at_rest, shoes_at_rest};
 use crate::error::Error;
-use crate::limits::Cancel;
 use crate::observe::Seen;
 use crate::robot::Model;
 use crate::run::Checked;
-use crate::scenario::{ClosedSurface, ClosedTrack, Robot, Scenario, ScenarioError, Track};
+use crate::scenario::{Robot, Scenario};
 use crate::terrain::Ground;
 
 impl Simulation {
@@ -76,67 +74,40 @@ impl Simulation {
         branch
     }
 
-    /// Tries a closed belt in this pose: smooth, or with the grousers of the track.
-    ///
-    /// # Errors
-    /// [`Error::Simulation`] if the state has become non-finite, [`Error::Interrupted`] once `cancel` is requested,
-    /// [`Error::Scenario`] as [`Self::with_closed_track`].
-    pub fn counterfactual(
-        &self,
-        surface: ClosedSurface,
-        cancel: &Cancel,
-    ) -> Result<Counterfactual, Error> {
-        let mut belt = self.with_closed_track(surface)?;
-        let criteria = &self.scenario.criteria;
-        let direction = if self.command < 0.0 { -1.0 } else { 1.0 };
-        let start = belt.reading().position.x;
-        let (mut distance, mut time): (f64, f64) = (0.0, f64::INFINITY);
-        while belt.time() - self.time() < criteria.escape_time && !belt.is_over() {
-            belt.step()?;
-            cancel.check()?;
-            distance = distance.max(direction * (belt.reading().position.x - start));
-            if distance > criteria.escape_distance {
-                time = time.min(belt.time() - self.time());
-            }
-        }
-        Ok(Counterfactual {
-            freed: time.is_finite(),
-            distance,
-            time,
-            outcome: belt.outcome_now(),
-        })
+    /// The same simulation, watched anew.
+    pub(in crate::run) fn copy(&self) -> Self {
+        let model = self.dynamics.model().clone();
+        self.continued(&self.scenario, Arc::clone(&self.ground), model)
     }
 
-    /// The same instant with a closed belt round the bodies of the track.
+    /// The same instant as a variant of the scenario; one that is not rebuilt must have the same parts, or no belly.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the belt is to have grousers and the track has none, or the outline's pitch makes more than
-    /// a belt may have.
-    pub fn with_closed_track(&self, surface: ClosedSurface) -> Result<Self, Error> {
-        let mut scenario = self.scenario.clone();
-        let robot = &mut scenario.robot;
-        let has_grousers = || self.dynamics.model().has_grousers(&robot.outline);
-        if surface == ClosedSurface::Own && !has_grousers() {
-            let rule = "must have grousers to be compared with a belt with grousers";
-            let error = ScenarioError::new("robot.track", "this model", rule);
-            return Err(error.into());
-        }
-        robot.track = Track::Closed(ClosedTrack {
-            of: Box::new(robot.track.open().clone()),
-            surface,
-        });
-        let model = Model::on(robot, &self.ground)?;
-        Ok(self.rebuilt(&scenario, Arc::clone(&self.ground), model))
+    /// [`Error::Scenario`] if its robot or its ground cannot be built.
+    pub(in crate::run) fn varied(&self, variant: &Scenario, rebuilt: bool) -> Result<Self, Error> {
+        let ground = if variant.terrain == self.scenario.terrain {
+            Arc::clone(&self.ground)
+        } else {
+            Arc::new(Ground::new(&variant.terrain, variant.robot.gauge)?)
+        };
+        let model = Model::on(&variant.robot, &ground)?;
+        Ok(if rebuilt {
+            self.rebuilt(variant, ground, model)
+        } else {
+            self.continued(variant, ground, model)
+        })
     }
 
     /// Takes over the time and what is commanded then, unless its scenario has another command.
     fn commanded_like(&mut self, other: &Self) {
         (self.time, self.began) = (other.time, other.time);
-        if self.scenario.drive == other.scenario.drive {
-            (self.command, self.driver) = (other.command, other.driver);
+        let (before, now) = (&other.scenario.drive, &self.scenario.drive);
+        self.command = if has_the_same_speeds(before, now) {
+            other.command
         } else {
-            (self.command, self.driver) = (self.scenario.drive.speed, Driver::default());
-        }
+            now.speed
+        };
+        self.driver = other.driver.commanded(before, now);
         (self.set_point, self.set_point_before) = (other.set_point, other.set_point);
         self.push = other.push;
         self.monitor.seen = Seen::from(self.time);

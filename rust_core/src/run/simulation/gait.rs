@@ -66,6 +66,24 @@ impl Driver {
         speed
     }
 
+    /// The same driver with another command; what the commands have in common goes on.
+    pub(crate) fn commanded(self, before: &Drive, now: &Drive) -> Self {
+        let speeds = if has_the_same_speeds(before, now) {
+            self
+        } else {
+            Self::default()
+        };
+        let angles = if before.gait == now.gait {
+            self
+        } else {
+            Self::default()
+        };
+        Self {
+            entries: speeds.entries,
+            ..angles
+        }
+    }
+
     /// Whether commands can have led to this state.
     pub(crate) fn fits(&self, drive: &Drive) -> bool {
         let entries = drive.schedule.as_ref().map_or(0, Vec::len);
@@ -113,6 +131,15 @@ impl Driver {
             Phase::Lift => [swept, pushed],
         }
     }
+}
+
+/// Whether two commands differ in what the flippers do at most.
+pub(crate) fn has_the_same_speeds(one: &Drive, other: &Drive) -> bool {
+    let level = |drive: &Drive| Drive {
+        gait: None,
+        ..drive.clone()
+    };
+    level(one) == level(other)
 }
 
 impl Hold {

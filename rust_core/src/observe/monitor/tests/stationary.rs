@@ -132,6 +132,7 @@ fn what_may_still_change_by_itself_does_not_stay() {
             count: 4,
             wheel_radius: None,
             wheel,
+            as_track: true,
         })
     };
     assert!(ends(&|s| s.robot.track = on_wheels(Wheel::Round)));

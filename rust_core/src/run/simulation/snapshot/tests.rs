@@ -15,6 +15,7 @@ fn on_wheels() -> Simulation {
         count: 3,
         wheel_radius: None,
         wheel: Wheel::Round,
+        as_track: true,
     });
     scenario.robot.flippers = Some(Flippers {
         length: 0.34,

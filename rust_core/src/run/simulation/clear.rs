@@ -1,0 +1,159 @@
+//! The nearest pose in which no ground is inside the robot, at rest.
+
+#[cfg(test)]
+mod tests;
+
+use super::Simulation;
+use crate::contact::{Contact, Dents};
+use crate::dynamics::DriveState;
+use crate::geometry::{Vector, cross};
+
+/// [m] Contacts farther away than this play no part in one round.
+const REACH: f64 = 0.02;
+/// [m] Farthest motion in one round: gaps are linear in the pose to first order.
+const FARTHEST: f64 = 5e-3;
+/// [m] Ground that overlaps by less is not inside, and a smaller motion is none.
+const INSIDE: f64 = 1e-6;
+const NOTHING: f64 = 1e-8;
+const ROUNDS: usize = 200;
+
+/// A displacement of the centre of mass [m], and a turn about it times half the robot's length [m].
+type Way = [f64; 3];
+
+impl Simulation {
+    /// The same robot at rest in the nearest pose in which no ground is inside it; a turn counts as far as it moves the
+    /// end axles. `None` if there is no such pose nearby.
+    pub(in crate::run) fn clear_of_the_ground(mut self) -> Option<Self> {
+        self.stand_still();
+        let raised = self.raised_clear()?;
+        let found = [[0.0; 3], raised].map(|from| self.nearest_clear(from));
+        let near = |way: &Way| length(*way);
+        let nearest = found
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        self.displace(nearest);
+        let mut contacts = self.contacts_now();
+        self.dynamics.take_over(&mut contacts);
+        self.dents = Dents::default();
+        Some(self)
+    }
+
+    /// Stops all motion; the drivetrain starts again.
+    fn stand_still(&mut self) {
+        let state = &mut self.state;
+        (state.velocity, state.angular_velocity) = (Vector::ZERO, 0.0);
+        for drive in &mut state.drives {
+            *drive = DriveState {
+                position: drive.position,
+                ..DriveState::default()
+            };
+        }
+        for arm in &mut state.flippers {
+            arm.rate = 0.0;
+        }
+        (self.set_point, self.set_point_before) = (0.0, 0.0);
+    }
+
+    /// Straight up from its own floor, as far as it takes to be clear.
+    fn raised_clear(&mut self) -> Option<Way> {
+        /// [m] First distance; it doubles until it is farther than any robot is high.
+        const FIRST: f64 = 0.01;
+        const DOUBLINGS: i32 = 10;
+
+        let (sine, cosine) = libm::sincos(self.state.angle);
+        let ways = (0..DOUBLINGS).map(|i| {
+            let rise = FIRST * f64::from(1 << i);
+            [-sine * rise, cosine * rise, 0.0]
+        });
+        ways.into_iter()
+            .find(|way| self.contacts_at(*way).iter().all(|c| c.distance > 0.0))
+    }
+
+    /// The nearest displacement to none from which no ground is inside, looked for from one on.
+    fn nearest_clear(&mut self, from: Way) -> Option<Way> {
+        let half = self.half_length();
+        let mut way = from;
+        for _ in 0..ROUNDS {
+            let contacts = self.contacts_at(way);
+            let center = self.state.center + Vector::new(way[0], way[1]);
+            let walls: Vec<(Way, f64)> = contacts
+                .iter()
+                .map(|contact| {
+                    let normal = contact.normal;
+                    let lever = cross(contact.point - center, normal) / half;
+                    let along = [normal.x, normal.y, lever];
+                    (along, dot(along, way) - contact.distance)
+                })
+                .collect();
+            let aim = nearest_beyond(&walls);
+            let step: Way = std::array::from_fn(|i| aim[i] - way[i]);
+            let share = (FARTHEST / length(step)).min(1.0);
+            way = std::array::from_fn(|i| way[i] + share * step[i]);
+            if length(step) < NOTHING {
+                let contacts = self.contacts_at(way);
+                return contacts
+                    .iter()
+                    .all(|contact| contact.distance > -INSIDE)
+                    .then_some(way);
+            }
+        }
+        None
+    }
+
+    /// The contacts that it would have after a displacement.
+    fn contacts_at(&mut self, way: Way) -> Vec<Contact> {
+        let before = self.state.clone();
+        self.displace(way);
+        let (mut contacts, running) = (Vec::new(), self.running());
+        let pose = self.state.pose(self.dynamics.model());
+        self.contact.find(pose, &running, REACH, &mut contacts);
+        self.state = before;
+        contacts
+    }
+
+    /// Moves the robot as one body.
+    fn displace(&mut self, way: Way) {
+        let turn = way[2] / self.half_length();
+        self.state.center += Vector::new(way[0], way[1]);
+        self.state.angle += turn;
+        for arm in &mut self.state.flippers {
+            arm.angle += turn;
+        }
+    }
+
+    /// [m] Half the distance between the end axles.
+    fn half_length(&self) -> f64 {
+        0.5 * self.scenario.robot.outline.axle_distance
+    }
+}
+
+/// The point nearest to the origin that is beyond all walls, `along . x >= bound`: Hildreth's method.
+fn nearest_beyond(walls: &[(Way, f64)]) -> Way {
+    const SWEEPS: usize = 2000;
+
+    let mut point = [0.0; 3];
+    let mut pushes = vec![0.0; walls.len()];
+    for _ in 0..SWEEPS {
+        let mut most: f64 = 0.0;
+        for ((along, bound), push) in walls.iter().zip(&mut pushes) {
+            let more = (bound - dot(*along, point)) / dot(*along, *along);
+            let more = more.max(-*push);
+            *push += more;
+            most = most.max(more.abs());
+            point = std::array::from_fn(|i| point[i] + more * along[i]);
+        }
+        if most < 1e-3 * NOTHING {
+            break;
+        }
+    }
+    point
+}
+
+fn dot(a: Way, b: Way) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn length(way: Way) -> f64 {
+    dot(way, way).sqrt()
+}

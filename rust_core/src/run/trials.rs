@@ -1,0 +1,249 @@
+//! Judges a stop by doing: one thing is changed in its pose, and the robot drives on.
+//!
+//! docs/decisions/0012 explains why, docs/conventions.md defines the words.
+
+mod escape;
+#[cfg(test)]
+mod tests;
+mod variant;
+
+pub use escape::EscapeForce;
+pub(crate) use escape::measure as escape_force;
+
+use self::variant::Start;
+use super::{Checked, Simulation};
+use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};
+use crate::error::Error;
+use crate::limits::Cancel;
+use crate::observe::Outcome;
+
+/// From how many instants a stop that rattles is tried.
+const STARTS: u32 = 5;
+/// In how many of these a change must free the robot.
+const ENOUGH: u32 = 4;
+
+/// Diagnoses a simulation's stop; `None` if it has not stopped.
+pub(super) fn judge(
+    stop: &Simulation,
+    wanted: Wanted,
+    cancel: &Cancel,
+) -> Result<Option<Diagnosis>, Error> {
+    let Some(mut found) = stop.examine() else {
+        return Ok(None);
+    };
+    let mut bench = Bench::new(stop, &found, cancel);
+    let passing = bench.frees(Change::Nothing)? || found.jammed && bench.frees(Change::Rebuilt)?;
+    if passing {
+        found.outcome = Outcome::TimedOut;
+    } else {
+        if found.jammed {
+            let in_pose = bench.frees(Change::ClosedTrack)?;
+            let from_clear = bench.frees(Change::ClosedTrackClear)?;
+            if in_pose || from_clear {
+                // What one motor for all wheels ends was want of torque at some of them.
+                let lacks_torque = bench.frees(Change::OneMotor)?;
+                found.outcome = if lacks_torque {
+                    Outcome::Stalled
+                } else {
+                    Outcome::Seized
+                };
+            }
+        }
+        for change in wanted.changes() {
+            bench.frees(change)?;
+        }
+    }
+    found.trials = bench.made;
+    Ok(Some(found))
+}
+
+/// Makes trials of a stop; those that make no sense for the robot are left out.
+pub(super) fn make(
+    stop: &Simulation,
+    wanted: Wanted,
+    cancel: &Cancel,
+) -> Result<Vec<Trial>, Error> {
+    let Some(found) = stop.examine() else {
+        return Ok(Vec::new());
+    };
+    let mut bench = Bench::new(stop, &found, cancel);
+    for change in wanted.changes() {
+        bench.frees(change)?;
+    }
+    Ok(bench.made)
+}
+
+/// Tries a variant of the scenario from a stop, and a push that rises to a force [N] in a time [s]; `None` if it has not
+/// stopped.
+pub(super) fn what_if(
+    stop: &Simulation,
+    (variant, push): (&Checked, (f64, f64)),
+    cancel: &Cancel,
+) -> Result<Option<Trial>, Error> {
+    let Some(found) = stop.examine() else {
+        return Ok(None);
+    };
+    let start = |stop: &Simulation| {
+        let mut branch = stop.branch(variant);
+        branch.raise_push(push.0, push.1)?;
+        Ok(Some(branch))
+    };
+    Bench::new(stop, &found, cancel).attempt("changed", STARTS, &start)
+}
+
+/// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
+pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulation>, Error> {
+    let Some((scenario, start)) = variant::of(stop.scenario(), change) else {
+        return Ok(None);
+    };
+    let started = stop.varied(&scenario, start != Start::Continued)?;
+    if start == Start::Clear {
+        return Ok(started.clear_of_the_ground());
+    }
+    Ok(Some(started))
+}
+
+/// [s] For how long a change is tried.
+pub(super) fn duration(stop: &Simulation) -> f64 {
+    let criteria = &stop.scenario().criteria;
+    criteria.escape_time + criteria.escape_distance / stop.command().abs()
+}
+
+/// A stop, and the trials that have been made of it.
+struct Bench<'a> {
+    /// The instants from which it is tried; those after the first follow when they are needed.
+    starts: Vec<Simulation>,
+    rattles: bool,
+    /// [m] How far the robot had come, in the commanded direction.
+    greatest: f64,
+    made: Vec<Trial>,
+    cancel: &'a Cancel,
+}
+
+/// What came of one start.
+#[derive(Clone, Copy)]
+struct Course {
+    distance: f64,
+    time: f64,
+    outcome: Outcome,
+    jammed: bool,
+}
+
+impl<'a> Bench<'a> {
+    fn new(stop: &Simulation, found: &Diagnosis, cancel: &'a Cancel) -> Self {
+        Self {
+            starts: vec![stop.copy()],
+            rattles: !found.stationary,
+            greatest: stop.monitor().best_advance(),
+            made: Vec::new(),
+            cancel,
+        }
+    }
+
+    /// Whether a change frees the robot; it is tried once.
+    fn frees(&mut self, change: Change) -> Result<bool, Error> {
+        let name = change.name();
+        if let Some(made) = self.made.iter().find(|trial| trial.name == name) {
+            return Ok(made.freed);
+        }
+        // A run that goes on passes through all the other starts.
+        let most = if change == Change::Nothing { 1 } else { STARTS };
+        let Some(trial) = self.attempt(name, most, &|stop| start(stop, change))? else {
+            return Ok(false);
+        };
+        self.made.push(trial);
+        Ok(trial.freed)
+    }
+
+    /// Tries a change from as many starts as it takes to decide, `most` of them if the robot rattles. A robot that
+    /// cannot be built, or whose state becomes non-finite, tells nothing of the stop.
+    fn attempt(
+        &mut self,
+        name: &'static str,
+        most: u32,
+        start: &dyn Fn(&Simulation) -> Result<Option<Simulation>, Error>,
+    ) -> Result<Option<Trial>, Error> {
+        match self.tried_from_each(name, most, start) {
+            Err(Error::Scenario(_) | Error::Simulation(_)) => Ok(None),
+            made => made,
+        }
+    }
+
+    fn tried_from_each(
+        &mut self,
+        name: &'static str,
+        most: u32,
+        start: &dyn Fn(&Simulation) -> Result<Option<Simulation>, Error>,
+    ) -> Result<Option<Trial>, Error> {
+        let most = if self.rattles { most } else { 1 };
+        let enough = ENOUGH.min(most);
+        let mut courses: [Vec<Course>; 2] = Default::default();
+        for i in 0..most {
+            let Some(started) = start(self.start(i as usize)?)? else {
+                return Ok(None);
+            };
+            let course = self.follow(started)?;
+            courses[usize::from(course.time.is_finite())].push(course);
+            let [stays, frees] = [0, 1].map(|k| courses[k].len() as u32);
+            if frees == enough || stays > most - enough {
+                break;
+            }
+        }
+        let [starts, freeing] = [courses.concat().len(), courses[1].len()].map(|n| n as u32);
+        let freed = freeing >= enough;
+        let first = courses[usize::from(freed)].first();
+        Ok(first.map(|course| Trial {
+            name,
+            freed,
+            starts,
+            freeing,
+            distance: course.distance,
+            time: course.time,
+            outcome: course.outcome,
+            jammed: course.jammed,
+            duration: duration(&self.starts[0]),
+        }))
+    }
+
+    /// The instants from which a stop is tried: a fifth of a stop window apart, from the stop on.
+    fn start(&mut self, i: usize) -> Result<&Simulation, Error> {
+        while self.starts.len() <= i {
+            let last = &self.starts[self.starts.len() - 1];
+            let mut next = last.copy();
+            next.advance(last.stop_window() / f64::from(STARTS))?;
+            self.cancel.check()?;
+            self.starts.push(next);
+        }
+        Ok(&self.starts[i])
+    }
+
+    fn follow(&self, mut simulation: Simulation) -> Result<Course, Error> {
+        let begin = simulation.time();
+        let end = begin + duration(&simulation);
+        let criteria = simulation.scenario().criteria.clone();
+        let direction = simulation.direction();
+        let (mut distance, mut time) = (f64::NEG_INFINITY, f64::INFINITY);
+        while simulation.time() < end && !simulation.is_over() {
+            simulation.step_until(end)?;
+            self.cancel.check()?;
+            let ahead = direction * simulation.reading().position.x - self.greatest;
+            distance = distance.max(ahead);
+            let gets_away = match simulation.monitor().ended_as() {
+                None => ahead > criteria.escape_distance,
+                Some(outcome) => outcome == Outcome::Cleared,
+            };
+            if gets_away {
+                time = time.min(simulation.time() - begin);
+            }
+        }
+        let ended = simulation.monitor().ended_as();
+        let stop = simulation.examine();
+        let (symptom, jammed) = stop.map_or((Outcome::TimedOut, false), |d| (d.symptom, d.jammed));
+        Ok(Course {
+            distance,
+            time,
+            outcome: ended.unwrap_or(symptom),
+            jammed,
+        })
+    }
+}

@@ -1,0 +1,144 @@
+"""What frees a robot that has stopped: trials, one push after another, and their runs."""
+
+import math
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.results.findings import Tried
+from tests.shared import GEAR, ROBOT
+
+SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10), duration=6.0)
+ESCAPE = 5.0 + 0.05 / 0.4  # [s] escape_time and escape_distance at 0.4 m/s
+
+
+@pytest.fixture(scope="module")
+def seized() -> c2d.Run:
+    return c2d.simulate(SEIZING)
+
+
+def refusal(call: Any) -> c2d.ScenarioError:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        call()
+    return caught.value
+
+
+def same(one: Tried, other: Tried) -> bool:
+    return all(getattr(one, each.name) == getattr(other, each.name) for each in fields(Tried))
+
+
+def test_trials_are_those_of_the_diagnosis_and_what_if_makes_one_of_them(seized: c2d.Run) -> None:
+    assert seized.diagnosis is not None
+    trials = {trial.name: trial for trial in seized.trials()}
+    for tried in seized.diagnosis.trials:
+        assert same(trials[tried.name], tried)
+    for name, trial in trials.items():
+        assert same(seized.what_if(name), trial)
+
+
+def test_the_run_of_a_trial_shows_what_it_says(seized: c2d.Run) -> None:
+    for trial in seized.trials():
+        run = trial.run
+        assert run is trial.run
+        begin = seized.time[-1]
+        assert run.time[0] == pytest.approx(begin)
+        assert run.time[-1] <= begin + ESCAPE + 1e-9
+        ahead = run.position[:, 0] - seized.position[:, 0].max()
+        gets_away = ahead.max() > 0.05 or run.outcome is c2d.Outcome.CLEARED
+        assert trial.freed == gets_away, trial.name
+        assert trial.distance == pytest.approx(ahead.max(), abs=1e-4)
+        if trial.outcome is c2d.Outcome.CLEARED:
+            assert run.outcome is c2d.Outcome.CLEARED
+        if trial.freed:
+            assert 0.0 < trial.time <= ESCAPE
+
+
+def test_each_trial_changes_one_thing(seized: c2d.Run) -> None:
+    own = SEIZING
+    runs = {trial.name: trial.run.scenario for trial in seized.trials()}
+    robot, limit = own.robot, own.robot.drivetrain.max_torque
+    assert runs["unchanged"] == runs["rebuilt"] == own
+    closed = replace(own, robot=robot.with_track(c2d.ClosedTrack(c2d.LineOfWheels(4))))
+    assert runs["closed track"] == runs["closed track, clear of the ground"] == closed
+    assert runs["torque x 2"] == own.replace({"robot.drivetrain.max_torque": 2.0 * limit})
+    assert runs["torque x 10"] == own.replace({"robot.drivetrain.max_torque": 10.0 * limit})
+    assert runs["friction x 2"] == own.replace({"terrain.friction": 1.8})
+    assert runs["no belly"] == own.replace({"robot.belly": None})
+    assert len(runs) == 8
+
+
+def test_grousers_flippers_and_motors_have_trials_of_their_own() -> None:
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=GEAR))
+    robot = replace(robot, drivetrain=replace(robot.drivetrain, torque_sharing="wheel"))
+    run = c2d.simulate(robot, c2d.terrains.step(0.5, friction=0.4), duration=12.0)
+    names = [trial.name for trial in run.trials()]
+    assert {"closed smooth track", "one motor", "flippers level"} <= set(names)
+    belt = c2d.simulate(ROBOT, c2d.terrains.step(0.3, friction=0.5), duration=8.0)
+    assert [trial.name for trial in belt.trials()] == [
+        *("unchanged", "rebuilt", "torque x 2", "torque x 10", "friction x 2", "no belly")
+    ]
+
+
+def test_a_change_of_ones_own_is_tried_in_the_same_way(seized: c2d.Run) -> None:
+    twice = 2.0 * SEIZING.robot.drivetrain.max_torque
+    by_name, by_hand = seized.what_if("torque x 2"), seized.what_if(max_torque=twice)
+    assert by_hand.name == "changed"
+    assert same(replace(by_hand, name="torque x 2"), by_name)
+    assert seized.what_if(track=c2d.BeltTrack()).freed
+    assert seized.what_if(track="closed").freed
+    assert not seized.what_if().freed
+    pushed = seized.what_if(push=(100.0, 0.5))
+    assert pushed.freed
+    assert pushed.run.time[-1] <= seized.time[-1] + ESCAPE + 1e-9
+    assert pushed.run.position[:, 0].max() > 0.05
+
+
+def test_the_time_of_a_trial_follows_the_criteria_and_the_command() -> None:
+    for changes, expected in (
+        ({"criteria.escape_time": 0.02}, 0.02 + 0.05 / 0.4),
+        ({"criteria.escape_distance": 0.4}, 5.0 + 1.0),
+    ):
+        run = c2d.simulate(SEIZING.replace(changes), record="summary")
+        for trial in run.trials():
+            assert trial.duration == pytest.approx(expected)
+    # A schedule commands another speed than the run began with.
+    scheduled = SEIZING.replace({"drive": c2d.Drive(speed=0.4, schedule=((0.0, 0.4), (2.0, 0.2)))})
+    trial = c2d.simulate(scheduled, record="summary").what_if("torque x 2")
+    assert trial.duration == pytest.approx(5.0 + 0.05 / 0.2)
+    hasty = c2d.simulate(SEIZING.replace({"criteria.escape_time": 0.01}), record="summary")
+    assert (hasty.what_if("closed track").freed, hasty.outcome) == (False, "slipping")
+
+
+def test_what_makes_no_sense_for_the_robot_is_refused(seized: c2d.Run) -> None:
+    for name in ("flippers level", "one motor", "closed smooth track"):
+        error = refusal(lambda name=name: seized.what_if(name))
+        assert (error.path, error.value) == ("name", name)
+        assert "has nothing to change" in error.rule
+    error = refusal(lambda: seized.what_if("torque x 3"))
+    assert error.path == "name"
+    assert '"torque x 2"' in error.rule
+
+
+def test_a_robot_holds_the_lower_level_and_leaves_at_the_upper_one(seized: c2d.Run) -> None:
+    low, high, tips = seized.escape_force()
+    assert high == pytest.approx(1.1 * low)
+    assert not tips
+    for force, leaves in ((low, False), (high, True)):
+        sim = c2d.Simulation(SEIZING)
+        sim.advance(seized.time[-1])
+        start = np.array(sim.state().position)
+        for share in np.linspace(0.0, 1.0, 500):
+            sim.command(push=share * force)
+            sim.advance(0.01)
+        sim.advance(2.0)
+        assert (np.hypot(*(sim.state().position - start)) > 5e-3) == leaves
+
+
+def test_a_robot_at_a_wall_without_friction_is_moved_by_no_push() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.step(0.5, friction=0.05), duration=8.0)
+    low, high, tips = run.escape_force()
+    assert low > 9.0 * ROBOT.mass * 9.81
+    assert (high, tips) == (math.inf, False)
