@@ -51,6 +51,9 @@ def tried(name: str, time: float = math.inf, **fields: Any) -> Tried:
         "outcome": OUT.CLEARED if freed else OUT.SLIPPING,
         "jammed": False,
         "duration": 5.125,
+        "position": (0.8, 0.1),
+        "chassis_angle": 0.0,
+        "flipper_angles": (),
     }
     return Tried(**(plain | fields))
 

@@ -398,3 +398,23 @@ def test_runs_of_one_sample_and_without_contacts_open(open_page: Open) -> None:
         page = open_page(run.to_html())
         assert page.eval_on_selector("#scene", COLOURS) > 10
         assert page.eval_on_selector("#strip", COLOURS) > 2
+
+
+def test_a_trial_shows_where_the_robot_ended_and_hides_it_again(open_page: Any) -> None:
+    run = c2d.simulate(ROBOT.with_track(ROUND), STEP, trials="all")
+    page: Page = open_page(run)
+    buttons = page.locator("[data-trial]")
+    assert buttons.count() == 6
+    before = page.locator("#scene").evaluate(CHECKSUM)
+    seen = set()
+    for number in range(buttons.count()):
+        buttons.nth(number).click()
+        page.wait_for_timeout(100)
+        pressed = [buttons.nth(k).get_attribute("aria-pressed") for k in range(buttons.count())]
+        assert pressed == [str(k == number).lower() for k in range(buttons.count())]
+        seen.add(page.locator("#scene").evaluate(CHECKSUM))
+    assert len(seen) >= 4
+    buttons.last.click()
+    page.locator("#reset").click()
+    page.wait_for_timeout(100)
+    assert page.locator("#scene").evaluate(CHECKSUM) == before

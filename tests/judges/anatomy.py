@@ -64,9 +64,18 @@ def shapes_of(geometry: dict[str, Any]) -> list[dict[str, Any]]:
             **carrier,
             "gears": [bodies["outline"][body] for body in carrier["bodies"] if is_gear[body]],
             "grousers": len(carrier["circuit"]["grousers"]) if carrier["circuit"] else 0,
+            "over": height_of_grousers(bodies, carrier),
         }
         for carrier in geometry["carriers"]
     ]
+
+
+def height_of_grousers(bodies: Any, carrier: dict[str, Any]) -> float:
+    """[m] How far the grousers of a carrier stand out from the line of its belt."""
+    circuit = carrier["circuit"]
+    if not circuit or not len(circuit["grousers"]):
+        return 0.0
+    return float(bodies["outline"][circuit["grousers"][0]][:, 1].max())
 
 
 class Anatomy:
@@ -82,7 +91,8 @@ class Anatomy:
         level = replace(scenario, terrain=c2d.terrains.flat(), goal=None)
         lumped = _core.geometry(level.to_json())
         self.is_chain = robot.track.kind == "segmental"
-        self.with_own_motors = robot.drivetrain.torque_sharing == "wheel"
+        is_closed = robot.track.kind == "closed"
+        self.with_own_motors = robot.drivetrain.torque_sharing == "wheel" and not is_closed
         self.drive_radius: float = lumped["drive_radius"]
         self.bodies: list[Body] = []
         self.loops: list[Loop] = []
@@ -125,7 +135,7 @@ class Anatomy:
             self.bodies += [inside] * len(set(shapes["bodies"]))
             self._loop(0, shapes, self._over_the_gear(track, shapes), 0)
         else:
-            self.motors = self._driven(0, track, shapes, 0)
+            self.motors = self._driven(0, shapes, 0)
 
     def _over_the_gear(self, track: c2d.SegmentalTrack, shapes: dict[str, Any]) -> float:
         """[m] What lies over guide or wheels up to the tips of the grousers."""
@@ -144,15 +154,13 @@ class Anatomy:
     def _arm(self, number: int, shapes: dict[str, Any]) -> None:
         assert self.robot.flippers is not None
         track = self.robot.flippers.track
-        if track is None:
-            track = c2d.GrouserBeltTrack() if self.is_chain else self.track
-        assert track.kind != "force"
+        assert (self.track if track is None else track).kind != "force"
         if self.with_own_motors or self.is_chain:
-            self.motors += self._driven(number, track, shapes, self.motors)
+            self.motors += self._driven(number, shapes, self.motors)
         else:
-            self._driven(number, track, shapes, 0)
+            self._driven(number, shapes, 0)
 
-    def _driven(self, carrier: int, track: Any, shapes: dict[str, Any], first: int) -> int:
+    def _driven(self, carrier: int, shapes: dict[str, Any], first: int) -> int:
         """Wheels or a belt on drives from a number on; how many these are."""
         each = self.with_own_motors and not shapes["closed"]
         gears = shapes["gears"]
@@ -165,8 +173,7 @@ class Anatomy:
             self.bodies.append(body)
         grouser = Body(carrier=carrier, lane=0, drive=first, form="grouser")
         self.bodies += [grouser] * shapes["grousers"]
-        over = self.robot.outline.grouser_height if track.kind == "grouser_belt" else 0.0
-        self._loop(carrier, shapes, over, first)
+        self._loop(carrier, shapes, shapes["over"], first)
         return count if each else 1
 
     def _loop(self, carrier: int, shapes: dict[str, Any], over: float, drive: int) -> None:
@@ -208,8 +215,9 @@ class Anatomy:
             for side in both
             for body in self.bodies
         ]
-        self.motors *= 2
-        self.limit *= 0.5
+        if self.track.kind != "force":  # a force pushes the whole robot
+            self.motors *= 2
+            self.limit *= 0.5
 
     def ground_friction(self, lane: int) -> float:
         """[-] Of what lies there: each lane has its own where they are told apart."""

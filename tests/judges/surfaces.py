@@ -1,8 +1,9 @@
 """How drives move the surfaces of bodies, to the second judge."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tests.judges.geometry import Array, cross, right_of
+from tests.judges.geometry import Array, right_of
 
 
 def round_surface(normals: Array) -> Array:
@@ -16,22 +17,34 @@ def gear_surface(points: Array, axle: Array, radius: float) -> Array:
 
 
 def carried_by_belt(points: Array, circles: Array) -> Array:
-    """[-] The same of points of grousers on a belt round two circles, the rear one first.
+    """[-] The same of points of grousers on a belt taut round circles.
 
-    On a run they go along it, round an end they turn about its axle.
+    On a run they go along it, round a circle they turn about its axle.
     """
-    (rear, front), (big, small) = circles[:, :2], circles[:, 2]
-    way = front - rear
-    length = np.hypot(*way)
-    along = way / length
-    side = np.where(cross(along, points - rear) >= 0.0, 1.0, -1.0)
-    rise = (big - small) / length
-    # Outward normals of the runs, and the way along them from the rear end to the front one.
-    normals = rise * along + side[:, None] * np.sqrt(1.0 - rise**2) * -right_of(along)
-    ahead = side[:, None] * right_of(normals)
-    at_rear = ((points - rear) * ahead).sum(axis=1) < 0.0
-    at_front = ((points - front) * ahead).sum(axis=1) > 0.0
-    found = right_of(normals)
-    found[at_rear] = right_of(points[at_rear] - rear) / big
-    found[at_front] = right_of(points[at_front] - front) / small
+    turns = np.linspace(0.0, 2.0 * np.pi, 20_001)[:-1]
+    normals = np.column_stack([np.cos(turns), np.sin(turns)])
+    # The circle that the belt lies on where its outward normal is this one, clockwise.
+    on = np.argmax(normals @ circles[:, :2].T + circles[:, 2], axis=1)
+    runs = np.flatnonzero(on != np.roll(on, -1))
+    nearest = np.full(len(points), np.inf)
+    found = np.zeros_like(points)
+
+    def take(rows: NDArray[np.bool_], distances: Array, motions: Array) -> None:
+        nearer = rows & (abs(distances) < nearest)
+        nearest[nearer] = abs(distances[nearer])
+        found[nearer] = motions[nearer]
+
+    for circle in np.unique(on):
+        arm, radius = points - circles[circle, :2], circles[circle, 2]
+        far = np.hypot(*arm.T)
+        at = np.round(np.arctan2(arm[:, 1], arm[:, 0]) / (2.0 * np.pi) * len(turns)).astype(int)
+        take(on[at % len(turns)] == circle, far - radius, right_of(arm) / radius)
+    for k in runs:
+        normal = normals[k]
+        ends = [circles[c, :2] + circles[c, 2] * normal for c in (on[k], on[(k + 1) % len(on)])]
+        way = ends[1] - ends[0]
+        share = (points - ends[0]) @ way / (way @ way)
+        between = (share >= 0.0) & (share <= 1.0)
+        motions = np.broadcast_to(right_of(normal), points.shape)
+        take(between, (points - ends[0]) @ normal, motions)
     return found

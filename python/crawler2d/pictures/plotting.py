@@ -22,7 +22,7 @@ __all__ = ["plot_run", "time_strips"]
 # The palette of Okabe and Ito, readable for the colour-blind.
 _BLACK, _ORANGE, _BLUE, _RED = "#222222", "#E69F00", "#0072B2", "#D55E00"
 # Characters per line of the title.
-_TITLE_WIDTH = 80
+_TITLE_WIDTH = 120
 # Most poses of the robot in one side view.
 _MOST_DRAWINGS = 7
 
@@ -34,7 +34,7 @@ def plot_run(
     times = _drawing_times(run) if time is None else np.atleast_1d(np.asarray(time, dtype=float))
     if axes is None:
         pyplot = extra("matplotlib.pyplot", "plot")
-        figure = pyplot.figure(figsize=(9.0, 8.5), layout="constrained")
+        figure = pyplot.figure(figsize=(9.0, 9.5), layout="constrained")
         grid = figure.add_gridspec(4, 1, height_ratios=(3.2, 1.0, 1.0, 1.0))
         side = figure.add_subplot(grid[0])
         angle = figure.add_subplot(grid[1])
@@ -45,7 +45,7 @@ def plot_run(
     if len(axes) not in (1, 4):
         raise ScenarioError("axes", f"{len(axes)} axes", "must be one Axes or four")
     # A robot's name may hold a $, which must not start a formula.
-    axes[0].set_title(_title(run), loc="left", fontsize="medium", parse_math=False)
+    axes[0].set_title(_title(run), loc="left", fontsize="small", parse_math=False)
     side_view(run, times, axes[0])
     if len(axes) == 4:
         time_strips(run, tuple(axes[1:]))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crawler2d.common.extras import extra
+from crawler2d.pictures.ghosts import ghost_lines, ghosts
 from crawler2d.pictures.shapes import SLIVER, Scene, closed, inset, placed
 from crawler2d.results.bodies import BodyKind
 
@@ -21,6 +22,8 @@ __all__ = ["side_view"]
 # The palette of Okabe and Ito, readable for the colour-blind.
 _BLACK, _BLUE, _RED, _GREEN = "#222222", "#0072B2", "#D55E00", "#009E73"
 _GROUND, _PURPLE, _GUIDE = "#D9D2C5", "#A3327B", "#AAAAAA"
+# Of the ends of trials.
+_GHOSTS = ("#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#7F7F7F")
 
 # Arrow length of a contact force equal to the weight, as a share of the axle distance; larger
 # forces, as of a wedged robot, shrink the scale so that the largest gets this length.
@@ -37,7 +40,8 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
     """Draw the ground, the robot at some instants, the path of the chassis origin, and contacts.
 
     At the last of the instants it also draws the contact forces on the robot, the slip velocities,
-    the envelopes of its wheels, and the ground and edges inside these.
+    the envelopes of its wheels, and the ground and edges inside these; and, if it is the end of the
+    run, where the trials ended that freed the robot.
 
     Parameters
     ----------
@@ -64,6 +68,8 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
         zorder=3,
     )
     shown = int(samples[-1])
+    if shown == run.time.size - 1:
+        left, right = _draw_ghosts(run, scene, ax, (left, right))
     _draw_contacts(run, shown, ax)
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)
     _draw_envelopes(scene, shown, ax, depth=depth)
@@ -71,9 +77,30 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
     if left < scene.goal < right:
         ax.axvline(scene.goal, color=_GREEN, linestyle=":", label="goal (rear end)")
     ax.set(xlim=(left, right), ylim=(bottom, top), xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    # A raised rear flipper may be in the corner that is otherwise free.
-    corner: Literal["best", "upper left"] = "best" if len(scene.carriers) > 1 else "upper left"
-    ax.legend(loc=corner, fontsize="small", framealpha=0.9)
+    # Below the picture, where it hides nothing.
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), fontsize="small", ncols=2)
+
+
+def _draw_ghosts(
+    run: Record, scene: Scene, ax: Axes, sides: tuple[float, float]
+) -> tuple[float, float]:
+    """Draw where trials that freed the robot ended; return how far the picture has to reach."""
+    length = run.scenario.robot.outline.axle_distance
+    left, right = sides
+    freed = [each for each in ghosts(run) if each.freed]
+    for ghost, color in zip(freed, _GHOSTS, strict=False):
+        for number, line in enumerate(ghost_lines(scene, ghost)):
+            ax.plot(
+                *line.T,
+                color=color,
+                linewidth=0.8,
+                alpha=0.8,
+                label=f"end of the trial: {ghost.change}" if number == 0 else None,
+                zorder=1.5,
+            )
+        x = float(ghost.frames[0, 0])
+        left, right = min(left, x - length), max(right, x + length)
+    return left, right
 
 
 def _draw_ground(lanes: list[tuple[int, NDArray[np.float64]]], bottom: float, ax: Axes) -> None:

@@ -103,6 +103,12 @@ class Tried:
         Whether it ended in a stop with ground between two bodies of a track again.
     duration : float
         [s] For how long it was tried, unless it ended before.
+    position : tuple of float
+        [m] Of the chassis frame at its end.
+    chassis_angle : float
+        [rad] Chassis angle then, nose up > 0.
+    flipper_angles : tuple of float
+        [rad] Of each pair of flippers then, the front first, upwards > 0.
     """
 
     name: str
@@ -114,6 +120,9 @@ class Tried:
     outcome: Outcome
     jammed: bool
     duration: float
+    position: tuple[float, float]
+    chassis_angle: float
+    flipper_angles: tuple[float, ...]
 
     @classmethod
     def from_core(cls, plain: Mapping[str, Any]) -> Tried:

@@ -12,7 +12,7 @@ from crawler2d.results.outcome import Outcome
 if TYPE_CHECKING:
     from crawler2d.results.findings import Findings, Intrusion, Tried
 
-__all__ = ["sentence"]
+__all__ = ["sentence", "told"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -75,10 +75,15 @@ def sentence(found: Findings) -> str:
     tellers = (_inside, _on_it, _belly, _drives, _progress, _balance)
     said = "; ".join(clause for clause in (tell(d) for tell in tellers) if clause)
     facts = f"{_head(d)}: {said}" if said else _head(d)
-    told = [f"{_CHANGED[t.name]}: {_came(t)}" for t in d.trials if t.name in _CHANGED]
     if d.passing:
         return f"{facts}. {_goes_on(d)}"
-    return f"{facts}. Tried: {'; '.join(told)}" if told else facts
+    tried = "; ".join(filter(None, map(told, d.trials)))
+    return f"{facts}. Tried: {tried}" if tried else facts
+
+
+def told(tried: Tried) -> str:
+    """Say what was changed in a trial and what came of it; nothing of a control."""
+    return f"{_CHANGED[tried.name]}: {_came(tried)}" if tried.name in _CHANGED else ""
 
 
 def _head(d: Findings) -> str:

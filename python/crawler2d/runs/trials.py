@@ -64,6 +64,8 @@ class Trial(Tried, Generic[R]):
     ----------
     name, freed, starts, freeing, distance, time, outcome, jammed, duration
         See `Tried`.
+    position, chassis_angle, flipper_angles
+        See `Tried`.
     run : Run
         How it went from the instant of the stop; simulated again when it is first asked for.
     """

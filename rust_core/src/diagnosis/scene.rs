@@ -34,7 +34,8 @@ impl Scene<'_> {
         if self.command < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Ground inside the track that carries weight, with the force on it.
+    /// Ground inside the track that carries weight, with the force on it. Inside a single smooth body there is none:
+    /// a robot that moves has only been there at different times.
     pub(super) fn loaded_intrusions(&self, stance: &Stance) -> Vec<LoadedIntrusion> {
         let pose = Pose::new(stance.position, stance.angle);
         let least = self.criteria.intrusion_load * self.model.mass * self.gravity;
@@ -42,7 +43,11 @@ impl Scene<'_> {
             let pose = self.running.mounted(envelope.mount, pose);
             envelope.intrusions(&self.lanes[envelope.lane], pose)
         });
-        let with_force = found.filter(|i| i.edge >= 0).map(|place| {
+        let is_inside = |i: &Intrusion| {
+            let [before, after] = i.bodies;
+            i.edge >= 0 && (before != after || i.root_depth < i.depth)
+        };
+        let with_force = found.filter(is_inside).map(|place| {
             let on_it = stance
                 .bearings
                 .iter()

@@ -115,4 +115,8 @@ pub struct Trial {
     pub jammed: bool,
     /// [s] For how long it was tried, unless it ended before.
     pub duration: f64,
+    /// [m, m, rad] Pose of the chassis frame at its end.
+    pub pose: [f64; 3],
+    /// [rad] Angles of the flippers then, the front first; not a number where there are none.
+    pub flipper_angles: [f64; 2],
 }

@@ -127,6 +127,8 @@ struct Course {
     time: f64,
     outcome: Outcome,
     jammed: bool,
+    pose: [f64; 3],
+    flipper_angles: [f64; 2],
 }
 
 impl<'a> Bench<'a> {
@@ -202,6 +204,8 @@ impl<'a> Bench<'a> {
             outcome: course.outcome,
             jammed: course.jammed,
             duration: duration(&self.starts[0]),
+            pose: course.pose,
+            flipper_angles: course.flipper_angles,
         }))
     }
 
@@ -239,11 +243,18 @@ impl<'a> Bench<'a> {
         let ended = simulation.monitor().ended_as();
         let stop = simulation.examine();
         let (symptom, jammed) = stop.map_or((Outcome::TimedOut, false), |d| (d.symptom, d.jammed));
+        let now = simulation.reading();
+        let mut flipper_angles = [f64::NAN; 2];
+        for (kept, angle) in flipper_angles.iter_mut().zip(simulation.flipper_angles()) {
+            *kept = angle;
+        }
         Ok(Course {
             distance,
             time,
             outcome: ended.unwrap_or(symptom),
             jammed,
+            pose: [now.position.x, now.position.y, now.chassis_angle],
+            flipper_angles,
         })
     }
 }

@@ -57,6 +57,24 @@ class Camera {
     ];
   }
 
+  // Shows at least this much round two points, and no less than now.
+  include([x, y], [otherX, otherY]) {
+    const reach = this.robotLength;
+    const sees = (px, py) => {
+      const [sx, sy] = this.screen(px, py);
+      const margin = 0.5 * reach * this.scale;
+      return sx > margin && sx < this.width - margin && sy > 0 && sy < this.height;
+    };
+    if (sees(x, y) && sees(otherX, otherY)) return;
+    const wide = Math.abs(x - otherX) + 2 * reach;
+    const high = Math.abs(y - otherY) + 1.2 * reach;
+    this.follows = false;
+    this.touched = true;
+    this.scale = Math.min(this.width / wide, this.height / high);
+    this.x = (x + otherX) / 2;
+    this.y = (y + otherY) / 2;
+  }
+
   drag(dx, dy) {
     this.x -= dx / this.scale;
     this.y += dy / this.scale;

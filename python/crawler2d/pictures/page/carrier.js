@@ -67,6 +67,20 @@ class Carrier {
     });
   }
 
+  drawGhost(ctx, colors, pixel, moment, belt) {
+    ctx.strokeStyle = colors.speed;
+    ctx.fillStyle = colors.trackFill;
+    ctx.lineWidth = 1.6 * pixel;
+    for (const body of [...this.bellies, ...this.hulls, ...this.wheels]) {
+      ctx.save();
+      place(ctx, moment.pose(body));
+      ctx.fill(body.path);
+      ctx.stroke(body.path);
+      ctx.restore();
+    }
+    if (belt && this.envelope) ctx.stroke(this.envelope.path);
+  }
+
   // The line between the two axles.
   drawBar(ctx, colors, pixel) {
     ctx.strokeStyle = colors.chassis;

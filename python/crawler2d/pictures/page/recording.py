@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.pictures.ghosts import ghosts
 from crawler2d.pictures.page.drawn import drawn
 from crawler2d.pictures.page.packed import packed
 from crawler2d.pictures.shapes import Scene
@@ -63,6 +64,9 @@ def recording(run: Record, time: float | None = None) -> dict[str, Any]:
         "contacts": _contacts(run, kept),
         "events": _events(run, scene),
         "ground": _ground(scene),
+        "ghosts": [
+            {"belt": each.is_belt, "frames": each.frames.round(5).tolist()} for each in ghosts(run)
+        ],
         "robot": {**drawn(run, scene, kept), "length": _length(run.scenario.robot)},
     }
 

@@ -97,6 +97,22 @@ function fit() {
   changed();
 }
 
+// Shows where the robot ended in a trial, beside where it stopped; a second press hides it.
+function showTrial(number) {
+  scene.ghost = scene.ghost === number ? null : number;
+  for (const button of document.querySelectorAll("[data-trial]")) {
+    button.setAttribute("aria-pressed", String(Number(button.dataset.trial) === scene.ghost));
+  }
+  if (scene.ghost !== null) {
+    seek(recording.count - 1);
+    const stop = recording.at(recording.end);
+    camera.look(stop);
+    camera.include([stop.x, stop.y], scene.ghosts[scene.ghost].frames[0]);
+    element("follow").checked = camera.follows;
+  }
+  changed();
+}
+
 // Draws an arrow of a round number in the legend, at the scale of the picture.
 function showScale(name, scale, unit) {
   const value = nice(75 / scale);
@@ -150,6 +166,9 @@ function main() {
       scene.layers[box.dataset.layer] = box.checked;
       changed();
     });
+  }
+  for (const button of document.querySelectorAll("[data-trial]")) {
+    button.addEventListener("click", () => showTrial(Number(button.dataset.trial)));
   }
   for (const item of document.querySelectorAll("[data-needs]")) {
     item.hidden = !scene.has(item.dataset.needs);

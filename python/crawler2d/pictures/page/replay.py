@@ -11,10 +11,12 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from crawler2d import _core
+from crawler2d.pictures.ghosts import ghosts
 from crawler2d.pictures.page.recording import recording
-from crawler2d.pictures.page.words import all_figures, escaped, figures, heading, sentence, verdicts
+from crawler2d.pictures.page.words import all_figures, escaped, figures, heading, sentence, verdict
 
 if TYPE_CHECKING:
+    from crawler2d.results.findings import Mechanism
     from crawler2d.results.record import Record
 
 __all__ = ["replay_page"]
@@ -44,7 +46,8 @@ def replay_page(run: Record, time: float | None = None) -> str:
     script = '"use strict";\n(() => {\n' + "\n".join(map(_read, _SCRIPTS)) + "})();\n"
     title = heading(run)
     subject, _, ending = title.rpartition(": ")
-    outcome, *mechanism = verdicts(run)
+    outcome = verdict(run)
+    mechanism = [] if run.mechanism is None else [run.mechanism]
     why = sentence(run)
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
     return Template(_read("page.html")).substitute(
@@ -52,7 +55,9 @@ def replay_page(run: Record, time: float | None = None) -> str:
         subject=escaped(subject),
         ending=escaped(ending.replace("_", " ")),
         outcome_class=html.escape(outcome.replace(" ", "-")),
-        mechanism="".join(f'<li class="mechanism">{escaped(name)}</li>' for name in mechanism),
+        outcome_meaning="" if run.outcome is None else _tooltip(run.outcome.meaning),
+        mechanism="".join(_mechanism(each) for each in mechanism),
+        trials=_trials(run),
         sentence=f'<p class="sentence">{escaped(why)}</p>' if why else "",
         thinned=_thinned(data["every"], data["samples"]),
         figures=_listed(figures(run)),
@@ -81,6 +86,29 @@ def _thinned(every: int, samples: int) -> str:
         return ""
     text = f"Long run: 1 in {every} samples shown, {samples} in all."
     return f'<p class="thinned">{text}</p>'
+
+
+def _tooltip(meaning: str) -> str:
+    return f' title="{escaped(meaning)}"'
+
+
+def _mechanism(mechanism: Mechanism) -> str:
+    meaning = f"how the ground inside is held: {mechanism.meaning}"
+    return f'<li class="mechanism"{_tooltip(meaning)}>{escaped(str(mechanism))}</li>'
+
+
+def _trials(run: Record) -> str:
+    """List what was tried as buttons that show where the robot ended."""
+    tried = ghosts(run)
+    if not tried:
+        return ""
+    buttons = "".join(
+        f'<button type="button" class="trial{" freed" * each.freed}" data-trial="{number}"'
+        f' aria-pressed="false"{_tooltip(each.meaning)}>{escaped(each.said)}</button>'
+        for number, each in enumerate(tried)
+    )
+    head = "tried at the stop; press one to see where the robot ended:"
+    return f'<section class="trials" aria-label="trials"><p>{head}</p>{buttons}</section>'
 
 
 def _listed(rows: list[tuple[str, str]]) -> str:

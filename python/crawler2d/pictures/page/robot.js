@@ -33,6 +33,17 @@ class Robot {
     ctx.restore();
   }
 
+  // The robot at the end of a trial: outlines only, and a belt round them where the trial closed the track.
+  drawGhost(ctx, colors, pixel, moment, { frames, belt }) {
+    this.carriers.forEach((carrier, k) => {
+      const [x, y, angle] = frames[k];
+      ctx.save();
+      place(ctx, { x, y, angle });
+      carrier.drawGhost(ctx, colors, pixel, moment, belt);
+      ctx.restore();
+    });
+  }
+
   drawMassCenter(ctx, colors, pixel, moment) {
     const [x, y] = this.massCenter.map(moment.value);
     const radius = 5 * pixel;

@@ -9,6 +9,8 @@ class Scene {
     this.lanes = data.ground.lanes.map((lane) => new Lane(lane)); // the farthest first
     this.goal = data.ground.goal;
     this.layers = { forces: true, speeds: true, envelope: true };
+    this.ghosts = data.ghosts;
+    this.ghost = null; // the trial whose end is shown
     this.forceScale = FORCE_LENGTH / (data.contacts.usual_force || 1);
     this.speedScale = SPEED_LENGTH / (data.contacts.usual_speed || 1);
     this.route = outlineOf(Float64Array.from({ length: 2 * recording.count }, (_, i) =>
@@ -59,6 +61,8 @@ class Scene {
     ctx.stroke(this.lanes.at(-1).surface);
     const belted = this.layers.envelope ? robot.placed(moment).filter((p) => p.carrier.envelope) : [];
     for (const placed of belted) this.drawEnvelope(ctx, colors, pixel, placed, floor);
+
+    if (this.ghost !== null) robot.drawGhost(ctx, colors, pixel, moment, this.ghosts[this.ghost]);
 
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawGoal(ctx, colors);

@@ -11,7 +11,7 @@ from crawler2d.common.units import METRICS
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdicts"]
+__all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdict"]
 
 # metric, label, factor from the metric's unit, unit shown, decimals
 _FIGURES = (
@@ -50,10 +50,9 @@ def sentence(run: Record) -> str:
     return "" if run.diagnosis is None else str(run.diagnosis)
 
 
-def verdicts(run: Record) -> list[str]:
-    """Name outcome and mechanism, in that order, as far as known."""
-    known = [run.outcome, run.mechanism]
-    return [str(value).replace("_", " ") for value in known if value is not None]
+def verdict(run: Record) -> str:
+    """Name the outcome; empty if there is none."""
+    return "" if run.outcome is None else str(run.outcome).replace("_", " ")
 
 
 def figures(run: Record) -> list[tuple[str, str]]:

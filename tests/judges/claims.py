@@ -1,0 +1,258 @@
+"""Holds the sentence of a stop against its run: which of its claims are false?
+
+What is seen is held against the second judge, which knows the tables of the run and plane geometry;
+what was tried, against runs that continue from the same instants as scenarios made here. Nothing is
+taken from the diagnosis but its sentence, and the instant that it speaks of.
+"""
+
+import dataclasses
+import math
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+import crawler2d as c2d
+from crawler2d import _core
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Lanes
+from tests.judges.judge import Judge
+
+STOPS = {
+    "is jammed again": None,
+    "goes to and fro": "cycling",
+    "hangs on its belly": "hung_up",
+    "is stalled": "stalled",
+    "slips": "slipping",
+}
+"""How a trial ends that ends in a stop: the symptom, unless the robot is jammed."""
+ENDS = {
+    "clears": "cleared",
+    "tips over": "tipped_over",
+    "leaves the ground": "left_terrain",
+    "throws its track": "detracked",
+}
+PLACE = re.compile(
+    r"the ground at x = (-?[\d.]+) m, y = (-?[\d.]+) m stands (\d+) mm inside"
+    r" the (?P<of>track(?: of the (?P<arm>[a-z ]+flipper))?|(?:left|right) track)"
+    r"(?: \((?:(\d+) mm past|not as far as) the grouser roots\))?(?P<where>.*)"
+)
+BETWEEN = re.compile(r" between wheels (\d+) and (\d+)")
+LOAD = re.compile(r"(under a load of|under|with) (\d+) N")
+
+
+class Claims:
+    """What the sentence of one run says, clause by clause."""
+
+    def __init__(self, run: c2d.Run) -> None:
+        assert run.diagnosis is not None
+        self.run, self.time = run, run.diagnosis.time
+        said = str(run.diagnosis)
+        facts, _, self.tried = said.partition(". Tried: ")
+        self.facts, _, self.left = facts.partition(". It goes on by itself: ")
+        self.head, _, clauses = self.facts.partition(": ")
+        self.clauses = [each for each in clauses.split("; ") if each]
+        self.judge = Judge(run)
+        self.direction = math.copysign(1.0, run.scenario.drive.speed)
+        self.greatest = float((self.direction * run.position[:, 0]).max())
+
+    # What is seen
+
+    def of_what_is_seen(self) -> Iterator[tuple[str, bool]]:
+        """Yield each clause of what is seen, and whether it is so."""
+        opinion = self.judge.opinion()
+        word = self.head.removeprefix("in passing, ").split(" between")[0]
+        word = re.split(r" (?:at|under|on) ", word)[0].replace(" ", "_")
+        if word != "seized":
+            yield self.head, word in (opinion.symptom, "stalled")
+        else:
+            yield self.head, opinion.jammed and self.is_between(self.head)
+        for clause in self.clauses:
+            yield clause, self.is_seen(clause)
+
+    def is_between(self, text: str) -> bool:
+        """Whether the most loaded ground inside is between the wheels that a text names."""
+        named = BETWEEN.search(text)
+        if named is None:
+            return True  # chains and grousers: bodies that have no numbers
+        assert self.judge.most_loaded is not None
+        if self.judge.pieces[self.judge.most_loaded].root_normal is None:
+            return True  # the judge looks between root circles alone
+        return sorted(map(int, named.groups())) == sorted(self.judge.beside(self.judge.most_loaded))
+
+    def is_seen(self, clause: str) -> bool:
+        """Whether a clause is so."""
+        judge = self.judge
+        figure = re.search(r"([\d.]+) %", clause)
+        share = float(figure[1]) / 100.0 if figure else 1.0
+        looks: dict[str, Callable[[], bool]] = {
+            "the ground at": lambda: self.is_inside(clause),
+            "carries": lambda: abs(judge.belly_share() - share) < 0.02,
+            "torque limit": lambda: abs(judge.stalled_share() - share) < 0.02,
+            "to and fro": lambda: judge.to_and_fro() > 0.9 * judge.criteria.cycling_distance,
+            "creeps": lambda: abs(self.run.metrics["progress"] - share) < 0.01,
+            "the track slips": lambda: self.is_slipping(clause),
+            "no contact forces": lambda: judge.opinion().imbalance > judge.criteria.imbalance,
+        }
+        for word, look in looks.items():
+            if word in clause:
+                return look()
+        return self.bears(clause)
+
+    def is_inside(self, clause: str) -> bool:
+        judge = self.judge
+        found = PLACE.match(clause)
+        if found is None or judge.most_loaded is None:
+            return False
+        piece, loop = judge.pieces[judge.most_loaded], judge.loops[judge.most_loaded]
+        arm = found["arm"] is not None
+        point = np.array([float(found[1]), float(found[2])])
+        # The deepest point of the piece lies on it, within the rounding of the sentence.
+        way = judge.grounds[loop.lane].along(point[None])[0]
+        on_it = any(first - 0.01 <= way <= last + 0.01 for first, last in piece.spans)
+        inside = bool(np.hypot(*(piece.edge - point)) < 0.05) or on_it
+        return inside and (loop.carrier > 0) == arm and self.is_between(found["where"])
+
+    def bears(self, clause: str) -> bool:
+        """Whether the bodies that are said to bear on the ground inside do so, with these loads."""
+        judge = self.judge
+        on_it = [c for c in judge.contacts if judge.most_loaded in c.pieces]
+        by_body: dict[int, float] = {}
+        for c in on_it:
+            by_body[c.body] = by_body.get(c.body, 0.0) + c.normal_force
+        most = sorted(by_body.values(), reverse=True)
+        loads = [float(n) for _, n in LOAD.findall(clause)]
+        near = [
+            abs(load - force) <= 1.0 + self.looseness() * force
+            for load, force in zip(loads, most, strict=False)
+        ]
+        return bool(loads) and all(near)
+
+    def looseness(self) -> float:
+        """[-] How far means may be apart: of a robot that rattles, they are over other windows."""
+        width = self.judge.to_and_fro()
+        if width < 1e-4:
+            return 0.05
+        return 0.25 if width < self.judge.criteria.cycling_distance else 0.6
+
+    def is_slipping(self, clause: str) -> bool:
+        found = re.search(r"at ([\d.]+) m/s", clause)
+        assert found is not None
+        track = [c for c in self.judge.contacts if c.body < self.judge.bodies]
+        loads = np.array([c.normal_force for c in track])
+        slips = np.array([abs(c.surface_speed) for c in track])
+        slip = float(loads @ slips) / float(loads.sum())
+        return abs(slip - float(found[1])) < 0.01 + self.looseness() * slip
+
+    # What was tried
+
+    def of_what_was_tried(self) -> Iterator[tuple[str, bool | None]]:
+        """Yield each trial that the sentence tells of, and whether it went so; None: not known."""
+        if self.left:
+            yield f"unchanged: {self.left}", self.went("unchanged", self.left)
+        for clause in self.tried.split("; ") if self.tried else ():
+            change, _, came = clause.partition(": ")
+            yield clause, self.went(change, came)
+
+    def went(self, change: str, came: str) -> bool | None:
+        counted = re.search(r" \((\d) of (\d) times free\)$", came)
+        said = came[: counted.start()] if counted else came
+        freed = said.startswith("free after")
+        if change.endswith("set down clear of the ground"):
+            return self.went_from_clear(said, freed) if counted is None else None
+        variant = self.variant(change)
+        starts = 5 if counted and change != "unchanged" else 1
+        runs = [self.continued(variant, k) for k in range(starts)]
+        away = [self.gets_away(run) for run in runs]
+        if counted:
+            return (sum(away) >= 4) == freed
+        return away[0] == freed and self.ended(runs[0], said)
+
+    def went_from_clear(self, said: str, freed: bool) -> bool:
+        """The start is made by the program; that it is clear and at rest is looked at here."""
+        run = self.run.what_if("closed track, clear of the ground").run
+        at_rest = not run.velocity[0].any() and not run.angular_velocity[0]
+        first = run.contacts["time"] <= run.time[1]
+        shallow = not first.any() or float(run.contacts["penetration"][first].max()) < 1e-4
+        return at_rest and shallow and self.gets_away(run) == freed and self.ended(run, said)
+
+    def variant(self, change: str) -> Scenario:
+        """The scenario with one thing changed."""
+        own = self.run.scenario
+        track: Any = own.robot.track
+        torque = own.robot.drivetrain.max_torque
+        slippery = track
+        if isinstance(track, c2d.ForceTrack):
+            slippery = dataclasses.replace(track, skid_friction=2.0 * track.skid_friction)
+        changes: dict[str, Callable[[], dict[str, Any]]] = {
+            "unchanged": dict,
+            "closed track": lambda: {"robot.track": c2d.ClosedTrack(track)},
+            "smooth closed track": lambda: {
+                "robot.track": c2d.ClosedTrack(track, surface="smooth")
+            },
+            "one motor for all wheels": lambda: {"robot.drivetrain.torque_sharing": "track"},
+            "twice the torque": lambda: {"robot.drivetrain.max_torque": 2.0 * torque},
+            "ten times the torque": lambda: {"robot.drivetrain.max_torque": 10.0 * torque},
+            "twice the friction": lambda: {
+                "robot.track": slippery,
+                "terrain": with_twice_the_friction(own.terrain),
+            },
+            "without its belly": lambda: {"robot.belly": None},
+            "flippers level": lambda: {"drive.gait": c2d.Hold(0.0)},
+        }
+        return own.replace(changes[change]())
+
+    def continued(self, variant: Scenario, start: int) -> c2d.Run:
+        """The rest of the run as a variant, from the stop or from a fifth of a window later."""
+        criteria, speed = variant.criteria, abs(variant.drive.speed)
+        pitches = criteria.stop_pitches * variant.robot.outline.grouser_pitch / speed
+        at = self.time + start * max(criteria.stop_window, pitches) / 5.0
+        lasts = criteria.escape_time + criteria.escape_distance / speed
+        variant = dataclasses.replace(variant, duration=lasts)
+        text, changed = self.run.scenario.to_json(), variant.to_json()
+        result = _core.branch(text, at, changed, (0.0, 0.0), 0.01, "full")
+        return c2d.Run(variant, result, trunk=(self.run.scenario, at))
+
+    def gets_away(self, run: c2d.Run) -> bool:
+        """Whether it clears, or gets ahead of all before while it is upright."""
+        if run.outcome is c2d.Outcome.CLEARED:
+            return True
+        ahead = self.direction * run.position[:, 0] - self.greatest
+        far = np.flatnonzero(ahead > run.scenario.criteria.escape_distance)
+        # What ends a run early ends it at its last sample.
+        ended = run.outcome in ("tipped_over", "left_terrain", "detracked")
+        return bool(far.size) and not (ended and far[0] >= len(run.time) - 1)
+
+    def ended(self, run: c2d.Run, said: str) -> bool:
+        """Whether a run ended as it is said to have."""
+        end = re.sub(r" \d+ mm further on$", "", said.rsplit(", then ", maxsplit=1)[-1])
+        if end in ENDS:
+            return str(run.outcome) == ENDS[end]
+        if end in STOPS:
+            if run.diagnosis is None:
+                return False
+            opinion = Judge(run).opinion()
+            return opinion.jammed if STOPS[end] is None else opinion.symptom == STOPS[end]
+        # Free, or moving on, and no more is said.
+        return said.startswith(("free after", "still moving")) and run.diagnosis is None
+
+
+def with_twice_the_friction(terrain: Any) -> Any:
+    """The same ground, of one lane or several."""
+    if isinstance(terrain, Lanes):
+        lanes = {
+            side: with_twice_the_friction(lane)
+            for side in ("left", "right", "middle")
+            if (lane := getattr(terrain, side)) is not None
+        }
+        return dataclasses.replace(terrain, **lanes)
+    return dataclasses.replace(terrain, friction=2.0 * terrain.friction)
+
+
+def false_claims(run: c2d.Run) -> tuple[int, list[str]]:
+    """How many claims the sentence of a stop makes, and those of them that are false."""
+    claims = Claims(run)
+    held = [*claims.of_what_is_seen(), *claims.of_what_was_tried()]
+    known = [(claim, is_so) for claim, is_so in held if is_so is not None]
+    return len(known), [claim for claim, is_so in known if not is_so]
