@@ -51,7 +51,10 @@ pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, 
     result.set_item("position", PyTuple::new(py, [x, y])?)?;
     result.set_item("chassis_angle", angle)?;
     let arms = trial.flipper_angles.iter().filter(|angle| !angle.is_nan());
-    result.set_item("flipper_angles", PyTuple::new(py, arms.collect::<Vec<_>>())?)?;
+    result.set_item(
+        "flipper_angles",
+        PyTuple::new(py, arms.collect::<Vec<_>>())?,
+    )?;
     Ok(result)
 }
 

@@ -400,9 +400,9 @@ def test_runs_of_one_sample_and_without_contacts_open(open_page: Open) -> None:
         assert page.eval_on_selector("#strip", COLOURS) > 2
 
 
-def test_a_trial_shows_where_the_robot_ended_and_hides_it_again(open_page: Any) -> None:
+def test_a_trial_shows_where_the_robot_ended_and_hides_it_again(open_page: Open) -> None:
     run = c2d.simulate(ROBOT.with_track(ROUND), STEP, trials="all")
-    page: Page = open_page(run)
+    page = open_page(run.to_html())
     buttons = page.locator("[data-trial]")
     assert buttons.count() == 6
     before = page.locator("#scene").evaluate(CHECKSUM)

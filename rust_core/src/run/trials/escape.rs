@@ -14,9 +14,10 @@ const RISE: f64 = 0.1;
 /// often as this: just beyond what it can bear, it takes seconds to leave.
 const SETTLED: f64 = 5e-5;
 const HOLDS: usize = 10;
-/// [m] A push that moves the robot as far as this, ahead or up over what holds it, has overcome that.
+/// [m] A push that moves the robot as far as this, ahead or up over what holds it, has overcome that; a robot that
+/// rattles, as far as this beyond what it does by itself.
 const MOVES: f64 = 5e-3;
-/// [s] How long the push goes on then, to see whether the robot tips over.
+/// [s] How long the push goes on then, to see whether the robot tips over; and for how long it is seen without one.
 const AFTERWARDS: f64 = 2.0;
 
 /// A measured escape force.
@@ -36,12 +37,13 @@ pub(crate) fn measure(stop: &Simulation, cancel: &Cancel) -> Result<EscapeForce,
     let mut robot = stop.copy();
     let direction = robot.direction();
     let begin = robot.reading().position;
+    let way = |robot: &Simulation| (robot.reading().position - begin).length();
+    let by_itself = own_way(&robot, &way, cancel)?;
     let (first, last, ratio) = LEVELS;
     let (mut low, mut level) = (0.0, first * weight);
     while level <= last * weight {
         robot.raise_push(direction * level, RISE)?;
-        let way = |robot: &Simulation| (robot.reading().position - begin).length();
-        let moved = |robot: &Simulation| way(robot) > MOVES;
+        let moved = |robot: &Simulation| way(robot) > by_itself + MOVES;
         let mut leaves = false;
         for _ in 0..HOLDS {
             leaves = follow(&mut robot, 0.5 * HOLD, &moved, cancel)?;
@@ -66,6 +68,23 @@ pub(crate) fn measure(stop: &Simulation, cancel: &Cancel) -> Result<EscapeForce,
         high: f64::INFINITY,
         tips: false,
     })
+}
+
+/// [m] How far a robot moves without a push: one that rattles is not at rest.
+fn own_way(
+    stop: &Simulation,
+    way: &dyn Fn(&Simulation) -> f64,
+    cancel: &Cancel,
+) -> Result<f64, Error> {
+    let mut robot = stop.copy();
+    let end = robot.time() + AFTERWARDS;
+    let mut farthest: f64 = 0.0;
+    while robot.time() < end {
+        robot.step_until(end)?;
+        cancel.check()?;
+        farthest = farthest.max(way(&robot));
+    }
+    Ok(farthest)
 }
 
 /// Goes on for a time [s], or until something is so; returns whether it is.

@@ -1,5 +1,7 @@
 //! The nearest clear pose against a search on a grid.
 
+mod restarts;
+
 use super::*;
 use crate::run::Checked;
 use crate::scenario::{Scenario, Terrain};

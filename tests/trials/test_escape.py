@@ -1,0 +1,62 @@
+"""Escape forces: what is said to be held is held, and what is said to move the robot moves it.
+
+The push is applied in another way than it was measured: it rises evenly, in five seconds.
+"""
+
+import collections
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.parameters.terrain import Lanes, RandomStepfield
+from tests.trials.robots import stops
+
+# Drawn scenarios may be odd.
+pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+
+SEED = 77
+RISE, HOLD = 5.0, 4.0  # [s]
+MOVES = 5e-3  # [m]
+
+
+def way(run: c2d.Run, force: float) -> float:
+    """[m] How far a robot goes under a push that rises evenly and stays."""
+    direction = math.copysign(1.0, run.scenario.drive.speed)
+    pushed = run.branch(push=(direction * force, RISE), duration=RISE + HOLD)
+    return float(np.hypot(*(pushed.position - pushed.position[0]).T).max())
+
+
+@pytest.mark.parametrize(
+    "count", [12, pytest.param(200, marks=pytest.mark.soak)], ids=["a few", "all"]
+)
+def test_both_ends_of_an_escape_force_are_so(count: int, say: Callable[[str], None]) -> None:
+    held: dict[str, collections.Counter[bool]] = collections.defaultdict(collections.Counter)
+    moved: dict[str, collections.Counter[bool]] = collections.defaultdict(collections.Counter)
+    wedged = 0
+    for _, run in stops(SEED, count, None):
+        why = run.diagnosis
+        assert why is not None
+        low, high, _ = run.escape_force()
+        wedged += math.isinf(high)
+        on_lanes = isinstance(run.scenario.terrain, (Lanes, RandomStepfield))
+        pools = ["all", str(run.outcome), "two lanes" if on_lanes else "one lane"]
+        pools.append("at rest" if why.stationary else "rattling")
+        by_itself = way(run, 0.0)
+        holds = way(run, low) <= by_itself + MOVES
+        gives = math.isinf(high) or way(run, high) > by_itself + MOVES
+        for pool in pools:
+            held[pool][holds] += 1
+            moved[pool][gives] += 1
+        if not (holds and gives):
+            say(
+                f"{run.outcome} {run.scenario.robot.track.kind} {low:.1f} {high:.1f} N, {pools[2:]}"
+            )
+    for pool, holding in held.items():
+        found = f"{holding[True]} hold the lower, {moved[pool][True]} leave the upper"
+        say(f"{pool}: of {holding.total()} {found}")
+    say(f"{wedged} are moved by no push")
+    assert held["at rest"][True] >= 0.9 * held["at rest"].total()
+    assert moved["at rest"][True] >= 0.9 * moved["at rest"].total()
