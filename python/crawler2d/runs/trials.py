@@ -89,8 +89,8 @@ class EscapeForce(NamedTuple):
     low: float
     """[N] The last level that was held; 0 if none was."""
     high: float
-    """[N] The first level that moved it 5 mm, of one that rattles by 5 mm more than it moves without
-    a push; inf if ten weights did not."""
+    """[N] The first level that moved it 5 mm, or that much more than it moves without a push if it
+    rattles; inf if ten weights did not."""
     tips: bool
     """Whether that push tipped it over within two seconds."""
 

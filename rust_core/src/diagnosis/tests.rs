@@ -1,11 +1,11 @@
-//! Diagnoses of synthetic stops of a belt.
+//! Diagnoses of synthetic stops of two wheels.
 #![allow(clippy::float_cmp)] // lengths here are exact in binary
 
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{Model, Mount};
-use crate::scenario::{Scenario, Terrain};
+use crate::scenario::{LineOfWheels, Scenario, Terrain, Track, Wheel};
 use crate::terrain::Ground;
 
 /// [m] Half the distance between the end axles.
@@ -16,7 +16,7 @@ const RADIUS: f64 = 0.0625;
 const POST: f64 = 0.02;
 const DEPTH: f64 = 0.005;
 
-/// The Engineer on a belt, with end axles 0.5 m apart, on two posts.
+/// The Engineer on two wheels, with end axles 0.5 m apart, on two posts.
 struct Stage {
     scenario: Scenario,
     ground: Ground,
@@ -28,6 +28,12 @@ impl Stage {
     fn new() -> Self {
         let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");
         let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
+        scenario.robot.track = Track::Line(LineOfWheels {
+            count: 2,
+            wheel_radius: None,
+            wheel: Wheel::Round,
+            as_track: true,
+        });
         let outline = &mut scenario.robot.outline;
         outline.axle_distance = 2.0 * HALF;
         (outline.front_radius, outline.rear_radius) = (RADIUS, RADIUS);
