@@ -281,7 +281,7 @@ def test_the_friction_of_lanes_is_not_one_value() -> None:
 
 def test_a_branch_goes_on_while_its_push_rises(seized: c2d.Run) -> None:
     """A robot that stands still under a small push may leave under a larger one."""
-    low, high, _ = seized.escape_force()
+    low, high = seized.escape_force()
     for force, leaves in ((0.9 * low, False), (1.2 * high, True)):
         branch = seized.branch(push=(force, 6.0), duration=12.0)
         assert branch.time[-1] - branch.time[0] > 8.0 or branch.outcome is c2d.Outcome.CLEARED

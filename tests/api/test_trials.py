@@ -1,6 +1,7 @@
 """What frees a robot that has stopped: trials, one push after another, and their runs."""
 
 import math
+import pickle
 from dataclasses import fields, replace
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.results.findings import Tried
+from crawler2d.runs.trials import EscapeForce
 from tests.shared import GEAR, ROBOT
 
 SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10), duration=6.0)
@@ -54,6 +56,21 @@ def test_the_run_of_a_trial_shows_what_it_says(seized: c2d.Run) -> None:
             assert run.outcome is c2d.Outcome.CLEARED
         if trial.freed:
             assert 0.0 < trial.time <= ESCAPE
+
+
+def test_a_run_remembers_the_trials_that_were_made_of_it() -> None:
+    run = c2d.simulate(SEIZING, trials=None)
+    assert run.diagnosis is not None
+    before = [tried.name for tried in run.diagnosis.trials]
+    assert "twice the friction" not in str(run.diagnosis)
+    run.what_if("friction x 2")
+    run.what_if(max_torque=20.0)
+    assert [tried.name for tried in run.diagnosis.trials] == [*before, "friction x 2"]
+    assert "twice the friction: " in str(run.diagnosis)
+    trials = run.trials()
+    assert [tried.name for tried in run.diagnosis.trials] == [trial.name for trial in trials]
+    assert run.diagnosis.freed_by == tuple(trial.name for trial in trials if trial.freed)
+    assert run.diagnosis.certificate == run.diagnosis.imbalance
 
 
 def test_each_trial_changes_one_thing(seized: c2d.Run) -> None:
@@ -123,9 +140,13 @@ def test_what_makes_no_sense_for_the_robot_is_refused(seized: c2d.Run) -> None:
 
 
 def test_a_robot_holds_the_lower_level_and_leaves_at_the_upper_one(seized: c2d.Run) -> None:
-    low, high, tips = seized.escape_force()
+    found = seized.escape_force()
+    low, high = found
+    assert (found.low, found.high) == (low, high)
     assert high == pytest.approx(1.1 * low)
-    assert not tips
+    assert not found.tips
+    twin = pickle.loads(pickle.dumps(EscapeForce(low, high, tips=True)))
+    assert (twin, twin.tips) == ((low, high), True)
     for force, leaves in ((low, False), (high, True)):
         sim = c2d.Simulation(SEIZING)
         sim.advance(seized.time[-1])
@@ -139,6 +160,6 @@ def test_a_robot_holds_the_lower_level_and_leaves_at_the_upper_one(seized: c2d.R
 
 def test_a_robot_at_a_wall_without_friction_is_moved_by_no_push() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.step(0.5, friction=0.05), duration=8.0)
-    low, high, tips = run.escape_force()
-    assert low > 9.0 * ROBOT.mass * 9.81
-    assert (high, tips) == (math.inf, False)
+    found = run.escape_force()
+    assert found.low > 9.0 * ROBOT.mass * 9.81
+    assert (found.high, found.tips) == (math.inf, False)

@@ -39,7 +39,7 @@ def test_both_ends_of_an_escape_force_are_so(count: int, say: Callable[[str], No
     for _, run in stops(SEED, count, None):
         why = run.diagnosis
         assert why is not None
-        low, high, _ = run.escape_force()
+        low, high = run.escape_force()
         wedged += math.isinf(high)
         on_lanes = isinstance(run.scenario.terrain, (Lanes, RandomStepfield))
         pools = ["all", str(run.outcome), "two lanes" if on_lanes else "one lane"]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -47,14 +47,16 @@ def jams() -> list[c2d.Run]:
 
 def set_at_rest(run: c2d.Run) -> tuple[Any, Any]:
     """Build the robot in its last pose; its wheels are driven as it was commanded."""
-    robot, friction = run.scenario.robot, float(run.scenario.terrain.friction)
+    robot, terrain = run.scenario.robot, cast("Any", run.scenario.terrain)
+    friction = float(terrain.friction)
     space = pymunk.Space()
     space.gravity, space.iterations = (0.0, -run.scenario.gravity), ITERATIONS
     space.collision_slop, space.collision_bias = 1e-5, math.exp(-60.0)
     profile = Scene(run).lanes[0][1]
     for one, other in zip(profile[:-1].tolist(), profile[1:].tolist(), strict=True):
         finish(pymunk.Segment(space.static_body, one, other, 0.0), 0, friction, space)
-    x, y, angle = *run.position[-1], float(run.chassis_angle[-1])
+    x, y = run.position[-1].tolist()
+    angle = float(run.chassis_angle[-1])
     wheels = robot.wheels()
     own = wheels["carrier"] == "chassis"
     places = np.unique(np.column_stack([wheels[n] for n in ("x", "y", "radius")])[own], axis=0)

@@ -32,9 +32,9 @@ class Diagnosis(Findings):
         Whether the stop would not have lasted: the unchanged robot got free when it went on, or
         when its track was built anew.
     trials : tuple of Tried
-        What was tried, in this order, and what came of it.
+        What was tried so far, and what came of it; `Run.trials` and `Run.what_if` add to it.
     freed_by : tuple of str
-        Names of the trials that freed the robot.
+        Names of those that freed the robot.
     belly_side : {"", "underside", "tail", "nose"}
         Where the ground pushes against the belly: at its tail if the robot stands on that.
     jammed : bool
@@ -70,6 +70,8 @@ class Diagnosis(Findings):
         weight.
     certified : bool
         The imbalance is within `criteria`: the pose may be an equilibrium.
+    certificate : float or None
+        [-] The imbalance if it is, else None.
     """
 
     @classmethod

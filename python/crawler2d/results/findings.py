@@ -155,8 +155,13 @@ class Findings:
     certified: bool
 
     @property
+    def certificate(self) -> float | None:
+        """[-] The imbalance if it proves that forces can balance the stop, else None."""
+        return self.imbalance if self.certified else None
+
+    @property
     def freed_by(self) -> tuple[str, ...]:
-        """Names of the trials that freed the robot."""
+        """Names of the trials made so far that freed the robot."""
         return tuple(tried.name for tried in self.trials if tried.freed)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from crawler2d.results.record import Record
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
+    from crawler2d.results.findings import Tried
 
 __all__ = ["Run"]
 
@@ -214,6 +216,8 @@ class Run(Record):
     def trials(self) -> tuple[Trial[Run], ...]:
         """Try everything that might free the robot from the stop that the run ended in.
 
+        The diagnosis, and with it plots and pages of the run, tell of them from then on.
+
         Returns
         -------
         tuple of Trial
@@ -244,8 +248,9 @@ class Run(Record):
         ['closed track']
         """
         time = branching.branch_time(self, "stop")
-        tried = trials_at(self, time, trial_names("all"))
-        return tuple(Trial.of(each, self._shown(time, each.name)) for each in tried)
+        made = trials_at(self, time, trial_names("all"))
+        self._remember(*made)
+        return tuple(Trial.of(each, self._shown(time, each.name)) for each in made)
 
     def what_if(
         self,
@@ -289,6 +294,7 @@ class Run(Record):
         time = branching.branch_time(self, "stop")
         if name is not None:
             tried = trial_at(self, time, name)
+            self._remember(tried)
             return Trial.of(tried, self._shown(time, name))
         variant = branching.branch_scenario(
             self,
@@ -310,6 +316,13 @@ class Run(Record):
 
         return Trial.of(tried, show)
 
+    def _remember(self, *made: Tried) -> None:
+        """Let the diagnosis tell of trials that were made of this run's stop."""
+        if self.diagnosis is not None:
+            known = {tried.name: tried for tried in (*self.diagnosis.trials, *made)}
+            trials = tuple(known[name] for name in trial_names("all") if name in known)
+            self.diagnosis = replace(self.diagnosis, trials=trials)
+
     def _shown(self, time: float, name: str) -> Callable[[], Run]:
         """Give the way to the run of a trial."""
 
@@ -328,7 +341,8 @@ class Run(Record):
         Returns
         -------
         EscapeForce
-            [N] The last level that was held and the first that moved it.
+            [N] A tuple: the last level that was held and the first that moved it. Its `tips` says
+            whether that push tipped it over.
 
         Raises
         ------

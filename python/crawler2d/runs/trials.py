@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any, Generic, Literal, NamedTuple, TypeVar
+from typing import Any, Generic, Literal, NamedTuple, Self, TypeVar
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError
@@ -83,16 +83,32 @@ class Trial(Tried, Generic[R]):
         return self.show()
 
 
-class EscapeForce(NamedTuple):
-    """The push that moves a robot on, in the commanded direction; see `Run.escape_force`."""
-
+class _Levels(NamedTuple):
     low: float
-    """[N] The last level that was held; 0 if none was."""
     high: float
-    """[N] The first level that moved it 5 mm, or that much more than it moves without a push if it
-    rattles; inf if ten weights did not."""
+
+
+class EscapeForce(_Levels):
+    """The push that moves a robot on, in the commanded direction; see `Run.escape_force`.
+
+    Attributes
+    ----------
+    low : float
+        [N] The last level that was held; 0 if none was.
+    high : float
+        [N] The first level that moved it 5 mm, or that much more than it moves without a push if it
+        rattles; inf if ten weights did not.
+    tips : bool
+        Whether that push tipped it over within two seconds.
+    """
+
     tips: bool
-    """Whether that push tipped it over within two seconds."""
+
+    def __new__(cls, low: float, high: float, tips: bool = False) -> Self:
+        """Keep the two levels as a tuple."""
+        found = super().__new__(cls, low, high)
+        found.tips = tips
+        return found
 
 
 def trials_at(run: Record, time: float, names: tuple[str, ...]) -> tuple[Tried, ...]:
