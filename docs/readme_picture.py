@@ -19,7 +19,7 @@ def draw() -> Figure:
     on_wheels, on_belt = figure.subplots(1, 2, sharey=True, width_ratios=[0.8, 1.2])
 
     run = c2d.simulate(wheels, obstacle)
-    run.plot(run.time[-1], axes=on_wheels)
+    run.plot(run.time[-1], axes=on_wheels, trials=False)
     on_wheels.set_title(f"on wheels: {run.outcome}", loc="left")
     on_wheels.set_xlim(-0.35, 0.45)
 

@@ -62,6 +62,9 @@ def test_a_plot_shows_the_ends_of_the_trials_that_freed_the_robot(run: c2d.Run) 
     labels = [text.get_text() for text in legend.get_texts()]
     found = [label for label in labels if label.startswith("end of the trial: ")]
     assert found == [f"end of the trial: {change}" for change in freed]
+    bare = run.plot(trials=False)[0].get_legend()
+    assert bare is not None
+    assert not any("trial" in text.get_text() for text in bare.get_texts())
     # Before its end there is nothing to compare with.
     early = run.plot(time=1.0)[0].get_legend()
     assert early is not None

@@ -28,7 +28,11 @@ _MOST_DRAWINGS = 7
 
 
 def plot_run(
-    run: Record, time: ArrayLike | None = None, axes: Axes | tuple[Axes, ...] | None = None
+    run: Record,
+    time: ArrayLike | None = None,
+    axes: Axes | tuple[Axes, ...] | None = None,
+    *,
+    trials: bool = True,
 ) -> tuple[Axes, ...]:
     """Draw a run; see `Run.plot`."""
     times = _drawing_times(run) if time is None else np.atleast_1d(np.asarray(time, dtype=float))
@@ -46,7 +50,7 @@ def plot_run(
         raise ScenarioError("axes", f"{len(axes)} axes", "must be one Axes or four")
     # A robot's name may hold a $, which must not start a formula.
     axes[0].set_title(_title(run), loc="left", fontsize="small", parse_math=False)
-    side_view(run, times, axes[0])
+    side_view(run, times, axes[0], trials=trials)
     if len(axes) == 4:
         time_strips(run, tuple(axes[1:]))
     return tuple(axes)

@@ -36,7 +36,7 @@ _BELOW = 0.03
 _SHORTEST = 0.02
 
 
-def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
+def side_view(run: Record, times: NDArray[np.float64], ax: Axes, *, trials: bool = True) -> None:
     """Draw the ground, the robot at some instants, the path of the chassis origin, and contacts.
 
     At the last of the instants it also draws the contact forces on the robot, the slip velocities,
@@ -51,6 +51,8 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
         [s] When to draw the robot; the nearest samples are used.
     ax : Axes
         Where to draw.
+    trials : bool
+        Whether to draw the ends of trials.
     """
     scene = Scene(run)
     samples = np.unique([np.abs(run.time - t).argmin() for t in times])
@@ -68,7 +70,7 @@ def side_view(run: Record, times: NDArray[np.float64], ax: Axes) -> None:
         zorder=3,
     )
     shown = int(samples[-1])
-    if shown == run.time.size - 1:
+    if trials and shown == run.time.size - 1:
         left, right = _draw_ghosts(run, scene, ax, (left, right))
     _draw_contacts(run, shown, ax)
     depth = max(run.scenario.criteria.intrusion_depth, SLIVER)

@@ -372,7 +372,11 @@ class Run(Record):
         return to_dataset(self)
 
     def plot(
-        self, time: ArrayLike | None = None, *, axes: Axes | tuple[Axes, ...] | None = None
+        self,
+        time: ArrayLike | None = None,
+        *,
+        axes: Axes | tuple[Axes, ...] | None = None,
+        trials: bool = True,
     ) -> tuple[Axes, ...]:
         """Draw the side view, and chassis angle, track speed and drive force over time.
 
@@ -382,6 +386,8 @@ class Run(Record):
             [s] When to draw the robot; None draws it about every robot length.
         axes : Axes or tuple of 4 Axes, optional
             Where to draw; a single Axes gets the side view only. None makes a figure.
+        trials : bool
+            Whether to draw where the trials ended that freed the robot, if its stop is drawn.
 
         Returns
         -------
@@ -397,7 +403,7 @@ class Run(Record):
         """
         from crawler2d.pictures.plotting import plot_run  # noqa: PLC0415 - optional
 
-        return plot_run(self, time, axes)
+        return plot_run(self, time, axes, trials=trials)
 
     @overload
     def to_html(self, path: None = None, *, time: float | None = None) -> str: ...
