@@ -163,3 +163,17 @@ def test_a_robot_at_a_wall_without_friction_is_moved_by_no_push() -> None:
     found = run.escape_force()
     assert found.low > 9.0 * ROBOT.mass * 9.81
     assert (found.high, found.tips) == (math.inf, False)
+
+
+def test_a_robot_that_is_told_to_stop_is_not_tried_for_ever(seized: c2d.Run) -> None:
+    still = seized.what_if(drive=c2d.Drive(speed=0.0))
+    assert not still.freed
+    assert still.duration == pytest.approx(ESCAPE)
+    # What is ahead is ahead of the stop, whichever way it is told to drive.
+    back = seized.what_if(drive=c2d.Drive(speed=-0.4))
+    assert not back.freed
+    assert back.position[0] < seized.position[-1, 0] - 0.5
+    # A command that ends soon after the stop.
+    drive = c2d.Drive(speed=0.4, schedule=((float(seized.time[-1]) + 0.05, 0.0),))
+    paused = c2d.simulate(SEIZING.replace({"drive": drive}), trials="all")
+    assert paused.outcome in ("seized", "slipping", "timed_out")

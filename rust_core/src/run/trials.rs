@@ -114,6 +114,9 @@ struct Bench<'a> {
     /// The instants from which it is tried; those after the first follow when they are needed.
     starts: Vec<Simulation>,
     rattles: bool,
+    /// [s] For how long each is tried; a change of the command changes neither this nor what is ahead.
+    duration: f64,
+    direction: f64,
     /// [m] How far the robot had come, in the commanded direction.
     greatest: f64,
     made: Vec<Trial>,
@@ -136,6 +139,8 @@ impl<'a> Bench<'a> {
         Self {
             starts: vec![stop.copy()],
             rattles: !found.stationary,
+            duration: duration(stop),
+            direction: stop.direction(),
             greatest: stop.monitor().best_advance(),
             made: Vec::new(),
             cancel,
@@ -203,7 +208,7 @@ impl<'a> Bench<'a> {
             time: course.time,
             outcome: course.outcome,
             jammed: course.jammed,
-            duration: duration(&self.starts[0]),
+            duration: self.duration,
             pose: course.pose,
             flipper_angles: course.flipper_angles,
         }))
@@ -223,14 +228,13 @@ impl<'a> Bench<'a> {
 
     fn follow(&self, mut simulation: Simulation) -> Result<Course, Error> {
         let begin = simulation.time();
-        let end = begin + duration(&simulation);
+        let end = begin + self.duration;
         let criteria = simulation.scenario().criteria.clone();
-        let direction = simulation.direction();
         let (mut distance, mut time) = (f64::NEG_INFINITY, f64::INFINITY);
         while simulation.time() < end && !simulation.is_over() {
             simulation.step_until(end)?;
             self.cancel.check()?;
-            let ahead = direction * simulation.reading().position.x - self.greatest;
+            let ahead = self.direction * simulation.reading().position.x - self.greatest;
             distance = distance.max(ahead);
             let gets_away = match simulation.monitor().ended_as() {
                 None => ahead > criteria.escape_distance,
