@@ -25,6 +25,14 @@ GEAR = c2d.GearWheel(
 )
 
 
+def refused(call: Any) -> c2d.ScenarioError:
+    """What a call is refused with; its rule says what must be."""
+    with pytest.raises(c2d.ScenarioError) as caught:
+        call()
+    assert caught.value.rule.startswith("must")
+    return caught.value
+
+
 def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -> c2d.Robot:
     """Give the robot raised flippers, with tracks of their own model if `arms` is one."""
     built = c2d.robots.engineer().flippers

@@ -10,7 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.runs.labelled import UNITS
-from tests.shared import GEAR, ROBOT
+from tests.shared import GEAR, ROBOT, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4))
 SEIZING = c2d.Scenario(WHEELS, c2d.terrains.step(0.10), duration=6.0)
@@ -24,13 +24,6 @@ LONGEST_STEP = 0.016  # [s]
 @pytest.fixture(scope="module")
 def seized() -> c2d.Run:
     return c2d.simulate(SEIZING)
-
-
-def refusal(call: Any) -> c2d.ScenarioError:
-    with pytest.raises(c2d.ScenarioError) as caught:
-        call()
-    assert caught.value.rule.startswith("must")
-    return caught.value
 
 
 @pytest.mark.parametrize("scenario", [SEIZING, GEARED, CLEARING], ids=["line", "gears", "belt"])
@@ -204,7 +197,7 @@ def test_a_branch_survives_pickling_with_its_trunk(seized: c2d.Run) -> None:
 
 @pytest.mark.parametrize("at", [-1, 6.1, 1e9, math.nan, math.inf, None, "stopp", "", True, 1j, [1]])
 def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None:
-    error = refusal(lambda: seized.branch(at=at))
+    error = refused(lambda: seized.branch(at=at))
     assert error.path == "at"
     end = seized.metrics["time"]
     assert error.rule == f'must be "stop" or a time from 0 to {end:.6g} s'
@@ -213,7 +206,7 @@ def test_what_is_no_time_of_the_run_is_refused(seized: c2d.Run, at: Any) -> None
 def test_a_run_that_did_not_stop_has_no_stop_to_branch_at() -> None:
     run = c2d.simulate(CLEARING, record="summary")
     for call in (run.branch, run.trials, run.what_if, run.escape_force):
-        error = refusal(call)
+        error = refused(call)
         assert (error.path, error.value) == ("at", "stop")
         assert "did not end in a stop" in error.rule
     assert run.branch(at=1.0, duration=0.1).outcome is c2d.Outcome.TIMED_OUT
@@ -222,19 +215,19 @@ def test_a_run_that_did_not_stop_has_no_stop_to_branch_at() -> None:
 def test_a_branch_is_not_branched_again(seized: c2d.Run) -> None:
     branch = seized.branch(at=1.0, duration=0.5)
     for call in (lambda: branch.branch(at=1.2), branch.trials, branch.what_if, branch.escape_force):
-        error = refusal(call)
+        error = refused(call)
         assert error.path == "run"
         assert "branch the original run" in error.rule
 
 
 def test_a_run_without_a_result_is_not_branched() -> None:
     wrong = SEIZING.replace({"terrain.height": -1.0})
-    (refused,) = c2d.simulate_many([wrong], on_error="record")
+    (invalid,) = c2d.simulate_many([wrong], on_error="record")
     diverged = c2d.Run(SEIZING, {}, c2d.SimulationDiverged("chassis is not finite"))
-    for run, why in ((refused, "terrain.height must be > 0 m"), (diverged, "not finite")):
+    for run, why in ((invalid, "terrain.height must be > 0 m"), (diverged, "not finite")):
         at_once = functools.partial(run.branch, at=0.0)
         for call in (run.branch, at_once, run.trials, run.what_if, run.escape_force):
-            error = refusal(call)
+            error = refused(call)
             assert error.path == "run"
             assert why in error.rule
 
@@ -267,14 +260,14 @@ def test_a_run_without_a_result_is_not_branched() -> None:
 def test_an_impossible_change_is_refused_by_name(
     seized: c2d.Run, changes: dict[str, Any], path: str
 ) -> None:
-    assert refusal(lambda: seized.branch(at=1.0, **changes)).path == path
+    assert refused(lambda: seized.branch(at=1.0, **changes)).path == path
 
 
 def test_the_friction_of_lanes_is_not_one_value() -> None:
     step = c2d.terrains.step(0.05)
     scenario = c2d.Scenario(ROBOT, c2d.terrains.lanes(step, step, middle=step), duration=0.5)
     run = c2d.simulate(scenario, record="summary")
-    error = refusal(lambda: run.branch(at=0.2, friction=0.5))
+    error = refused(lambda: run.branch(at=0.2, friction=0.5))
     assert error.path == "terrain.friction"
     assert "left, right, middle" in error.rule
 

@@ -152,6 +152,12 @@ def test_what_came_of_a_trial_is_said_in_a_few_words(trial: Tried, said: str) ->
     assert str(made(trials=(trial,))) == f"{SEIZED}. Tried: {said}"
 
 
+def test_only_a_robot_that_was_jammed_is_jammed_again() -> None:
+    trial = tried("torque x 2", 0.6, outcome=OUT.STALLED, jammed=True)
+    free = made(trials=(trial,), jammed=False, outcome=OUT.STALLED, symptom=OUT.STALLED)
+    assert str(free).endswith("Tried: twice the torque: free after 0.6 s, then is jammed")
+
+
 @pytest.mark.parametrize(
     ("control", "said"),
     [

@@ -3,7 +3,6 @@
 import math
 import pickle
 from dataclasses import fields, replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.results.findings import Tried
 from crawler2d.runs.trials import EscapeForce
-from tests.shared import GEAR, ROBOT
+from tests.shared import GEAR, ROBOT, refused
 
 SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10), duration=6.0)
 ESCAPE = 5.0 + 0.05 / 0.4  # [s] escape_time and escape_distance at 0.4 m/s
@@ -20,12 +19,6 @@ ESCAPE = 5.0 + 0.05 / 0.4  # [s] escape_time and escape_distance at 0.4 m/s
 @pytest.fixture(scope="module")
 def seized() -> c2d.Run:
     return c2d.simulate(SEIZING)
-
-
-def refusal(call: Any) -> c2d.ScenarioError:
-    with pytest.raises(c2d.ScenarioError) as caught:
-        call()
-    return caught.value
 
 
 def same(one: Tried, other: Tried) -> bool:
@@ -131,10 +124,10 @@ def test_the_time_of_a_trial_follows_the_criteria_and_the_command() -> None:
 
 def test_what_makes_no_sense_for_the_robot_is_refused(seized: c2d.Run) -> None:
     for name in ("flippers level", "one motor", "closed smooth track"):
-        error = refusal(lambda name=name: seized.what_if(name))
+        error = refused(lambda name=name: seized.what_if(name))
         assert (error.path, error.value) == ("name", name)
         assert "has nothing to change" in error.rule
-    error = refusal(lambda: seized.what_if("torque x 3"))
+    error = refused(lambda: seized.what_if("torque x 3"))
     assert error.path == "name"
     assert '"torque x 2"' in error.rule
 

@@ -20,6 +20,7 @@ from crawler2d.parameters.terrain import Lanes
 from tests.judges.judge import Judge
 
 STOPS = {
+    "is jammed": None,
     "is jammed again": None,
     "goes to and fro": "cycling",
     "hangs on its belly": "hung_up",

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.pictures.shapes import closed, placed, relative
+from crawler2d.results.bodies import moved
 from crawler2d.results.glossary import TRIALS
 from crawler2d.results.sentence import told
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.parameters.robot import Robot
     from crawler2d.pictures.shapes import Scene
     from crawler2d.results.findings import Tried
     from crawler2d.results.record import Record
@@ -49,18 +49,20 @@ class Ghost:
 
 def ghosts(run: Record) -> list[Ghost]:
     """Collect the trials of a run that changed something."""
-    trials = () if run.diagnosis is None else run.diagnosis.trials
+    why = run.diagnosis
+    if why is None:
+        return []
+    said = {tried: text for tried in why.trials if (text := told(why, tried))}
     return [
         Ghost(
-            change=told(tried).partition(":")[0],
-            said=told(tried),
+            change=text.partition(":")[0],
+            said=text,
             meaning=TRIALS[tried.name],
             freed=tried.freed,
             is_belt=tried.name.startswith("closed"),
-            frames=_frames(run.scenario.robot, tried),
+            frames=frames,
         )
-        for tried in trials
-        if told(tried)
+        for (tried, text), frames in zip(said.items(), _frames(run, list(said)), strict=True)
     ]
 
 
@@ -76,16 +78,16 @@ def ghost_lines(scene: Scene, ghost: Ghost) -> Iterator[NDArray[np.float64]]:
                 yield placed(outline, frame)
 
 
-def _frames(robot: Robot, tried: Tried) -> NDArray[np.float64]:
-    chassis = np.array([*tried.position, tried.chassis_angle])
-    frames = [chassis]
-    arms = robot.flippers
-    if arms is not None:
-        ends = {"front": (1.0,), "rear": (-1.0,), "both": (1.0, -1.0)}[arms.ends]
-        half = 0.5 * robot.outline.axle_distance
-        for end, angle in zip(ends, tried.flipper_angles, strict=True):
-            reach = 0.5 * arms.length
-            middle = np.array([end * (half + reach * np.cos(angle)), reach * np.sin(angle)])
-            turn = tried.chassis_angle + end * angle
-            frames.append(np.array([*placed(middle, chassis), turn]))
-    return np.array(frames)
+def _frames(run: Record, trials: list[Tried]) -> NDArray[np.float64]:
+    """[m, m, rad] Poses of the carriers at the ends of n trials, shape (n, k, 3)."""
+    chassis = np.array([(*tried.position, tried.chassis_angle) for tried in trials]).reshape(-1, 3)
+    # What runs round the carriers moves none of them.
+    last = {name: getattr(run, name)[-1:] for name in ("drive_positions", "shoe_poses")}
+    columns = {
+        "position": chassis[:, :2],
+        "chassis_angle": chassis[:, 2],
+        "flipper_angles": np.array([tried.flipper_angles for tried in trials]),
+        **{name: np.repeat(values, len(trials), axis=0) for name, values in last.items()},
+    }
+    arms = moved(run.scenario, columns)["arms"]
+    return np.concatenate([chassis[:, None], arms], axis=1)

@@ -100,7 +100,7 @@ class Tried:
         How it ended: cleared, tipped over, timed out while it was moving, or what was seen of the
         next stop, of which nothing was tried.
     jammed : bool
-        Whether it ended in a stop with ground between two bodies of a track again.
+        Whether it ended in a stop with ground jammed between two bodies of a track.
     duration : float
         [s] For how long it was tried, unless it ended before.
     position : tuple of float

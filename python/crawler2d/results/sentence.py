@@ -77,13 +77,13 @@ def sentence(found: Findings) -> str:
     facts = f"{_head(d)}: {said}" if said else _head(d)
     if d.passing:
         return f"{facts}. {_goes_on(d)}"
-    tried = "; ".join(filter(None, map(told, d.trials)))
+    tried = "; ".join(filter(None, (told(d, each) for each in d.trials)))
     return f"{facts}. Tried: {tried}" if tried else facts
 
 
-def told(tried: Tried) -> str:
+def told(d: Findings, tried: Tried) -> str:
     """Say what was changed in a trial and what came of it; nothing of a control."""
-    return f"{_CHANGED[tried.name]}: {_came(tried)}" if tried.name in _CHANGED else ""
+    return f"{_CHANGED[tried.name]}: {_came(d, tried)}" if tried.name in _CHANGED else ""
 
 
 def _head(d: Findings) -> str:
@@ -103,19 +103,19 @@ def _goes_on(d: Findings) -> str:
     left = next(tried for tried in d.trials if tried.freed)
     by_itself = left.name == "unchanged"
     how = "It goes on by itself" if by_itself else "With its track built anew it goes on"
-    return f"{how}: {_came(left)}"
+    return f"{how}: {_came(d, left)}"
 
 
-def _came(tried: Tried) -> str:
-    """Say what came of a trial."""
+def _came(d: Findings, tried: Tried) -> str:
+    """Say what came of a trial of a stop."""
     if tried.freed:
         said = f"free after {tried.time:.1f} s"
         if tried.outcome != Outcome.TIMED_OUT:
-            said += f", then {_end(tried)}"
+            said += f", then {_end(d, tried)}"
     elif tried.outcome == Outcome.TIMED_OUT:
         said = "still moving, but not free"
     else:
-        said = _end(tried)
+        said = _end(d, tried)
         if tried.distance >= _LEAST_DEPTH and tried.outcome in _STAYS:
             said += f" {1e3 * tried.distance:.0f} mm further on"
     if tried.starts > 1:
@@ -123,9 +123,9 @@ def _came(tried: Tried) -> str:
     return said
 
 
-def _end(tried: Tried) -> str:
+def _end(d: Findings, tried: Tried) -> str:
     if tried.jammed:
-        return "is jammed again"
+        return "is jammed again" if d.jammed else "is jammed"
     return _ENDS.get(tried.outcome) or _STAYS[tried.outcome]
 
 

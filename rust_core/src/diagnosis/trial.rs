@@ -111,7 +111,7 @@ pub struct Trial {
     pub time: f64,
     /// How it ended: an outcome without a stop, or what is seen of the stop.
     pub outcome: Outcome,
-    /// It ended in a stop with ground between two bodies of a track again.
+    /// It ended in a stop with ground jammed between two bodies of a track.
     pub jammed: bool,
     /// [s] For how long it was tried, unless it ended before.
     pub duration: f64,

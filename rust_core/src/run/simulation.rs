@@ -221,11 +221,12 @@ impl Simulation {
 
     /// Whether the outcome is certain, so that a run may end.
     pub fn is_over(&self) -> bool {
-        let criteria = &self.scenario.criteria;
-        let wait = f64::from(criteria.stationary_windows) * self.stop_window();
         // A robot that stands may still leave under a push that has just risen.
-        let may_leave = self.time < self.push.end() + wait;
-        self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave)
+        let may_leave = || {
+            let windows = f64::from(self.scenario.criteria.stationary_windows);
+            self.time < self.push.end() + windows * self.stop_window()
+        };
+        self.monitor.is_over() && (self.monitor.ended_as().is_some() || !may_leave())
     }
 
     /// What is seen of a stop, before anything is tried; `None` if the robot is not stopped.

@@ -155,28 +155,17 @@ impl<'a> Bench<'a> {
         }
         // A run that goes on passes through all the other starts.
         let most = if change == Change::Nothing { 1 } else { STARTS };
-        let Some(trial) = self.attempt(name, most, &|stop| start(stop, change))? else {
-            return Ok(false);
+        // A robot that cannot be built, or whose state becomes non-finite, tells nothing of the stop.
+        let made = match self.attempt(name, most, &|stop| start(stop, change)) {
+            Err(Error::Scenario(_) | Error::Simulation(_)) => None,
+            made => made?,
         };
-        self.made.push(trial);
-        Ok(trial.freed)
+        self.made.extend(made);
+        Ok(made.is_some_and(|trial| trial.freed))
     }
 
-    /// Tries a change from as many starts as it takes to decide, `most` of them if the robot rattles. A robot that
-    /// cannot be built, or whose state becomes non-finite, tells nothing of the stop.
+    /// Tries a change from as many starts as it takes to decide, `most` of them if the robot rattles.
     fn attempt(
-        &mut self,
-        name: &'static str,
-        most: u32,
-        start: &dyn Fn(&Simulation) -> Result<Option<Simulation>, Error>,
-    ) -> Result<Option<Trial>, Error> {
-        match self.tried_from_each(name, most, start) {
-            Err(Error::Scenario(_) | Error::Simulation(_)) => Ok(None),
-            made => made,
-        }
-    }
-
-    fn tried_from_each(
         &mut self,
         name: &'static str,
         most: u32,
