@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from benches.accuracy.cells import Cell, Setting
-from crawler2d.runs.batch import simulate_passed
-from crawler2d.runs.interrupted import BatchInterrupted
-from crawler2d.runs.recording import recording
-from crawler2d.runs.run import Run
+from crawler2d._core import Passed
+from crawler2d.errors import ScenarioError
+from crawler2d.results.row import Row as SweepRow
 from crawler2d.runs.threads import thread_count
-from crawler2d.sweeps.draws import Variation
-from crawler2d.sweeps.plan import Plan, plan_runs
+from crawler2d.sweeps.collect import RowsInterrupted, collect
+from crawler2d.sweeps.plan import plan_runs
+from crawler2d.variation.draws import Variation
 
 FAILED = "failed"
 """Outcome of a run without a result; its figures are 0."""
@@ -46,18 +46,23 @@ class Interrupted(KeyboardInterrupt):
         self.rows = rows
 
 
-def plans(cell: Cell, setting: Setting, count: int, seed: int) -> list[Plan]:
+def plans(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
     """Draw the first runs of a cell, as a sweep would."""
     base = cell.scenario(setting)
-    return plan_runs(base, (), Variation.of(base, None, ()), repeats=count, seed=seed)
+    variation, nothing = Variation.of(base, None, ()), Variation({})
+    (plan,) = plan_runs(base, (), variation, nothing, repeats=count, samples=1, seed=seed)
+    for each in plan.checked:
+        if isinstance(each, ScenarioError):
+            raise each
+    return [each for each in plan.checked if isinstance(each, Passed)]
 
 
-def simulate(plans: Sequence[Plan], repeats: Sequence[int], threads: int | None) -> list[Row]:
+def simulate(plans: Sequence[Passed], repeats: Sequence[int], threads: int | None) -> list[Row]:
     """Simulate some repeats.
 
     Parameters
     ----------
-    plans : sequence of Plan
+    plans : sequence of Passed
         All repeats of the cell.
     repeats : sequence of int
         Those to simulate.
@@ -75,27 +80,25 @@ def simulate(plans: Sequence[Plan], repeats: Sequence[int], threads: int | None)
         On Ctrl-C, with the rows of the runs that were finished.
     """
     chosen = [plans[repeat] for repeat in repeats]
-    interrupted = False
     begin = time.process_time()
     try:
-        runs = simulate_passed(
-            [plan.scenario for plan in chosen],
-            [plan.checked for plan in chosen],
-            (*recording(0.01, "summary"), []),
+        rows = collect(
+            chosen,
+            (),
+            store=None,
+            executor=None,
             threads=thread_count(threads),
             progress=False,
         )
-    except BatchInterrupted as stopped:
-        runs, interrupted = stopped.runs, True
-    spent = time.process_time() - begin
-    rows = _rows(repeats, runs, spent, interrupted=interrupted)
-    if interrupted:
-        raise Interrupted(rows)
-    return rows
+    except RowsInterrupted as stopped:
+        spent = time.process_time() - begin
+        kept = _rows(repeats, stopped.rows, spent, interrupted=True)
+        raise Interrupted(kept) from None
+    return _rows(repeats, rows, time.process_time() - begin, interrupted=False)
 
 
 def _rows(
-    repeats: Sequence[int], runs: Sequence[Run], spent: float, *, interrupted: bool
+    repeats: Sequence[int], runs: Sequence[SweepRow], spent: float, *, interrupted: bool
 ) -> list[Row]:
     """Keep what is needed; the processor time of the batch is shared out by wall time."""
     total = sum(run.wall_time for run in runs if run.error is None)
@@ -106,7 +109,7 @@ def _rows(
             rows.append(
                 Row(
                     repeat,
-                    str(run.outcome),
+                    run.outcome,
                     metrics["final_x"],
                     metrics["final_y"],
                     metrics["final_angle"],

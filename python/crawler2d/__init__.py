@@ -11,6 +11,7 @@ Units are SI, angles radians, x forward, y up.
 """
 
 from crawler2d._core import build_info
+from crawler2d.common.bodies import BodyKind, Lane
 from crawler2d.errors import (
     Crawler2dError,
     InternalError,
@@ -19,6 +20,7 @@ from crawler2d.errors import (
     ScenarioError,
     ScenarioWarning,
     SimulationDiverged,
+    StoreError,
 )
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.gaits import Climb, Hold
@@ -37,8 +39,7 @@ from crawler2d.parameters.track import (
     RoundWheel,
     SegmentalTrack,
 )
-from crawler2d.presets import robots, terrains
-from crawler2d.results.bodies import BodyKind, Lane
+from crawler2d.presets import robots, terrains, unknowns
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -47,10 +48,13 @@ from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
 from crawler2d.sweeps.compare import compare
-from crawler2d.sweeps.draws import scaled, uniform, uniform_int
 from crawler2d.sweeps.rates import rate
 from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
+from crawler2d.sweeps.store import join_stores
 from crawler2d.sweeps.sweep import sweep
+from crawler2d.sweeps.table import table
+from crawler2d.variation import variability
+from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
 __all__ = [
     "BatchInterrupted",
@@ -88,20 +92,26 @@ __all__ = [
     "SimulationDiverged",
     "Solver",
     "Start",
+    "StoreError",
     "TrackOutline",
     "build_info",
     "compare",
+    "join_stores",
     "newcombe",
     "newcombe_paired",
     "rate",
     "robots",
     "scaled",
+    "shifted",
     "simulate",
     "simulate_many",
     "sweep",
+    "table",
     "terrains",
     "uniform",
     "uniform_int",
+    "unknowns",
+    "variability",
     "wilson",
 ]
 

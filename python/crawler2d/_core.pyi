@@ -3,6 +3,11 @@
 from collections.abc import Callable
 from typing import Any, final
 
+import numpy as np
+from numpy.typing import NDArray
+
+from crawler2d.errors import ScenarioError
+
 __all__ = [
     "Passed",
     "Simulation",
@@ -19,6 +24,7 @@ __all__ = [
     "simulate_many",
     "trials",
     "validate",
+    "warn",
     "what_if",
     "wheels",
 ]
@@ -28,6 +34,11 @@ class Passed:
     def __new__(cls, text: str, like: Passed | None = None) -> Passed: ...
     @property
     def identity(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    def varied(
+        self, fields: list[tuple[str, bool]], rows: NDArray[np.float64]
+    ) -> list[Passed | ScenarioError]: ...
 
 @final
 class Simulation:
@@ -77,10 +88,11 @@ def simulate_many(
     sample_interval: float,
     record: str,
     trials: list[str],
-    progress: Callable[[int, int], object] | None,
-) -> tuple[list[dict[str, Any] | None], bool]: ...
+    take: Callable[[list[tuple[int, dict[str, Any]]]], object],
+) -> bool: ...
 def trials(text: str, at: float, names: list[str]) -> list[dict[str, Any]]: ...
 def validate(text: str) -> None: ...
+def warn(scenarios: list[Passed]) -> None: ...
 def what_if(
     text: str, at: float, variant: str, push: tuple[float, float]
 ) -> dict[str, Any] | None: ...

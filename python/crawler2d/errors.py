@@ -17,6 +17,7 @@ __all__ = [
     "ScenarioError",
     "ScenarioWarning",
     "SimulationDiverged",
+    "StoreError",
 ]
 
 
@@ -167,6 +168,20 @@ class LimitError(Crawler2dError, ValueError):
         super().__init__(message, needed, left)
         self.needed = needed
         self.left = left
+
+    def __str__(self) -> str:
+        """Return the message."""
+        return str(self.args[0])
+
+
+class StoreError(Crawler2dError, OSError):
+    """A store of runs cannot be read or written; the runs that it holds are kept.
+
+    Parameters
+    ----------
+    message : str
+        Which file, what is wrong, and what helps.
+    """
 
     def __str__(self) -> str:
         """Return the message."""

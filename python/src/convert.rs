@@ -50,8 +50,8 @@ pub(crate) fn change(name: &str) -> PyResult<Change> {
     })
 }
 
-/// A finished run.
-pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
+/// What the tables of sweeps hold of a finished run.
+pub(crate) fn row<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let metrics = PyDict::new(py);
     for (name, value) in run.metrics.entries() {
@@ -61,6 +61,13 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let why = run.diagnosis.as_ref();
     result.set_item("diagnosis", why.map(|d| diagnosis::of(py, d)).transpose()?)?;
     result.set_item("metrics", metrics)?;
+    result.set_item("wall_time", run.wall_time)?;
+    Ok(result)
+}
+
+/// A finished run.
+pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
+    let result = row(py, &run)?;
     result.set_item(
         "trace",
         trace(py, run.trace, (run.drives, run.shoes, run.flippers))?,
@@ -68,7 +75,6 @@ pub(crate) fn run(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("contacts", contacts(py, run.contacts)?)?;
     result.set_item("edges", edges(py, &run.edges)?)?;
     result.set_item("events", events(py, &run.events)?)?;
-    result.set_item("wall_time", run.wall_time)?;
     Ok(result)
 }
 

@@ -13,9 +13,7 @@ use pyo3::prelude::*;
 /// The compiled module; its signatures are in `python/crawler2d/_core.pyi`.
 #[pymodule]
 mod _core {
-    use std::sync::Mutex;
-
-    use crawler2d_core::{Cancel, Checked, Error, Progress, Record, Run};
+    use crawler2d_core::{Cancel, Checked, Finished, Progress, Record};
     use pyo3::prelude::*;
     use pyo3::pybacked::PyBackedStr;
     use pyo3::types::{PyDict, PyList};
@@ -101,52 +99,71 @@ mod _core {
     ) -> PyResult<Bound<'py, PyDict>> {
         let record = convert::record(sample_interval, record, &trials)?;
         let checked = built(py, text, Checked::from_json)?;
-        let (results, interrupted) = run_all(py, vec![checked], 1, record, None)?;
+        errors::warn(py, checked.doubts())?;
+        let mut result = None;
+        let interrupted = run_all(py, vec![checked], 1, record, |_, finished| {
+            result = finished.into_iter().next().or(result.take());
+            Ok(())
+        })?;
         if let Some(signal) = interrupted {
             return Err(signal);
         }
-        match results.into_iter().next().flatten() {
-            Some(Ok(run)) => convert::run(py, run),
-            Some(Err(error)) => Err(errors::to_python(error)),
+        match result {
+            Some((_, Ok(run))) => convert::run(py, run),
+            Some((_, Err(error))) => Err(errors::to_python(error)),
             None => Err(errors::internal("the run ended without a result")),
         }
     }
 
-    /// Simulates many scenarios on several threads; results in order, and an error spoils only its own run.
+    /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
     #[pyfunction]
-    fn simulate_many<'py>(
-        py: Python<'py>,
-        scenarios: Vec<PyRef<'py, Passed>>,
+    fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, Passed>>) -> PyResult<()> {
+        errors::warn(py, scenarios.iter().flat_map(|passed| passed.checked.doubts()))
+    }
+
+    /// Simulates many scenarios on several threads; an error spoils only its own run.
+    ///
+    /// `take` is called with what has just been finished, pairs of place and result, about 50 times per second. The
+    /// record "row" has what the tables of sweeps hold. Returns whether Ctrl-C ended the batch.
+    #[pyfunction]
+    fn simulate_many(
+        py: Python<'_>,
+        scenarios: Vec<PyRef<'_, Passed>>,
         threads: usize,
         sample_interval: f64,
         record: &str,
         trials: Vec<String>,
-        progress: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyList>, bool)> {
+        take: Py<PyAny>,
+    ) -> PyResult<bool> {
+        let with_tables = record != "row";
+        let record = if with_tables { record } else { "summary" };
         let record = convert::record(sample_interval, record, &trials)?;
         let scenarios = scenarios
             .iter()
             .map(|passed| passed.checked.clone())
             .collect();
-        let (results, interrupted) = run_all(py, scenarios, threads, record, progress)?;
-        let list = PyList::empty(py);
-        for result in results {
-            let converted = match result {
-                None => {
-                    list.append(py.None())?;
-                    continue;
-                }
-                Some(Ok(run)) => convert::run(py, run),
-                Some(Err(error)) => Err(errors::to_python(error)),
-            };
-            list.append(converted.or_else(|error| convert::failure(py, error))?)?;
-        }
+        let interrupted = run_all(py, scenarios, threads, record, |py, finished| {
+            if finished.is_empty() {
+                return Ok(());
+            }
+            let list = PyList::empty(py);
+            for (place, result) in finished {
+                let converted = match result {
+                    Ok(run) if with_tables => convert::run(py, run),
+                    Ok(run) => convert::row(py, &run),
+                    Err(error) => Err(errors::to_python(error)),
+                };
+                let kept = converted.or_else(|error| convert::failure(py, error))?;
+                list.append((place, kept))?;
+            }
+            take.call1(py, (list,)).map(|_| ())
+        })?;
         match interrupted {
             // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {
                 Err(signal)
             }
-            signal => Ok((list, signal.is_some())),
+            signal => Ok(signal.is_some()),
         }
     }
 
@@ -248,47 +265,34 @@ mod _core {
         convert::build_info(py)
     }
 
-    type Results = Vec<Option<Result<Run, Error>>>;
-
-    /// Warns of doubts, then runs everything detached from the interpreter.
+    /// Runs everything detached from the interpreter, and hands over what is finished.
     ///
-    /// The second item is what interrupted the batch: a signal or an exception of the callback.
+    /// Returns what interrupted the batch: a signal or an exception of `take`.
     fn run_all(
         py: Python<'_>,
         scenarios: Vec<Checked>,
         threads: usize,
         record: Record,
-        progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<(Results, Option<PyErr>)> {
-        errors::warn(py, scenarios.iter().flat_map(Checked::doubts))?;
-        let progress = progress.map(Bound::unbind);
-        let total = scenarios.len();
-        let interrupted: Mutex<Option<PyErr>> = Mutex::new(None);
-        let mut reported = usize::MAX;
-        let results = py.detach(|| {
+        mut take: impl Send + FnMut(Python<'_>, Vec<Finished>) -> PyResult<()>,
+    ) -> PyResult<Option<PyErr>> {
+        let mut interrupted: Option<PyErr> = None;
+        py.detach(|| {
             errors::guarded(|| {
-                let results = crawler2d_core::simulate_many(scenarios, threads, record, |done| {
-                    let stop = Python::attach(|py| {
-                        py.check_signals()?;
-                        match &progress {
-                            Some(callback) if done != reported => {
-                                reported = done;
-                                callback.call1(py, (done, total)).map(|_| ())
-                            }
-                            _ => Ok(()),
-                        }
+                crawler2d_core::simulate_many(scenarios, threads, record, |finished| {
+                    let taken = Python::attach(|py| {
+                        // What is finished is kept even if this is the moment of Ctrl-C.
+                        let signal = py.check_signals();
+                        take(py, finished).and(signal)
                     });
-                    let Err(error) = stop else {
+                    let Err(error) = taken else {
                         return Progress::Continue;
                     };
-                    if let Ok(mut first) = interrupted.lock() {
-                        first.get_or_insert(error);
-                    }
+                    interrupted.get_or_insert(error);
                     Progress::Stop
                 })?;
-                Ok(results)
+                Ok(())
             })
         })?;
-        Ok((results, interrupted.into_inner().unwrap_or_default()))
+        Ok(interrupted)
     }
 }

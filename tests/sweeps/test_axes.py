@@ -96,8 +96,8 @@ def test_the_lanes_of_a_terrain_are_swept_together() -> None:
     found = quiet(lanes, {sides: np.repeat([[0.02], [0.03]], 3, axis=1)})
     assert found["outcome"].sizes == {"height": 2, "repeat": 2}
     assert found["terrain_left_height"].values.tolist() == [0.02, 0.03]
-    assert "drawn_friction" in found
-    assert found["drawn_friction"].isnull().all()
+    drawn = [json.loads(text)["terrain"] for text in found["scenario"].values[:, 0]]
+    assert found["drawn_friction"].values[:, 0].tolist() == [t["left"]["friction"] for t in drawn]
 
 
 def test_paths_that_end_alike_are_named_in_full() -> None:

@@ -9,10 +9,10 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.sweeps.compare import compare
-from crawler2d.sweeps.draws import uniform
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
 from crawler2d.sweeps.sweep import sweep
+from crawler2d.variation.distributions import uniform
 from tests.shared import ROBOT
 
 # At this friction some of the draws get over the step and some do not.
@@ -59,7 +59,7 @@ def test_a_pair_is_one_repeat_of_both_models(found: xr.Dataset) -> None:
 
 
 def test_rates_and_differences_are_those_of_the_pairs(found: xr.Dataset) -> None:
-    rates = rate(found)
+    rates = rates_of(found)
     for name in list(MODELS)[1:]:
         row = found.sel(model=name)
         assert (row["rate"].item(), row["rate_low"].item(), row["rate_high"].item()) == tuple(

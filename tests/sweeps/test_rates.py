@@ -34,7 +34,13 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
         expected = c2d.wilson(successes, count)
         assert (cell.rate, cell.low, cell.high) == pytest.approx(tuple(expected), nan_ok=True)
     assert found["height"].attrs == {"units": "m"}
-    assert found.attrs == {"outcome": "cleared", "confidence": 0.95}
+    assert found.attrs == {
+        "outcome": "cleared",
+        "confidence_level": 0.95,
+        "interval": "Wilson",
+        "varied": "",
+        "unknown": "",
+    }
     spoken = {"rate": "rate of cleared", "low": "lower bound", "high": "upper bound"}
     for name, long_name in {**spoken, "count": "number of runs"}.items():
         assert found[name].attrs == {"units": "1", "long_name": long_name}

@@ -12,8 +12,9 @@ import pytest
 import crawler2d as c2d
 from crawler2d.common.units import METRICS
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs import batch
-from crawler2d.sweeps.draws import scaled, uniform
+from crawler2d.results.row import Row
+from crawler2d.sweeps import collect as collecting
+from crawler2d.variation.distributions import scaled, uniform
 from tests.shared import ROBOT
 from tests.sweeps.small import BASE, BRIEF, MODELS, quiet, refusal
 
@@ -50,7 +51,7 @@ def test_a_draw_that_breaks_a_rule_names_cell_and_repeat() -> None:
     error = refusal(BASE, {"robot.track": MODELS}, vary=vary)
     assert error.path == "cell[track=belt, repeat=0].drive.speed"
     error = refusal(BASE, {"robot.track": MODELS}, vary={"robot.track.count": scaled(1.0, 1.0)})
-    assert error.path == "cell[track=belt, repeat=0].robot.track.count"
+    assert error.path == "cell[track=belt].robot.track.count"
 
 
 @pytest.mark.parametrize(
@@ -124,14 +125,14 @@ def test_a_sweep_of_refused_cells_alone_has_no_metrics() -> None:
 def diverging(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
     """Let one run of every batch diverge."""
 
-    def simulate_passed(*given: Any, **options: Any) -> list[c2d.Run]:
-        runs = batch.simulate_passed(*given, **options)
+    def collect(*given: Any, **options: Any) -> list[Row]:
+        rows = collecting.collect(*given, **options)
         error = c2d.SimulationDiverged("chassis is not finite", step=7, body="chassis")
-        runs[index] = c2d.Run(runs[index].scenario, {}, error)
-        return runs
+        rows[index] = Row.of_error(error, rows[index].identity, rows[index].scenario)
+        return rows
 
     # By the table of modules: the package may have a function of that name.
-    monkeypatch.setattr(sys.modules["crawler2d.sweeps.sweep"], "simulate_passed", simulate_passed)
+    monkeypatch.setattr(sys.modules["crawler2d.sweeps.sweep"], "collect", collect)
 
 
 def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) -> None:

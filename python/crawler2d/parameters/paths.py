@@ -33,7 +33,7 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
     if not isinstance(path, str):
         raise ScenarioError("path", path, "must be a string")
     copy: P = _replaced(parameters, _steps(path), value, path)
-    for other in _excluded(copy, path):
+    for other in excluded(copy, path):
         if value is not None and other not in given:
             copy = _replaced(copy, _steps(other), None, other)
     return copy
@@ -48,20 +48,47 @@ def read_path(parameters: Parameters, path: str) -> Any:
     return node
 
 
+def expand_path(parameters: Parameters, path: str) -> list[str]:
+    """List the paths that one with ``[*]`` stands for: every element there.
+
+    Examples
+    --------
+    >>> from crawler2d.parameters.terrain import Points
+    >>> expand_path(Points([(-1, 0), (1, 0)], goal=0.0), "points[*][1]")
+    ['points[0][1]', 'points[1][1]']
+    """
+    before, star, after = path.partition("[*]")
+    if not star:
+        return [path]
+    held = read_path(parameters, before)
+    if not isinstance(held, tuple):
+        raise ScenarioError(path, held, f"must be a path of elements: {before} has none")
+    return [
+        each
+        for index in range(len(held))
+        for each in expand_path(parameters, f"{before}[{index}]{after}")
+    ]
+
+
+def json_pointer(path: str) -> str:
+    """Write a path as a JSON pointer: ``/terrain/points/3/1``."""
+    return "".join(f"/{step}" for step in _steps(path))
+
+
+def excluded(parameters: Parameters, path: str) -> list[str]:
+    """List the paths of the fields that exclude the one at a path."""
+    parent, _, name = path.rpartition(".")
+    either = type(read_path(parameters, parent) if parent else parameters).either
+    others = [other for other in either if other != name] if name in either else []
+    return [f"{path.removesuffix(name)}{other}" for other in others]
+
+
 def is_whole(parameters: Parameters, path: str) -> bool:
     """Whether the field at a path takes only whole numbers."""
     parent, _, name = path.rpartition(".")
     holder = read_path(parameters, parent) if parent else parameters
     kinds = alternatives(field_hints(type(holder)).get(name))
     return int in kinds and float not in kinds
-
-
-def _excluded(parameters: Parameters, path: str) -> list[str]:
-    """List the paths of the fields that exclude the one at a path."""
-    parent, _, name = path.rpartition(".")
-    either = type(read_path(parameters, parent) if parent else parameters).either
-    others = [other for other in either if other != name] if name in either else []
-    return [f"{path.removesuffix(name)}{other}" for other in others]
 
 
 def _steps(path: str) -> list[str | int]:

@@ -161,8 +161,16 @@ def simulate_passed(
 ) -> list[Run]:
     """Simulate the valid scenarios; the others become runs with their errors."""
     passed = [scenario for scenario in checked if isinstance(scenario, _core.Passed)]
-    with reporter(progress, len(passed)) as callback:
-        results, interrupted = _core.simulate_many(passed, threads, *recorded, callback)
+    results: list[dict[str, Any] | None] = [None] * len(passed)
+    _core.warn(passed)
+    with reporter(progress, len(passed)) as report:
+
+        def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
+            for place, result in finished:
+                results[place] = result
+            report(len(finished))
+
+        interrupted = _core.simulate_many(passed, threads, *recorded, take)
     rest = iter(results)
     runs = [
         _run(scenario, next(rest) if isinstance(outcome, _core.Passed) else outcome)

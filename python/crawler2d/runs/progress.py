@@ -18,15 +18,20 @@ _BETWEEN_LINES = 5.0
 
 
 @contextlib.contextmanager
-def reporter(progress: bool | Progress | None, total: int) -> Iterator[Progress | None]:
-    """Turn the argument `progress` into a callback for one batch.
+def reporter(
+    progress: bool | Progress | None, total: int, done: int = 0
+) -> Iterator[Callable[[int], None]]:
+    """Turn the argument `progress` into a function that is told how many runs have been finished.
 
     Parameters
     ----------
     progress : bool, callable or None
-        True shows a bar or a line, False and None nothing; a callable is used as it is.
+        True shows a bar or a line, False and None nothing; a callable is given the number of
+        finished runs and of all runs.
     total : int
         Number of runs.
+    done : int
+        How many of them are finished at the beginning.
 
     Raises
     ------
@@ -34,14 +39,26 @@ def reporter(progress: bool | Progress | None, total: int) -> Iterator[Progress 
         If `progress` is something else.
     """
     if progress is None or progress is False:
-        yield None
+        yield lambda _more: None
     elif callable(progress):
-        yield progress
+        yield _counted(progress, done, total)
     elif progress is True:
-        with _bar(total) as callback:
-            yield callback
+        with _bar(total) as shown:
+            yield _counted(shown, done, total)
     else:
         raise ScenarioError("progress", progress, "must be True, False or a callable")
+
+
+def _counted(progress: Progress, done: int, total: int) -> Callable[[int], None]:
+    finished = done
+    progress(finished, total)
+
+    def add(more: int) -> None:
+        nonlocal finished
+        finished += more
+        progress(finished, total)
+
+    return add
 
 
 @contextlib.contextmanager

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import rates_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -106,7 +106,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
     obstacle, robot : str
         Names of the obstacle and of the robot.
     """
-    rates = rate(table)
+    rates = rates_of(table)
     found = []
     for model in table["track"].to_numpy():
         for height in table["height"].to_numpy():
@@ -134,7 +134,7 @@ def cells(table: xarray.Dataset, obstacle: str, robot: str = "preset") -> list[C
 
 def climbs(table: xarray.Dataset, obstacle: str) -> list[Climb]:
     """Summarise a sweep over track and height, one row per model."""
-    often = rate(table)["rate"] >= 0.5
+    often = rates_of(table)["rate"] >= 0.5
     heights = table["height"].to_numpy()
     found = []
     for model in table["track"].to_numpy():

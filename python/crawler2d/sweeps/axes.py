@@ -24,6 +24,7 @@ __all__ = ["COLUMNS", "Axis", "coordinates", "field_attributes", "read_axes", "s
 
 COLUMNS = (
     *(
+        "sample",
         "repeat",
         "seed",
         "outcome",
@@ -137,7 +138,7 @@ def _last(path: str) -> str:
 
 def _name(path: str) -> str:
     """Write a path as an identifier."""
-    return re.sub(r"\[(\d+)\]", r"_\1", path).replace(".", "_")
+    return re.sub(r"\[(\d+)\]", r"_\1", path.replace("[*]", "")).replace(".", "_")
 
 
 def _paths(key: object) -> tuple[str, ...]:

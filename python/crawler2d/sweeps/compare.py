@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,11 +13,11 @@ from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.plain import Parameters
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.outcome import Outcome
 from crawler2d.runs.progress import Progress
 from crawler2d.sweeps.axes import Axis
-from crawler2d.sweeps.draws import Distribution
 from crawler2d.sweeps.labels import Label, labelled
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
 from crawler2d.sweeps.sweep import tabulate
 
@@ -38,8 +40,10 @@ def compare(
     *,
     repeats: int = 20,
     seed: int = 0,
-    vary: Mapping[str, Distribution] | None = None,
+    vary: Mapping[str, Any] | None = None,
     reference: Label | None = None,
+    store: str | PathLike[str] | None = None,
+    executor: Executor | None = None,
     threads: int | None = None,
     progress: bool | Progress | None = True,
 ) -> xarray.Dataset:
@@ -56,7 +60,7 @@ def compare(
         ``{}`` leaves the scenario unchanged.
     repeats : int
         Runs per model, 1 to 1,000,000.
-    seed, vary, threads, progress
+    seed, vary, store, executor, threads, progress
         See `sweep`.
     reference : str, optional
         Label of the model that the others are compared with; None takes the first.
@@ -121,14 +125,18 @@ def compare(
         repeats=repeats,
         seed=seed,
         vary=vary,
+        unknown=None,
+        samples=1,
         trials=None,
+        store=store,
+        executor=executor,
         wall_time=False,
         threads=threads,
         progress=progress,
         on_error="raise",
     )
     base = 0 if reference is None else labels.index(reference)
-    rates = rate(table).rename(low="rate_low", high="rate_high").drop_vars("count")
+    rates = rates_of(table).rename(low="rate_low", high="rate_high").drop_vars("count")
     rows = [_against(table, index, base) for index in range(len(labels))]
     columns = {name: ("model", [row[name] for row in rows], _attributes(name)) for name in rows[0]}
     return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
@@ -148,10 +156,11 @@ def _fields(model: object, label: Label) -> Mapping[str, Any]:
 
 def _against(table: xarray.Dataset, model: int, base: int) -> dict[str, float]:
     """Compare one model with the reference."""
-    cleared = table["outcome"].to_numpy() == "cleared"
-    ours, theirs = cleared[model], cleared[base]
-    both, only_ours = _count(ours & theirs), _count(ours & ~theirs)
-    only_theirs, neither = _count(~ours & theirs), _count(~ours & ~theirs)
+    outcomes = table["outcome"].to_numpy()
+    made = np.isin(outcomes[[model, base]], [str(each) for each in Outcome]).all(axis=0)
+    ours, theirs = outcomes[model] == "cleared", outcomes[base] == "cleared"
+    both, only_ours = _count(made & ours & theirs), _count(made & ours & ~theirs)
+    only_theirs, neither = _count(made & ~ours & theirs), _count(made & ~ours & ~theirs)
     found: dict[str, float] = {
         "both": both,
         "only_model": only_ours,

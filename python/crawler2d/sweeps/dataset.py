@@ -1,4 +1,4 @@
-"""The runs of a sweep as an xarray dataset, by cell and repeat."""
+"""Rows as an xarray data set: by cell, sample and repeat, or one after another."""
 
 from __future__ import annotations
 
@@ -10,84 +10,57 @@ import numpy as np
 
 from crawler2d.common.extras import extra
 from crawler2d.common.units import METRICS
-from crawler2d.errors import ScenarioError, SimulationDiverged
-from crawler2d.runs.run import Run
-from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names
-from crawler2d.sweeps.draws import Distribution
-from crawler2d.sweeps.plan import Plan
+from crawler2d.results.row import Row
 from crawler2d.sweeps.stops import stop_columns
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["NO_RESULT", "to_table"]
+__all__ = ["Column", "dataset_of", "row_columns"]
 
-NO_RESULT = ("diverged", "refused", "failed")
-"""Outcomes of runs without a result: non-finite state, broken rule, any other error."""
-
-_Variable = tuple[list[str], "NDArray[Any]", dict[str, str]]
+Column = tuple["NDArray[Any]", dict[str, str]]
+"""Values of all runs, shape (n,), and attributes."""
 
 
-def to_table(
-    axes: Sequence[Axis],
-    distributions: Mapping[str, Distribution],
-    plans: Sequence[Plan],
-    runs: Sequence[Run],
-    *,
-    seed: int,
-    trials: Sequence[str],
-    with_times: bool,
-) -> xarray.Dataset:
-    """Arrange the runs, which are in the order of their plans, in a table; see `sweep`.
+def row_columns(
+    rows: Sequence[Row | None], *, trials: Sequence[str], with_times: bool
+) -> dict[str, Column]:
+    """Write rows as columns by name; a row that is None, a run that was not made, is empty.
 
-    Every column has every dimension and depends on its own run only, so that tables can be joined.
+    Every value depends on its own run only, so that tables can be joined.
     """
-    xr = extra("xarray", "analysis")
-    cells = [axis.name for axis in axes]
-    sizes = [len(axis.values) for axis in axes]
-    repeats = len(runs) // math.prod(sizes)
-
-    def by_run(values: list[Any], kind: type, **attributes: str) -> _Variable:
-        return [*cells, "repeat"], np.array(values, kind).reshape(*sizes, repeats), attributes
-
-    variables = {"outcome": by_run([_outcome(run) for run in runs], str)}
-    why = [run.diagnosis for run in runs]
+    columns: dict[str, Column] = {}
+    columns["outcome"] = (np.array(["" if row is None else row.outcome for row in rows], str), {})
+    why = [None if row is None else row.why() for row in rows]
     for name, (kind, unit, values) in stop_columns(why, trials).items():
-        attributes = {"units": unit} if unit else {}
-        variables[name] = by_run(values, kind, **attributes)
-    for name in next((run.metrics for run in runs if run.error is None), {}):
-        figures = [run.metrics.get(name, math.nan) for run in runs]
-        variables[name] = by_run(figures, float, units=METRICS.get(name, ""))
-    for path, name in short_names(list(distributions)).items():
-        drawn = [plan.drawn.get(path, math.nan) for plan in plans]
-        variables[f"drawn_{name}"] = by_run(drawn, float, **field_attributes([path]))
+        columns[name] = (np.array(values, kind), {"units": unit} if unit else {})
+    for name in next((row.metrics for row in rows if row is not None and row.metrics), {}):
+        figures = [math.nan if row is None else row.metrics.get(name, math.nan) for row in rows]
+        columns[name] = (np.array(figures, float), {"units": METRICS.get(name, "")})
     if with_times:
-        times = [run.wall_time if run.error is None else math.nan for run in runs]
-        variables["wall_time"] = by_run(times, float, units="s")
-    variables["seed"] = by_run([seed] * len(runs), np.int64 if seed < 2**63 else np.uint64)
+        times = [math.nan if row is None else row.wall_time for row in rows]
+        columns["wall_time"] = (np.array(times, float), {"units": "s"})
     # Python strings: in a NumPy array of strings, each would take the space of the longest.
-    errors = [plan.refused or run.error or "" for plan, run in zip(plans, runs, strict=True)]
-    variables["error"] = by_run([str(error) for error in errors], object)
-    texts = ["" if plan.refused else plan.scenario.to_json() for plan in plans]
-    variables["identity"] = by_run([plan.identity for plan in plans], object)
-    variables["scenario"] = by_run(texts, object)
-    dataset: xarray.Dataset = xr.Dataset(
-        variables, coords={**coordinates(axes), "repeat": np.arange(repeats)}
-    )
+    texts = {
+        "error": ["" if row is None else str(row.error or "") for row in rows],
+        "identity": ["" if row is None else row.identity for row in rows],
+        "scenario": ["" if row is None else row.scenario for row in rows],
+    }
+    return columns | {name: (np.array(values, object), {}) for name, values in texts.items()}
+
+
+def dataset_of(
+    columns: Mapping[str, Column], dims: Mapping[str, int], coordinates: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Give columns their dimensions, the last of which changes fastest."""
+    xr = extra("xarray", "analysis")
+    names, shape = list(dims), list(dims.values())
+    variables = {
+        name: (names, values.reshape(shape), attributes)
+        for name, (values, attributes) in columns.items()
+    }
+    dataset: xarray.Dataset = xr.Dataset(variables, coords=coordinates)
     for key, variable in dataset.variables.items():
         variable.attrs.setdefault("long_name", str(key).replace("_", " "))
     return dataset
-
-
-def _outcome(run: Run) -> str:
-    diverged, refused, failed = NO_RESULT
-    match run.error:
-        case None:
-            return str(run.outcome)
-        case SimulationDiverged():
-            return diverged
-        case ScenarioError():
-            return refused
-        case _:  # out of memory, or a fault of the program
-            return failed

@@ -1,98 +1,170 @@
-"""The scenario of every run of a sweep."""
+"""The scenario of every run of a sweep: cell by cell, sample by sample, repeat by repeat."""
 
 from __future__ import annotations
 
 import contextlib
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.paths import excluded, read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.sweeps.axes import Axis
-from crawler2d.sweeps.draws import Variation, uniform_numbers
+from crawler2d.variation.draws import Drawn, Variation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.sweeps.axes import Axis
 
 __all__ = ["Plan", "plan_runs"]
+
+Checked = _core.Passed | ScenarioError
+"""A scenario that can be run, or the rule that it breaks."""
+
+_UNKNOWN = "unknown "
+"""What makes the numbers of the unknowns others than those of the repeats."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A planned run."""
+    """The planned runs of one cell with one sample of the unknowns.
 
-    place: str
-    """Cell and repeat, for messages."""
-    scenario: Scenario
-    drawn: Mapping[str, float]
-    """By path."""
-    checked: _core.Passed | ScenarioError
+    Attributes
+    ----------
+    labels : tuple of str
+        Cell and sample, for messages.
+    checked : list of Checked
+        One a repeat.
+    drawn : mapping of str to ndarray, shape (repeats,)
+        By path of `vary`; empty if the cell breaks a rule.
+    sampled : mapping of str to float
+        By path of `unknown`.
+    """
 
-    @property
-    def refused(self) -> ScenarioError | None:
-        """The error if the scenario breaks a rule."""
-        return self.checked if isinstance(self.checked, ScenarioError) else None
+    labels: tuple[str, ...]
+    checked: list[Checked]
+    drawn: Mapping[str, NDArray[np.float64]]
+    sampled: Mapping[str, float]
 
-    @property
-    def identity(self) -> str:
-        """Identity of its scenario; empty if that breaks a rule."""
-        return "" if isinstance(self.checked, ScenarioError) else self.checked.identity
+    def place(self, repeat: int) -> str:
+        """Name one of its runs, for messages."""
+        return _place([*self.labels, f"repeat={repeat}"])
 
 
 def plan_runs(
     base: Scenario,
     axes: Sequence[Axis],
     variation: Variation,
+    unknowns: Variation,
     *,
     repeats: int,
+    samples: int,
     seed: int,
     like: _core.Passed | None = None,
 ) -> list[Plan]:
-    """Make the scenario of every run: cell by cell, and the repeats of a cell in order.
+    """Make the scenario of every run: cell by cell, the samples of a cell in order.
 
     What a cell has in common with the one before it, the first with `like`, is not built again.
 
     Raises
     ------
     ScenarioError
-        If a cell lacks a path; a scenario that breaks a rule gets a plan with its error.
+        If a cell lacks a path; a scenario that breaks a rule stands in its plan as its error.
     """
-    streams = {path: uniform_numbers(path, seed, repeats) for path in variation.distributions}
+    numbers = variation.numbers(seed, repeats)
+    outer = unknowns.numbers(seed, samples, kind=_UNKNOWN)
     plans: list[Plan] = []
     last = like
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
-        cell_place = f"cell[{', '.join(names)}]"
-        with _named(cell_place):
-            cell = base.replace({path: v for _, values in points for path, v in values.items()})
-        whole = _checked(cell, cell_place, last)
-        for repeat in range(repeats):
-            place = f"cell[{', '.join([*names, f'repeat={repeat}'])}]"
-            if isinstance(whole, ScenarioError):
-                plans.append(Plan(place, cell, {}, whole))
+        with _named(_place(names)):
+            fields = {path: v for _, values in points for path, v in values.items()}
+            cell = base.replace(fields)
+            whole = _opened(cell, _place(names), last)
+            if isinstance(whole, _core.Passed):
+                last = whole
+            sampled = unknowns.draw(cell, outer) if unknowns.distributions else None
+            wholes = _varied(cell, whole, sampled, samples)
+        for sample, world in enumerate(wholes):
+            labels = (*names, f"sample={sample}") if sampled else tuple(names)
+            place = _place(labels)
+            own = {path: float(v[sample]) for path, v in sampled.values.items()} if sampled else {}
+            shown = {path: float(v[sample]) for path, v in sampled.shown.items()} if sampled else {}
+            if isinstance(world, ScenarioError):
+                refused = world if world is whole else _moved(world, place)
+                plans.append(Plan(labels, [refused] * repeats, {}, shown))
                 continue
-            last = whole
             with _named(place):
-                numbers = {path: float(stream[repeat]) for path, stream in streams.items()}
-                drawn = variation.draw(cell, numbers)
-                variant = cell.replace(drawn)
-            checked = _checked(variant, place, whole)
-            if isinstance(checked, ScenarioError) and variation.is_default:
-                drawn = _legal(cell, drawn, whole)
-                variant = cell.replace(drawn)
-                checked = _checked(variant, place, whole)
-            plans.append(Plan(place, variant, drawn, checked))
+                drawn = variation.draw(cell, numbers, own)
+                runs = _varied(cell, world, drawn, repeats)
+                kept = _dropped(cell, world, drawn, runs, own=own, gives_way=variation.gives_way)
+            plan = Plan(labels, runs, kept, shown)
+            for repeat, run in enumerate(runs):
+                if isinstance(run, ScenarioError):
+                    runs[repeat] = _moved(run, plan.place(repeat))
+            plans.append(plan)
     return plans
 
 
-def _legal(cell: Scenario, drawn: Mapping[str, float], whole: _core.Passed) -> dict[str, float]:
-    """Drop the draws that break a rule; the cell's own values are known to be valid."""
-    kept: dict[str, float] = {}
-    for path, value in drawn.items():
-        checked = _checked(cell.replace({**kept, path: value}), path, whole)
-        is_broken = isinstance(checked, ScenarioError)
-        kept[path] = read_path(cell, path) if is_broken else value
-    return kept
+def _varied(cell: Scenario, whole: Checked, drawn: Drawn | None, count: int) -> list[Checked]:
+    """Set what was drawn in a checked scenario; one that breaks a rule is an error."""
+    if drawn is None or not drawn.values or isinstance(whole, ScenarioError):
+        return [whole] * count
+    if any(excluded(cell, path) for path in drawn.values):
+        # The fields that exclude these are taken off first, whatever value it is that comes.
+        taken = cell.replace({path: float(v[0]) for path, v in drawn.values.items()})
+        whole = _opened(taken, "", None)
+        if isinstance(whole, ScenarioError):
+            return [whole] * count
+    return whole.varied(drawn.fields, drawn.rows)
+
+
+def _dropped(
+    cell: Scenario,
+    whole: _core.Passed,
+    drawn: Drawn,
+    runs: list[Checked],
+    *,
+    own: Mapping[str, float],
+    gives_way: Collection[str],
+) -> dict[str, NDArray[np.float64]]:
+    """Drop the draws that break a rule and may be dropped: those runs keep their own values.
+
+    Returns what was drawn, by path, with these own values; `runs` is changed.
+    """
+    shown = {path: values.copy() for path, values in drawn.shown.items()}
+    may = [path in gives_way for path in drawn.values]
+    if not any(may):
+        return shown
+    fields, rows = drawn.fields, drawn.rows
+    for repeat, run in enumerate(runs):
+        if not isinstance(run, ScenarioError):
+            continue
+        row = np.array([own.get(path, read_path(cell, path)) for path in drawn.values], dtype=float)
+        for column, path in enumerate(drawn.values):
+            trial = row.copy()
+            trial[column] = rows[repeat, column]
+            (checked,) = whole.varied(fields, trial[None, :])
+            if isinstance(checked, _core.Passed) or not may[column]:
+                row = trial
+            elif path in shown:
+                shown[path][repeat] = row[column]
+        (runs[repeat],) = whole.varied(fields, row[None, :])
+    return shown
+
+
+def _place(names: Sequence[str]) -> str:
+    return f"cell[{', '.join(names)}]" if names else "cell"
+
+
+def _moved(error: ScenarioError, place: str) -> ScenarioError:
+    """Prefix the path of an error with the place it is about."""
+    return ScenarioError(f"{place}.{error.path}", error.value, error.rule)
 
 
 @contextlib.contextmanager
@@ -101,15 +173,12 @@ def _named(place: str) -> Iterator[None]:
     try:
         yield
     except ScenarioError as error:
-        raise ScenarioError(f"{place}.{error.path}", error.value, error.rule) from None
+        raise _moved(error, place) from None
 
 
-def _checked(
-    scenario: Scenario, place: str, like: _core.Passed | None
-) -> _core.Passed | ScenarioError:
+def _opened(scenario: Scenario, place: str, like: _core.Passed | None) -> Checked:
     """Validate a scenario; warnings are left to the batch, which issues each once."""
     try:
-        with _named(place):
-            return _core.Passed(scenario.to_json(), like)
+        return _core.Passed(scenario.to_json(), like)
     except ScenarioError as error:
-        return error
+        return _moved(error, place) if place else error

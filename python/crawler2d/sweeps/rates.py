@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import wilson
 
@@ -22,6 +24,9 @@ __all__ = ["rate"]
 _STOPPED = "stopped"
 """Any outcome that is a stop."""
 
+_SAMPLE = "sample"
+"""The dimension of the unknowns."""
+
 _POSE = {"final_x": 1e-3, "final_y": 1e-3, "final_angle": math.radians(0.1)}
 """[m], [rad] Final poses closer than this count as one."""
 
@@ -30,18 +35,32 @@ _SPOKEN = {
     "high": "upper bound",
     "count": "number of runs",
     "distinct": "number of distinct final poses",
+    "median": "median of the rates over the unknowns",
+    "band_low": "5th percentile of the rates over the unknowns",
+    "band_high": "95th percentile of the rates over the unknowns",
 }
+
+_BAND = (0.05, 0.5, 0.95)
+"""[-] Quantiles of a band of rates: lower end, median, upper end."""
+
+_FEW = 4
+"""So few distinct poses, or fewer, of at least `_MANY` runs are worth a warning."""
+_MANY = 10
 
 
 def rate(
     table: xarray.Dataset | Iterable[str | None],
     outcome: str = "cleared",
     dim: str | Iterable[str] = "repeat",
+    *,
+    confidence_level: float = 0.95,
 ) -> xarray.Dataset:
-    """Estimate the rate of an outcome in every cell, with Wilson's 95 % interval.
+    """Estimate the rate of an outcome in every cell, with Wilson's interval.
 
-    Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are the missing
-    runs of a joined table.
+    A rate is one over what varied from run to run; where `sweep` had unknowns, there is one for
+    each sample of them, and their spread is a band, which is never averaged into one rate. Runs
+    without a result (`diverged`, `refused`, `failed`) are not counted, nor are the missing runs of
+    a joined table.
 
     Parameters
     ----------
@@ -51,14 +70,22 @@ def rate(
         Name of an `Outcome`, or "stopped" for any stop (`Outcome.is_stop`).
     dim : str or iterable of str
         The dimension or dimensions of the table to count over.
+    confidence_level : float
+        [-] Of the intervals, between 0 and 1. They are those of a number of runs that was fixed
+        beforehand.
 
     Returns
     -------
     xarray.Dataset
         Variables `rate`, `low`, `high` and `count`, without the dimension `dim`. Without runs the
         rate is nan and the interval 0 to 1. A table with final poses also gives `distinct`, how
-        many of them differ by more than about 1 mm or 0.1 degree: if they are few, the runs were
-        not independent samples, and the interval is too narrow.
+        many of them differ by more than about 1 mm or 0.1 degree.
+
+        With unknowns, these have the dimension `sample`, and there are `median`, `band_low` and
+        `band_high` besides: the median, 5 % and 95 % of the rates of a cell over the samples. A
+        band holds the chance of few repeats, too: each of its rates has its own interval.
+
+        The attributes `varied` and `unknown` name the populations; a rate without them says little.
 
     Raises
     ------
@@ -67,6 +94,13 @@ def rate(
         dimension of the table has the name of one of the variables.
     ImportError
         If xarray is missing; the message names the extra to install.
+
+    Warns
+    -----
+    ScenarioWarning
+        If nothing was unknown, and in some cell at least ten runs ended in four or fewer distinct
+        poses: then what varied hardly moved the robot, and the rate says little of other robots or
+        floors.
 
     Examples
     --------
@@ -77,8 +111,25 @@ def rate(
     >>> rate(outcomes, "seized")["rate"].item(), rate(outcomes, "stopped")["rate"].item()
     (0.25, 0.5)
     """
+    found = rates_of(table, outcome, dim, confidence_level=confidence_level)
+    if _SAMPLE not in found.dims and "distinct" in found:
+        _warn_of_few(found)
+    return found
+
+
+def rates_of(
+    table: xarray.Dataset | Iterable[str | None],
+    outcome: str = "cleared",
+    dim: str | Iterable[str] = "repeat",
+    *,
+    confidence_level: float = 0.95,
+) -> xarray.Dataset:
+    """Estimate rates, see `rate`, without a warning."""
     xr = extra("xarray", "analysis")
     wanted = _name(outcome, "outcome", [*Outcome, _STOPPED])
+    level = real_number(confidence_level, "confidence_level")
+    if not 0.0 < level < 1.0:
+        raise ScenarioError("confidence_level", level, "must be > 0 and < 1")
     counted = [str(each) for each in Outcome if each.is_stop] if wanted == _STOPPED else [wanted]
     if isinstance(table, xr.Dataset):
         runs = table
@@ -93,7 +144,7 @@ def rate(
         counts = made.sum(dims)
         successes = outcomes.isin(counted).sum(dims)
         intervals = xr.apply_ufunc(
-            np.vectorize(wilson), successes, counts, output_core_dims=[(), (), ()]
+            np.vectorize(wilson), successes, counts, level, output_core_dims=[(), (), ()]
         )
         variables = dict(zip(("rate", "low", "high"), intervals, strict=True), count=counts)
         if all(name in runs for name in _POSE):
@@ -102,13 +153,40 @@ def rate(
             variables["distinct"] = xr.apply_ufunc(
                 _distinct, made, *steps, input_core_dims=core, vectorize=True
             )
+        if _SAMPLE in counts.dims:
+            band = variables["rate"].quantile(_BAND, _SAMPLE, skipna=True)
+            for name, part in zip(("band_low", "median", "band_high"), _BAND, strict=True):
+                variables[name] = band.sel(quantile=part, drop=True)
     for name, variable in variables.items():
         if name in counts.coords:
             rule = "must have no other dimension or coordinate of that name: rename it"
             raise ScenarioError("table", name, rule)
         variable.attrs = {"units": "1", "long_name": _SPOKEN.get(name, f"rate of {wanted}")}
-    found: xarray.Dataset = xr.Dataset(variables, attrs={"outcome": wanted, "confidence": 0.95})
+    found: xarray.Dataset = xr.Dataset(
+        variables,
+        attrs={
+            "outcome": wanted,
+            "confidence_level": level,
+            "interval": "Wilson",
+            "varied": runs.attrs.get("vary", ""),
+            "unknown": runs.attrs.get("unknown", ""),
+        },
+    )
     return found
+
+
+def _warn_of_few(rates: xarray.Dataset) -> None:
+    few = int(((rates["count"] >= _MANY) & (rates["distinct"] <= _FEW)).sum())
+    if not few:
+        return
+    varied = rates.attrs["varied"]
+    cause = f"what varied hardly moves the robot ({varied})" if varied else "nothing varied"
+    reason = (
+        f"should have more than {_FEW} distinct final poses in every cell: where {cause}, rates say"
+        " little of other robots or floors (unknown= gives a band over what is not known)"
+    )
+    found = f"{_FEW} or fewer in {few} of {rates['count'].size} cells"
+    warnings.warn(ScenarioWarning("table", found, reason), stacklevel=3)
 
 
 def _distinct(made: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from crawler2d._core import Passed, build_info
 from crawler2d.common.arrays import frozen_scalar
 from crawler2d.common.extras import extra
 from crawler2d.errors import Crawler2dError, ScenarioError
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.runs.batch import simulate_passed
+from crawler2d.results.row import Row
+from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.progress import Progress
-from crawler2d.runs.recording import recording, yes_or_no
+from crawler2d.runs.recording import yes_or_no
+from crawler2d.runs.run import Run
 from crawler2d.runs.threads import thread_count
 from crawler2d.runs.trials import Trials, trial_names
-from crawler2d.sweeps.axes import Axis, read_axes
-from crawler2d.sweeps.dataset import to_table
-from crawler2d.sweeps.draws import Distribution, Variation
-from crawler2d.sweeps.plan import plan_runs
+from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, read_axes, short_names
+from crawler2d.sweeps.collect import RowsInterrupted, collect
+from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
+from crawler2d.sweeps.plan import Plan, plan_runs
+from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
     import xarray
@@ -34,8 +41,12 @@ def sweep(
     *,
     repeats: int = 20,
     seed: int = 0,
-    vary: Mapping[str, Distribution] | None = None,
+    vary: Mapping[str, Any] | None = None,
+    unknown: Mapping[str, Any] | None = None,
+    samples: int = 20,
     trials: Trials = None,
+    store: str | PathLike[str] | None = None,
+    executor: Executor | None = None,
     wall_time: bool = False,
     threads: int | None = None,
     progress: bool | Progress | None = True,
@@ -59,19 +70,36 @@ def sweep(
         robot with and without flippers, sweep it so with `Robot.without_flippers`: setting
         ``robot.flippers`` to None leaves their mass on the robot.
     repeats : int
-        Runs per cell, 1 to 1,000,000.
+        Runs per cell, and per sample of the unknowns, 1 to 1,000,000.
     seed : int
         Seed of the draws, 0 to 2^64 - 1.
     vary : mapping of str to distribution, optional
-        What the repeats draw, by path: `uniform` and, for whole numbers, `uniform_int` replace a
-        value, `scaled` multiplies it. None takes the variations below, ``{}`` none at all.
+        What differs from run to run, by path: a rate is how often something happens over it. None
+        takes ``variability.of_start() | variability.of_contact()``, ``{}`` nothing at all.
+        `uniform` and, for whole numbers, `uniform_int` replace a value, `scaled` multiplies it,
+        `shifted` adds to it; a frozen distribution of SciPy replaces it. ``[*]`` in a path stands
+        for every element, which get the same draw: ``robot.belly[*][1]`` moves the belly up or
+        down.
+    unknown : mapping of str to distribution, optional
+        What is the same in every run, but not known, in the same form: see `unknowns`. Each cell is
+        repeated for every sample of it, so that `rate` gives a band of rates.
+    samples : int
+        How many samples of the unknowns, 1 to 100,000.
     trials : {"auto", "all"} or sequence of str, optional
         What to try in every run that ends in a stop; see `simulate`.
+    store : str or path-like, optional
+        A file that keeps every run: those that it holds are not simulated again. It is made if it
+        does not exist; whatever ends the process, the same call goes on where it was. It serves
+        any number of sweeps.
+    executor : concurrent.futures.Executor, optional
+        Where to simulate instead: ``ProcessPoolExecutor()``, or ``client.get_executor()`` of Dask.
+        Its workers need the same build of crawler2d; each takes some runs at a time, on one
+        thread. Rows are the same as without.
     wall_time : bool
         Whether to add the computing time. It differs from run to run, so that tables with it cannot
         be merged where they overlap.
     threads : int, optional
-        See `simulate_many`.
+        See `simulate_many`; without meaning for an executor.
     progress : bool or callable
         See `simulate_many`.
     on_error : {"raise", "record"}
@@ -81,10 +109,11 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        Dimensions: one per entry of `over`, and `repeat`. A dimension is named after the last part
-        of its path, or after the whole path with underscores if that name is taken by another path
-        or a column of the table or of `rate`: ``robot.track.count`` is `robot_track_count`. The
-        name for a tuple joins the last parts of its paths, whose numbers are further coordinates.
+        Dimensions: one per entry of `over`, `sample` if there are unknowns, and `repeat`. A
+        dimension is named after the last part of its path, or after the whole path with underscores
+        if that name is taken by another path or a column of the table or of `rate`:
+        ``robot.track.count`` is `robot_track_count`. The name for a tuple joins the last parts of
+        its paths, whose numbers are further coordinates.
         Every column has every dimension.
 
         - `outcome`; without a result it is `diverged`, `refused` (broken rule) or `failed` (out of
@@ -98,7 +127,10 @@ def sweep(
           `freed_by_torque_x2` and `then_torque_x2`, and so on;
         - every metric of `Run.metrics`; with `wall_time`, the computing time [s] on one thread;
         - `scenario`, the JSON text of each run, and its `identity`;
-        - `drawn_...`, the value drawn for each path of `vary`, and the `seed`.
+        - `drawn_...` and `unknown_...`, the value drawn for each path of `vary` and of `unknown`
+          (the first, if the path stands for several), and the `seed`.
+
+        Its attributes have the scenario, and what `vary` and `unknown` were.
 
     Raises
     ------
@@ -108,8 +140,13 @@ def sweep(
         If `threads` is out of range.
     SimulationDiverged
         If a state became non-finite; a note names the run.
+    StoreError
+        If the store is none, is written by another process, or cannot grow; what it holds is kept.
+    InternalError
+        If the executor lost its workers for good; what was finished is in the store.
     BatchInterrupted
-        On Ctrl-C; its `runs`, cell by cell, holds the finished runs and the other scenarios.
+        On Ctrl-C; its `runs`, cell by cell, holds the finished runs and the other scenarios;
+        `table` arranges them.
     ImportError
         If xarray is missing; the message names the extra to install.
 
@@ -125,14 +162,15 @@ def sweep(
     - `start.approach`: uniform over a quarter of the axle distance, which is the wheel spacing of a
       line of five, about the scenario's own value, and never below 0;
     - `start.track_phase`: uniform over one grouser pitch;
-    - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. Terrains of
-      lanes have a friction per lane, which is not varied.
+    - `drive.speed` and `terrain.friction`: the cell's own value times 0.98 to 1.02. The friction of
+      lanes is that of every lane, times the same.
 
-    Distances are those of `scenario`, the same for every cell. Approach and phase are not drawn if
-    they are swept. A draw that breaks a rule, such as a speed above the drivetrain's maximum, is
-    dropped: the run keeps the cell's own value.
+    That is how the same robot meets the same obstacle again: a rate over it says nothing of robots
+    or floors that differ. Distances are those of `scenario`, the same for every cell. Approach and
+    phase are not drawn if they are swept. A draw that breaks a rule, such as a speed above the
+    drivetrain's maximum, is dropped: the run keeps the cell's own value.
 
-    The number drawn for a path depends only on seed, repeat and path. Other paths in `vary`, more
+    The number drawn for a path depends only on seed, repeat (or sample) and path. Other paths, more
     repeats or other cells do not change it, and equal runs have equal rows. So xarray can join the
     tables of one design: `xarray.merge` joins tables with other cells or more repeats;
     `xarray.concat` along `repeat` joins tables with another seed, where `seed` and `repeat`
@@ -174,7 +212,11 @@ def sweep(
         repeats=repeats,
         seed=seed,
         vary=vary,
+        unknown=unknown,
+        samples=samples,
         trials=trials,
+        store=store,
+        executor=executor,
         wall_time=wall_time,
         threads=threads,
         progress=progress,
@@ -188,8 +230,12 @@ def tabulate(
     *,
     repeats: int,
     seed: int,
-    vary: Mapping[str, Distribution] | None,
+    vary: Mapping[str, Any] | None,
+    unknown: Mapping[str, Any] | None,
+    samples: int,
     trials: Trials,
+    store: str | PathLike[str] | None,
+    executor: Executor | None,
     wall_time: bool,
     threads: int | None,
     progress: bool | Progress | None,
@@ -201,41 +247,87 @@ def tabulate(
         raise ScenarioError("scenario", scenario, "must be a Scenario")
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
+    if executor is not None and not isinstance(executor, Executor):
+        raise ScenarioError("executor", executor, "must be a concurrent.futures.Executor")
     with_times = yes_or_no(wall_time, "wall_time")
     tried = trial_names(trials)
-    recorded = (*recording(0.01, "summary"), list(tried))
     count = thread_count(threads)
     repeats = _whole(repeats, "repeats", 1, 10**6)
+    samples = _whole(samples, "samples", 1, 10**5)
     seed = _whole(seed, "seed", 0, 2**64 - 1)
     base = Passed(scenario.to_json())
-    variation = Variation.of(scenario, vary, [path for axis in axes for path in axis.paths])
-    plans = plan_runs(scenario, axes, variation, repeats=repeats, seed=seed, like=base)
-    if on_error == "raise":
-        _raise_first(plan.refused for plan in plans)
-    runs = simulate_passed(
-        [plan.scenario for plan in plans],
-        [plan.checked for plan in plans],
-        recorded,
-        threads=count,
-        progress=progress,
-    )
-    for plan, run in zip(plans, runs, strict=True):
-        if run.error is not None and plan.refused is None:
-            run.error.add_note(f"in {plan.place}")
-    if on_error == "raise":
-        _raise_first(run.error for run in runs)
-    dataset = to_table(
+    swept = [path for axis in axes for path in axis.paths]
+    unknowns = Variation.of(scenario, unknown or {}, swept, "unknown")
+    variation = Variation.of(scenario, vary, [*swept, *unknowns.distributions])
+    samples = samples if unknowns.distributions else 1
+    plans = plan_runs(
+        scenario,
         axes,
-        variation.distributions,
-        plans,
-        runs,
+        variation,
+        unknowns,
+        repeats=repeats,
+        samples=samples,
         seed=seed,
-        trials=tried,
-        with_times=with_times,
+        like=base,
     )
-    provenance = {"scenario": scenario.to_json(), "vary": str(variation.distributions)}
+    checked = [each for plan in plans for each in plan.checked]
+    if on_error == "raise":
+        _raise_first(each for each in checked if isinstance(each, ScenarioError))
+    try:
+        rows = collect(
+            checked, tried, store=store, executor=executor, threads=count, progress=progress
+        )
+    except RowsInterrupted as interrupt:
+        runs = [_run(row) for row in interrupt.rows if row.scenario]
+        raise BatchInterrupted(runs, "" if store is None else str(store)) from None
+    for index, row in enumerate(rows):
+        if row.error is not None and row.identity:
+            row.error.add_note(f"in {plans[index // repeats].place(index % repeats)}")
+    if on_error == "raise":
+        _raise_first(row.error for row in rows)
+    columns = row_columns(rows, trials=tried, with_times=with_times)
+    columns |= _drawn(plans, variation, unknowns, repeats)
+    kind = np.int64 if seed < 2**63 else np.uint64
+    columns["seed"] = (np.full(len(rows), seed, kind), {})
+    dims = {axis.name: len(axis.values) for axis in axes}
+    labels: dict[str, Any] = coordinates(axes)
+    if unknowns.distributions:
+        dims["sample"] = samples
+        labels["sample"] = np.arange(samples)
+    dims["repeat"] = repeats
+    labels["repeat"] = np.arange(repeats)
+    dataset = dataset_of(columns, dims, labels)
     builds = {f"build_{name}": value for name, value in build_info().items()}
-    return dataset.assign_attrs(provenance, **builds)
+    return dataset.assign_attrs(
+        scenario=scenario.to_json(), vary=variation.text, unknown=unknowns.text, **builds
+    )
+
+
+def _drawn(
+    plans: Sequence[Plan], variation: Variation, unknowns: Variation, repeats: int
+) -> dict[str, Column]:
+    """List what was drawn for each run: `drawn_...` in its repeat, `unknown_...` in its sample."""
+    columns: dict[str, Column] = {}
+    missing = np.full(repeats, np.nan)
+    for path, name in short_names(list(variation.distributions)).items():
+        values = np.concatenate([plan.drawn.get(path, missing) for plan in plans])
+        columns[f"drawn_{name}"] = (values, field_attributes([path]))
+    for path, name in short_names(list(unknowns.distributions)).items():
+        values = np.repeat([plan.sampled.get(path, np.nan) for plan in plans], repeats)
+        columns[f"unknown_{name}"] = (values, field_attributes([path]))
+    return columns
+
+
+def _run(row: Row) -> Run:
+    """Make a run of a row, with what rows hold."""
+    scenario = Scenario.from_json(row.scenario)
+    result = {
+        "outcome": row.outcome,
+        "metrics": row.metrics,
+        "diagnosis": row.diagnosis,
+        "wall_time": row.wall_time,
+    }
+    return Run(scenario, {} if row.error is not None else result, row.error)
 
 
 def _raise_first(errors: Iterable[Crawler2dError | None]) -> None:

@@ -1,5 +1,6 @@
 //! Simulates many scenarios on several threads, with the results in the given order.
 
+use std::mem;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -20,8 +21,8 @@ pub enum Progress {
     Stop,
 }
 
-/// Result of a run; `None` if it was not finished.
-type Slot = Option<Result<Run, Error>>;
+/// A finished run: its place in the batch, and what came of it.
+pub type Finished = (usize, Result<Run, Error>);
 
 /// Data shared by the threads of a batch.
 struct Work {
@@ -29,19 +30,19 @@ struct Work {
     record: Record,
     budget: Budget,
     next: AtomicUsize,
-    done: AtomicUsize,
     /// Number of threads that have ended.
     ended: AtomicUsize,
     cancel: Cancel,
-    slots: Vec<Mutex<Slot>>,
+    /// Runs that have not been handed over.
+    finished: Mutex<Vec<Finished>>,
 }
 
 /// Simulates every scenario on `threads` threads.
 ///
-/// Meanwhile the calling thread asks `watch(done)` about 50 times per second whether to continue. If not, it
-/// returns at once; threads that are within a step, or build something, end soon after. A run that was not
-/// finished is `None`. Whatever happens in one run, a panic included, does not affect the others. The results do
-/// not depend on the number of threads.
+/// Meanwhile the calling thread hands the runs that have just been finished, often none, to `take`, about 50 times
+/// per second, and `take` says whether to continue. If not, it hands over what else is finished and returns at
+/// once; threads that are within a step, or build something, end soon after. Whatever happens in one run, a panic
+/// included, does not affect the others. The results do not depend on the number of threads, only their order does.
 ///
 /// # Errors
 /// The batch needs more memory than it may have; nothing has been run.
@@ -49,8 +50,8 @@ pub fn simulate_many(
     scenarios: impl Into<Arc<[Checked]>>,
     threads: usize,
     record: Record,
-    mut watch: impl FnMut(usize) -> Progress,
-) -> Result<Vec<Slot>, LimitError> {
+    mut take: impl FnMut(Vec<Finished>) -> Progress,
+) -> Result<(), LimitError> {
     const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
     let scenarios = scenarios.into();
@@ -58,10 +59,9 @@ pub fn simulate_many(
     let budget = budget::of_batch(&scenarios, record, threads)?;
     let work = Arc::new(Work {
         next: AtomicUsize::new(0),
-        done: AtomicUsize::new(0),
         ended: AtomicUsize::new(0),
         cancel: Cancel::default(),
-        slots: scenarios.iter().map(|_| Mutex::new(None)).collect(),
+        finished: Mutex::new(Vec::new()),
         scenarios,
         record,
         budget,
@@ -71,18 +71,14 @@ pub fn simulate_many(
         work.run_all();
     }
     while work.ended.load(Ordering::Acquire) < started {
-        if watch(work.done.load(Ordering::Acquire)) == Progress::Stop {
+        if take(work.hand_over()) == Progress::Stop {
             work.cancel.ask();
             break;
         }
         std::thread::park_timeout(BETWEEN_LOOKS);
     }
-    watch(work.done.load(Ordering::Acquire));
-    let taken = work.slots.iter().map(|slot| {
-        let slot = slot.lock();
-        slot.map_or(None, |mut slot| slot.take())
-    });
-    Ok(taken.collect())
+    take(work.hand_over());
+    Ok(())
 }
 
 /// Starts as many threads as the system allows, and returns how many; none is no problem, because the calling
@@ -114,11 +110,16 @@ impl Work {
             let result =
                 caught(|| simulate_within(scenario, self.record, (&self.budget, &self.cancel)));
             if !matches!(result, Err(Error::Interrupted)) {
-                if let Ok(mut slot) = self.slots[i].lock() {
-                    *slot = Some(result);
+                // No thread panics while it holds the lock.
+                if let Ok(mut finished) = self.finished.lock() {
+                    finished.push((i, result));
                 }
-                self.done.fetch_add(1, Ordering::Release);
             }
         }
+    }
+
+    fn hand_over(&self) -> Vec<Finished> {
+        let finished = self.finished.lock();
+        finished.map_or_else(|_| Vec::new(), |mut finished| mem::take(&mut *finished))
     }
 }

@@ -61,9 +61,32 @@ impl Checked {
     /// # Errors
     /// As [`Self::from_json`].
     pub fn new(scenario: &Scenario) -> Result<Self, Error> {
-        let value = serde_json::to_value(scenario)
-            .unwrap_or_else(|e| unreachable!("plain data serialises: {e}"));
-        Self::of_value(&value, None)
+        Self::of_value(&plain(scenario), None)
+    }
+
+    /// Scenarios that differ from this one in some numbers: one per row, which has a number for each field.
+    ///
+    /// A field is a JSON pointer such as `/robot/center_of_mass/0`, and whether it takes whole numbers.
+    ///
+    /// # Errors
+    /// Each may break a rule, as in [`Self::from_json`].
+    pub fn varied<'a>(
+        &self,
+        fields: &[(String, bool)],
+        rows: impl IntoIterator<Item = &'a [f64]>,
+    ) -> Vec<Result<Self, Error>> {
+        let mut value = plain(&self.scenario);
+        let vary = |row: &[f64]| {
+            for ((pointer, whole), number) in fields.iter().zip(row) {
+                let Some(place) = value.pointer_mut(pointer) else {
+                    let error = ScenarioError::new(pointer, number, "must be a known field");
+                    return Err(error.into());
+                };
+                *place = written(*number, *whole);
+            }
+            Self::of_value(&value, Some(self))
+        };
+        rows.into_iter().map(vary).collect()
     }
 
     /// The scenario.
@@ -132,6 +155,19 @@ impl Checked {
             [&self.scenario, scenario].map(|s| (&s.terrain, s.robot.gauge.to_bits()));
         mine == other
     }
+}
+
+fn plain(scenario: &Scenario) -> Value {
+    serde_json::to_value(scenario).unwrap_or_else(|e| unreachable!("plain data serialises: {e}"))
+}
+
+/// A number as JSON has it; what is not finite is a text, for which there is a rule.
+fn written(number: f64, whole: bool) -> Value {
+    if whole && number >= 0.0 && number.fract() == 0.0 {
+        return Value::from(number as u64);
+    }
+    serde_json::Number::from_f64(number)
+        .map_or_else(|| Value::from(number.to_string()), Value::Number)
 }
 
 impl Scenario {
@@ -213,6 +249,27 @@ mod tests {
         assert!(Arc::ptr_eq(&first.ground, &second.ground));
         assert!(Arc::ptr_eq(&first.model, &second.model));
         assert!((first.position.x - second.position.x - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_varied_scenario_is_the_one_that_is_read_with_these_numbers() {
+        let first = opened(&engineer(), None);
+        let field = |pointer: &str| (pointer.to_owned(), false);
+        let fields = [field("/robot/center_of_mass/1"), field("/terrain/friction")];
+        let rows: [&[f64]; 3] = [&[0.03, 0.7], &[0.02, f64::NAN], &[0.02, 0.9]];
+        let found = first.varied(&fields, rows);
+        let mut variant = engineer();
+        variant.robot.center_of_mass[1] = 0.03;
+        if let Terrain::Step { friction, .. } = &mut variant.terrain {
+            *friction = 0.7;
+        }
+        let moved = found[0].as_ref().expect("it is valid");
+        assert_eq!(moved.scenario, variant);
+        assert_eq!(moved.position, opened(&variant, None).position);
+        let refused = found[1].as_ref().expect_err("NaN is no friction");
+        assert!(refused.to_string().contains("terrain.friction"), "{refused}");
+        let own = found[2].as_ref().expect("it is valid");
+        assert_eq!(own.scenario.terrain, engineer().terrain);
     }
 
     #[test]

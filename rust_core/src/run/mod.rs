@@ -13,7 +13,7 @@ mod simulation;
 mod trace;
 mod trials;
 
-pub use batch::{Progress, simulate_many};
+pub use batch::{Finished, Progress, simulate_many};
 pub use checked::Checked;
 pub use contact_table::ContactTable;
 pub use metrics::Metrics;

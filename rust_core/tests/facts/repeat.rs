@@ -1,7 +1,7 @@
 //! The same scenario gives the same bits, wherever and whenever it runs.
 
 use crawler2d_core::{
-    Checked, Error, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many,
+    Checked, Finished, Progress, Record, Run, Scenario, Wheel, simulate, simulate_many,
 };
 
 use crate::common::*;
@@ -76,21 +76,23 @@ fn batch() -> Vec<Scenario> {
         .collect()
 }
 
-fn fingerprints(results: Vec<Option<Result<Run, Error>>>) -> Vec<u64> {
-    results
-        .into_iter()
-        .map(|r| fingerprint(&r.expect("finished").expect("finite")))
-        .collect()
+fn fingerprints(mut results: Vec<Finished>) -> Vec<u64> {
+    results.sort_by_key(|(place, _)| *place);
+    let runs = results.into_iter().map(|(_, run)| run.expect("finite"));
+    runs.map(|run| fingerprint(&run)).collect()
 }
 
 #[test]
 fn threads_and_order_do_not_change_a_bit() {
     let scenarios: Vec<Checked> = batch().iter().map(checked).collect();
     let go = |scenarios: &[Checked], threads| {
-        let results = simulate_many(scenarios, threads, Record::default(), |_| {
+        let mut results = Vec::new();
+        let done = simulate_many(scenarios, threads, Record::default(), |finished| {
+            results.extend(finished);
             Progress::Continue
         });
-        fingerprints(results.expect("it fits in memory"))
+        done.expect("it fits in memory");
+        fingerprints(results)
     };
     let alone: Vec<u64> = scenarios
         .iter()
@@ -170,15 +172,16 @@ fn every_build_finds_the_same_values() {
 #[test]
 fn cancelled_batch_keeps_what_is_finished() {
     let scenarios = vec![checked(&batch()[0]); 40];
-    let results = simulate_many(scenarios, 2, Record::summary(), |done| {
-        if done >= 3 {
+    let mut results = Vec::new();
+    let done = simulate_many(scenarios, 2, Record::summary(), |finished| {
+        results.extend(finished);
+        if results.len() >= 3 {
             Progress::Stop
         } else {
             Progress::Continue
         }
     });
-    let results = results.expect("it fits in memory");
-    let finished = results.iter().filter(|r| r.is_some()).count();
-    assert!((3..40).contains(&finished), "{finished}");
-    assert!(results.into_iter().flatten().all(|r| r.is_ok()));
+    done.expect("it fits in memory");
+    assert!((3..40).contains(&results.len()), "{}", results.len());
+    assert!(results.iter().all(|(_, run)| run.is_ok()));
 }

@@ -1,0 +1,241 @@
+"""Intervals of a rate that hold however often one looks, and when to stop looking."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import exp, lgamma, log, log1p
+
+from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.errors import ScenarioError
+from crawler2d.sweeps.statistics import Interval
+
+__all__ = ["Stopping", "sequential"]
+
+# What is known of a rate p before the first run, as a beta distribution: 1/2 + 5 p successes and
+# 1/2 + 5 (1 - p) failures. The 5 that are like p narrow intervals of 50 to 300 runs, the two halves
+# those of rates near 0 and 1. Any two positive numbers are valid.
+_LIKE_P = 5.0
+_EITHER = 0.5
+_PRIOR = _LIKE_P + 2.0 * _EITHER
+_LGAMMA_PRIOR = lgamma(_PRIOR)
+
+# The most runs of a cell, as in a sweep.
+_MOST = 10**6
+
+
+def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval:
+    r"""Estimate a rate with an interval that stays valid however often one looks.
+
+    Whatever the rate, the probability that its interval fails to hold it after *any* number of runs
+    is at most 1 - `confidence`. So one may look after every run, and stop whenever the interval
+    says enough. An interval for a number of runs fixed in advance, such as `wilson`, is narrower,
+    but does not allow that.
+
+    Parameters
+    ----------
+    successes : int
+        Number of successful runs.
+    count : int
+        Number of all runs so far.
+    confidence : float
+        Confidence level, between 0 and 1.
+
+    Returns
+    -------
+    Interval
+        Rate, lower and upper bound; without runs the rate is nan and the interval 0 to 1. It
+        depends on these numbers alone, not on when one has looked.
+
+    Raises
+    ------
+    ValueError
+        If not ``0 <= successes <= count``, or `confidence` is not between 0 and 1.
+
+    Notes
+    -----
+    For each rate p, somebody bets on every run: after k successes in n runs that the next is one
+    with probability (k + 1/2 + 5 p) / (n + 6). If p is true, the product M of what was predicted
+    for the outcomes that came, each divided by its true probability, is a martingale of mean 1.
+    By Ville's inequality it ever reaches 1 / (1 - confidence) with a probability of at most
+    1 - confidence. The interval holds all p for which M is smaller. In closed form, with
+    a = 1/2 + 5 p, b = 1/2 + 5 (1 - p) and the beta function B,
+
+    .. math:: M = B(a + k, b + n - k) / (B(a, b) p^k (1 - p)^{n - k})
+
+    Its logarithm is convex in p, because log(a + i) - log(p) is, and so is log(b + i) - log(1 - p),
+    for every i >= 0; and at k / n it is at most 0, because no mixture of rates makes outcomes more
+    likely than k / n does. So the set is an interval that holds k / n.
+
+    References
+    ----------
+    Ville, J. (1939). Etude critique de la notion de collectif. Gauthier-Villars.
+
+    Robbins, H. (1970). Statistical methods related to the law of the iterated logarithm.
+    Annals of Mathematical Statistics 41, 1397-1409.
+
+    Howard, S. R., Ramdas, A., McAuliffe, J., Sekhon, J. (2021). Time-uniform, nonparametric,
+    nonasymptotic confidence sequences. Annals of Statistics 49, 1055-1080.
+
+    Examples
+    --------
+    >>> rate, low, high = sequential(20, 20)
+    >>> round(low, 3), high
+    (0.74, 1.0)
+    """
+    if not 0 <= successes <= count:
+        raise ValueError(f"successes must be from 0 to count = {count}, got {successes}")
+    if not 0.0 < confidence < 1.0:
+        raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
+    if count == 0:
+        return Interval(math.nan, 0.0, 1.0)
+    failures = count - successes
+    limit = -log1p(-confidence)
+    low = 0.0 if successes == 0 else _low(successes, failures, limit)
+    high = 1.0 if failures == 0 else 1.0 - _low(failures, successes, limit)
+    return Interval(successes / count, low, high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stopping:
+    """When a cell was simulated often enough: its rate is known well, or on which side it lies.
+
+    One may ask after every run, or after any number of them: the interval is that of `sequential`.
+
+    Parameters
+    ----------
+    width : float
+        Enough if the interval is at most this wide; above 0, up to 1. The default is reached in at
+        most 245 runs.
+    threshold : float, optional
+        Enough, too, as soon as the interval lies wholly above or below this rate, between 0 and 1.
+    least : int
+        Runs that are made in any case, 0 or more.
+    most : int
+        Runs after which one gives up, at least `least` and 1.
+    confidence : float
+        Confidence level of the interval, between 0 and 1.
+
+    Raises
+    ------
+    ScenarioError
+        If a field breaks its rule.
+
+    Examples
+    --------
+    >>> stopping = Stopping(threshold=0.5)
+    >>> stopping.is_done(10, 15), stopping.is_done(14, 15)
+    (False, True)
+    >>> stopping.side(10, 15), stopping.side(14, 15)
+    (0, 1)
+    """
+
+    width: float = 0.2
+    threshold: float | None = None
+    least: int = 10
+    most: int = 250
+    confidence: float = 0.95
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0.0 < self._keep_real("width") <= 1.0:
+            raise ScenarioError("stopping.width", self.width, "must be above 0 and at most 1")
+        for name in ("threshold", "confidence"):
+            given = getattr(self, name)
+            if (name, given) != ("threshold", None) and not 0.0 < self._keep_real(name) < 1.0:
+                raise ScenarioError(f"stopping.{name}", given, "must be between 0 and 1")
+        self._keep_whole("least", 0)
+        self._keep_whole("most", max(self.least, 1))
+
+    def is_done(self, successes: int, count: int) -> bool:
+        """Whether no more runs are needed, or none are left.
+
+        Parameters
+        ----------
+        successes, count : int
+            Number of successful runs, and of all runs so far.
+
+        Raises
+        ------
+        ValueError
+            If not ``0 <= successes <= count``.
+        """
+        interval = sequential(successes, count, self.confidence)
+        if count < self.least or count >= self.most:
+            return count >= self.most
+        return interval.high - interval.low <= self.width or self._side(interval) != 0
+
+    def side(self, successes: int, count: int) -> int:
+        """On which side of the threshold the rate certainly lies.
+
+        Parameters
+        ----------
+        successes, count : int
+            Number of successful runs, and of all runs so far.
+
+        Returns
+        -------
+        int
+            -1 below the threshold, 1 above it, 0 if that is not certain or there is no threshold.
+
+        Raises
+        ------
+        ValueError
+            If not ``0 <= successes <= count``.
+        """
+        return self._side(sequential(successes, count, self.confidence))
+
+    def _side(self, interval: Interval) -> int:
+        if self.threshold is None:
+            return 0
+        return (interval.low > self.threshold) - (interval.high < self.threshold)
+
+    def _keep_real(self, name: str) -> float:
+        number = real_number(getattr(self, name), f"stopping.{name}")
+        object.__setattr__(self, name, number)
+        return number
+
+    def _keep_whole(self, name: str, least: int) -> None:
+        given = getattr(self, name)
+        number = frozen_scalar(given, whole=True)
+        if type(number) is not int or not least <= number <= _MOST:
+            rule = f"must be a whole number from {least} to {_MOST}"
+            raise ScenarioError(f"stopping.{name}", given, rule)
+        object.__setattr__(self, name, number)
+
+
+def _low(k: int, m: int, limit: float) -> float:
+    """Find the rate below that of k successes and m failures, k > 0, where log M is `limit`."""
+    n = k + m
+    start = (k + _EITHER) / (n + 1)
+    # About where a normal distribution has it, in log(p / (1 - p)).
+    spread = math.sqrt((2.0 * limit + log1p(n / _PRIOR)) / (n * start * (1.0 - start)))
+    center = log(start / (1.0 - start))
+    left = center - 1.1 * spread
+    excess = _log_martingale(left, k, m) - limit
+    while excess < 0.0:
+        left -= spread
+        excess = _log_martingale(left, k, m) - limit
+    # Log M is convex in log(p / (1 - p)), too: the line through two points left of the root leads
+    # to one between them and the root, and so from there, faster and faster. The result is never
+    # beyond the root by more than rounding.
+    previous, left_of = left - 0.1 * spread, left
+    previous_excess = _log_martingale(previous, k, m) - limit
+    while excess > 0.0 and previous_excess > excess:
+        step = excess * (left_of - previous) / (previous_excess - excess)
+        previous, previous_excess = left_of, excess
+        left_of += step
+        if step < 1e-10:
+            break
+        excess = _log_martingale(left_of, k, m) - limit
+    return 1.0 / (1.0 + exp(-left_of))
+
+
+def _log_martingale(logit: float, k: int, m: int) -> float:
+    """Compute log M of the rate with this log(p / (1 - p)), for k successes and m failures."""
+    odds_against = exp(-logit)
+    n = k + m
+    a = _EITHER + _LIKE_P / (1.0 + odds_against)
+    b = _PRIOR - a
+    mixture = lgamma(a + k) - lgamma(a) + lgamma(b + m) - lgamma(b) - lgamma(n + _PRIOR)
+    return mixture + _LGAMMA_PRIOR + n * log1p(odds_against) + m * logit

@@ -1,0 +1,305 @@
+"""Distributions of one number: they map numbers from 0 to 1 to values, about the field's own."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.paths import read_path
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.parameters.scenario import Scenario
+
+__all__ = [
+    "Distribution",
+    "Frozen",
+    "Scaled",
+    "Shifted",
+    "Uniform",
+    "UniformInt",
+    "read_distribution",
+    "scaled",
+    "shifted",
+    "uniform",
+    "uniform_int",
+]
+
+# A float64 from 0 to 1 can distinguish this many whole numbers.
+_MOST = 2**53
+
+
+class Distribution(Protocol):
+    """Any distribution."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value; else it replaces that."""
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
+        """Map numbers from 0 to 1 to values of a field, whose own value is `own`."""
+
+    def on(self, scenario: Scenario) -> Distribution:
+        """Return this distribution with every length that it takes from a scenario."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Bounded:
+    """Bounds in order, both of them finite."""
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        """Check the bounds."""
+        for name in ("low", "high"):
+            number = real_number(getattr(self, name), name)
+            if not math.isfinite(number):
+                raise ScenarioError(name, number, "must be finite")
+            object.__setattr__(self, name, number)
+        _in_order(self)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+        return False
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return True
+
+    def on(self, scenario: Scenario) -> Distribution:  # noqa: ARG002 - others do
+        """Take nothing from the scenario."""
+        return self  # type: ignore[return-value] # what derives from this has values
+
+
+@dataclass(frozen=True, slots=True)
+class Uniform(_Bounded):
+    """Any value from `low` to `high`, all equally likely.
+
+    Parameters
+    ----------
+    low, high : float
+        Bounds, in units of the field.
+
+    Raises
+    ------
+    ScenarioError
+        If they are not finite numbers with ``low <= high``.
+
+    Examples
+    --------
+    >>> Uniform(0.05, 0.15).values(np.array([0.0, 0.5]), own=None).tolist()
+    [0.05, 0.1]
+    """
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return False
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
+        """Map numbers from 0 to 1 to values; the field's own value is not used."""
+        return _between(self.low, self.high, numbers)
+
+
+@dataclass(frozen=True, slots=True)
+class UniformInt:
+    """Any whole number from `low` to `high`, both included, all equally likely.
+
+    Parameters
+    ----------
+    low, high : int
+        Bounds, for a field of whole numbers such as ``terrain.seed``.
+
+    Raises
+    ------
+    ScenarioError
+        If they are not whole numbers with ``low <= high``, less than 2^53 apart.
+
+    Examples
+    --------
+    >>> UniformInt(1, 6).values(np.array([0.0, 0.5]), own=None).tolist()
+    [1.0, 4.0]
+    """
+
+    low: int
+    high: int
+
+    def __post_init__(self) -> None:
+        """Check the bounds."""
+        for name in ("low", "high"):
+            number = frozen_scalar(getattr(self, name), whole=True)
+            if type(number) is not int:
+                raise ScenarioError(name, number, "must be a whole number")
+            object.__setattr__(self, name, number)
+        _in_order(self)
+        if self.high - self.low >= _MOST:
+            raise ScenarioError("high", self.high, f"must be < low + 2^53 = {self.low + _MOST}")
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+        return True
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return False
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
+        """Map numbers from 0 to 1 to values; the field's own value is not used."""
+        return self.low + np.floor((self.high - self.low + 1) * numbers)
+
+    def on(self, scenario: Scenario) -> UniformInt:  # noqa: ARG002 - others do
+        """Take nothing from the scenario."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Scaled(_Bounded):
+    """The scenario's own value times a factor from `low` to `high`, all equally likely.
+
+    Parameters
+    ----------
+    low, high : float
+        [-] Bounds of the factor.
+
+    Raises
+    ------
+    ScenarioError
+        If they are not finite numbers with ``low <= high``.
+
+    Examples
+    --------
+    >>> Scaled(0.98, 1.02).values(np.array([0.5, 1.0]), own=0.5).tolist()
+    [0.5, 0.51]
+    """
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
+        """Map numbers from 0 to 1 to values."""
+        return float(own) * _between(self.low, self.high, numbers)
+
+
+@dataclass(frozen=True, slots=True)
+class Shifted(_Bounded):
+    """The scenario's own value plus a shift from `low` to `high`, all equally likely.
+
+    Parameters
+    ----------
+    low, high : float
+        Bounds of the shift, in units of the field, or as shares of the length `of`.
+    of : str, optional
+        Path of a length of the scenario: the bounds are multiples of it.
+    least : float, optional
+        Smallest value: a range that begins below it is moved up.
+
+    Raises
+    ------
+    ScenarioError
+        If the bounds are not finite numbers with ``low <= high``.
+
+    Examples
+    --------
+    The centre of mass 40 mm either way:
+
+    >>> Shifted(-0.04, 0.04).values(np.array([0.0, 0.75]), own=0.01).round(3).tolist()
+    [-0.03, 0.03]
+    """
+
+    of: str | None = None
+    least: float | None = None
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
+        """Map numbers from 0 to 1 to values."""
+        low = own + self.low if self.least is None else max(own + self.low, self.least)
+        return _between(low, low + (self.high - self.low), numbers)
+
+    def on(self, scenario: Scenario) -> Shifted:
+        """Take the length `of` from the scenario."""
+        if self.of is None:
+            return self
+        length = read_path(scenario, self.of)
+        return replace(self, low=self.low * length, high=self.high * length, of=None)
+
+    def __repr__(self) -> str:
+        """Write the call that makes it, without what is not given."""
+        given = {"low": self.low, "high": self.high, "of": self.of, "least": self.least}
+        figures = [f"{name}={value!r}" for name, value in given.items() if value is not None]
+        return f"{type(self).__name__}({', '.join(figures)})"
+
+
+@dataclass(frozen=True, slots=True)
+class Frozen:
+    """A frozen distribution of SciPy: ``scipy.stats.norm(0.9, 0.05)``."""
+
+    scipy: Any
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+        return hasattr(self.scipy, "pmf")
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return False
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
+        """Map numbers from 0 to 1 to values: the quantiles."""
+        return np.asarray(self.scipy.ppf(numbers), dtype=np.float64)
+
+    def on(self, scenario: Scenario) -> Frozen:  # noqa: ARG002 - others do
+        """Take nothing from the scenario."""
+        return self
+
+    def __repr__(self) -> str:
+        """Write the call that makes it, with the names of its figures."""
+        figures = [*map(repr, self.scipy.args), *(f"{k}={v!r}" for k, v in self.scipy.kwds.items())]
+        return f"{self.scipy.dist.name}({', '.join(figures)})"
+
+
+uniform = Uniform
+uniform_int = UniformInt
+scaled = Scaled
+shifted = Shifted
+
+
+def read_distribution(given: object, place: str) -> Distribution:
+    """Take a distribution of this module, or a frozen one of SciPy.
+
+    Raises
+    ------
+    ScenarioError
+        If it is neither; `place` names the argument.
+    """
+    if isinstance(given, (Uniform, UniformInt, Scaled, Shifted, Frozen)):
+        return given
+    if all(hasattr(given, name) for name in ("ppf", "dist", "args", "kwds")):
+        return Frozen(given)
+    rule = (
+        "must be uniform(low, high), uniform_int(low, high), scaled(low, high),"
+        " shifted(low, high) or a frozen distribution of SciPy"
+    )
+    raise ScenarioError(place, given, rule)
+
+
+def _in_order(bounds: _Bounded | UniformInt) -> None:
+    if bounds.high < bounds.low:
+        raise ScenarioError("high", bounds.high, f"must be >= low = {bounds.low}")
+
+
+def _between(low: float, high: float, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    # Rounding could exceed the upper bound.
+    return np.minimum(low + (high - low) * numbers, high)

@@ -1,0 +1,86 @@
+"""What differs from run to run of the same robot on the same ground, for `vary` of a sweep.
+
+A rate over it is how often the robot would get over if it tried again and again.
+
+>>> import crawler2d as c2d
+>>> c2d.variability.of_start() | c2d.variability.of_contact()
+Ranges
+  start.approach: Shifted(low=-0.125, high=0.125, of='robot.outline.axle_distance', least=0.0)
+      a quarter of the axle distance: the wheel spacing of a line of five
+  start.track_phase: Shifted(low=0.0, high=1.0, of='robot.outline.grouser_pitch')
+      one grouser pitch, after which the track looks the same
+  drive.speed: Scaled(low=0.98, high=1.02)
+      estimate: how well a controller holds a speed
+  terrain.friction: Scaled(low=0.98, high=1.02)
+      estimate: patches of one floor
+"""
+
+from __future__ import annotations
+
+from crawler2d.variation.distributions import scaled, shifted, uniform_int
+from crawler2d.variation.ranges import Ranges
+
+__all__ = ["of_contact", "of_field", "of_start"]
+
+
+def of_start() -> Ranges:
+    """Vary where the robot meets the obstacle: its approach, and the phase of its track.
+
+    Returns
+    -------
+    Ranges
+        For `vary`. The lengths are those of the scenario of the sweep, the same for every cell.
+
+    Examples
+    --------
+    >>> list(of_start())
+    ['start.approach', 'start.track_phase']
+    """
+    found = {
+        "start.approach": shifted(-0.125, 0.125, of="robot.outline.axle_distance", least=0.0),
+        "start.track_phase": shifted(0.0, 1.0, of="robot.outline.grouser_pitch"),
+    }
+    sources = {
+        "start.approach": "a quarter of the axle distance: the wheel spacing of a line of five",
+        "start.track_phase": "one grouser pitch, after which the track looks the same",
+    }
+    return Ranges(found, sources, found)
+
+
+def of_contact() -> Ranges:
+    """Vary how the robot meets the ground: its speed, and the friction of a patch of the floor.
+
+    Returns
+    -------
+    Ranges
+        For `vary`. The friction of the floor as a whole is another matter: it is the same in every
+        run, but seldom known; see `unknowns.of_ground`.
+
+    Examples
+    --------
+    >>> list(of_contact())
+    ['drive.speed', 'terrain.friction']
+    """
+    found = {"drive.speed": scaled(0.98, 1.02), "terrain.friction": scaled(0.98, 1.02)}
+    sources = {
+        "drive.speed": "estimate: how well a controller holds a speed",
+        "terrain.friction": "estimate: patches of one floor",
+    }
+    return Ranges(found, sources, found)
+
+
+def of_field() -> Ranges:
+    """Vary the heights of a random step field: every run has a field of its own.
+
+    Returns
+    -------
+    Ranges
+        For `vary`, where the terrain has a seed.
+
+    Examples
+    --------
+    >>> list(of_field())
+    ['terrain.seed']
+    """
+    sources = {"terrain.seed": "any field of the same measures"}
+    return Ranges({"terrain.seed": uniform_int(0, 2**31 - 1)}, sources)

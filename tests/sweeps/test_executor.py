@@ -1,0 +1,118 @@
+"""Executors: chunks go out, rows come back, and are those of one thread."""
+
+import multiprocessing
+import os
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.sweeps import chunk, collect
+from crawler2d.sweeps.store import stored_rows
+from tests.sweeps.small import BASE, MODELS, quiet
+
+OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
+
+
+class Unreliable(Executor):
+    """Runs at once, but loses the first `losses` tasks after that many others."""
+
+    def __init__(self, losses: int, after: int = 0, error: Exception | None = None) -> None:
+        self.losses, self.after = losses, after
+        self.error = error or BrokenExecutor("a worker was killed")
+
+    def submit(self, call: Any, /, *args: Any, **options: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        if self.after == 0 and self.losses > 0:
+            self.losses -= 1
+            future.set_exception(self.error)
+        else:
+            self.after = max(self.after - 1, 0)
+            future.set_result(call(*args, **options))
+        return future
+
+
+@pytest.fixture(scope="module")
+def plain() -> xr.Dataset:
+    return quiet(BASE, OVER, repeats=8, threads=1, trials=("torque x 2",))
+
+
+def swept(executor: Executor, **options: Any) -> xr.Dataset:
+    return quiet(BASE, OVER, repeats=8, executor=executor, trials=("torque x 2",), **options)
+
+
+def test_rows_of_processes_are_those_of_one_thread(plain: xr.Dataset) -> None:
+    calls: list[int] = []
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(2, mp_context=spawn) as executor:
+        found = swept(executor, progress=lambda done, _total: calls.append(done))
+    xr.testing.assert_identical(plain, found)
+    assert calls[0] == 0
+    assert calls[-1] == 32
+    assert calls == sorted(calls)
+
+
+def test_rows_of_threads_are_those_of_one_thread(plain: xr.Dataset) -> None:
+    with ThreadPoolExecutor(3) as executor:
+        xr.testing.assert_identical(plain, swept(executor))
+
+
+def test_a_lost_worker_costs_nothing_but_its_time(plain: xr.Dataset) -> None:
+    xr.testing.assert_identical(plain, swept(Unreliable(losses=4)))
+
+
+def test_workers_lost_for_good_leave_what_was_finished_in_the_store(
+    plain: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(collect, "_CHUNK", 4)
+    store = tmp_path / "a.sqlite"
+    with pytest.raises(
+        c2d.InternalError, match=r"cannot go on \(BrokenExecutor: .*another executor"
+    ):
+        swept(Unreliable(losses=10**6, after=3), store=store)
+    assert len(list(stored_rows(store))) == 12
+    with ThreadPoolExecutor(2) as executor:
+        xr.testing.assert_identical(plain, swept(executor, store=store))
+
+
+def kill_itself(*_: Any) -> Any:
+    """A chunk during which its process is killed."""
+    os._exit(9)
+
+
+def test_a_killed_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(collect, "simulate_chunk", kill_itself)
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        ProcessPoolExecutor(1, mp_context=spawn) as executor,
+        pytest.raises(c2d.InternalError, match="cannot go on"),
+    ):
+        swept(executor, store=tmp_path / "a.sqlite")
+
+
+def test_ctrl_c_keeps_what_came_back() -> None:
+    with pytest.raises(c2d.BatchInterrupted) as caught:
+        swept(Unreliable(losses=1, error=KeyboardInterrupt()))  # type: ignore[arg-type]
+    table = c2d.table(caught.value.runs)
+    assert table.sizes == {"run": 32}
+    assert set(table["outcome"].values) == {"failed"}
+    assert "interrupted" in str(table["error"].values[0])
+
+
+def test_a_worker_of_another_build_is_refused() -> None:
+    with pytest.raises(c2d.InternalError, match="another build of crawler2d"):
+        chunk.simulate_chunk([BASE.to_json()], (), "0123")
+
+
+def test_what_is_no_executor_is_refused() -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"must be a concurrent\.futures\.Executor"):
+        quiet(BASE, {}, executor=4)

@@ -1,0 +1,213 @@
+"""A store keeps every run: nothing is simulated twice, nothing is lost."""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.sweeps.store import Store, stored_rows
+from tests.sweeps.small import BASE, MODELS, quiet
+
+OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
+
+
+def counted(*args: Any, **options: Any) -> tuple[xr.Dataset, int]:
+    """A sweep, and how many runs it simulated."""
+    calls: list[tuple[int, int]] = []
+    found = quiet(*args, progress=lambda done, total: calls.append((done, total)), **options)
+    return found, calls[-1][1] - calls[0][0]
+
+
+def test_a_sweep_from_a_store_is_the_one_that_was_simulated(tmp_path: Path) -> None:
+    store = tmp_path / "study.sqlite"
+    plain = quiet(BASE, OVER, repeats=3, wall_time=False)
+    first, made = counted(BASE, OVER, repeats=3, store=store)
+    again, then = counted(BASE, OVER, repeats=3, store=store)
+    assert (made, then) == (12, 0)
+    xr.testing.assert_identical(plain, first)
+    xr.testing.assert_identical(first, again)
+    assert set(first["outcome"].values.flat) > {"cleared"}  # stops, with their figures
+
+
+def test_more_repeats_cells_and_models_simulate_only_what_is_new(tmp_path: Path) -> None:
+    store = str(tmp_path / "study.sqlite")
+    quiet(BASE, {"terrain.height": [0.03]}, repeats=2, store=store)
+    _, more = counted(BASE, {"terrain.height": [0.03]}, repeats=5, store=store)
+    _, cells = counted(BASE, {"terrain.height": [0.02, 0.03]}, repeats=5, store=store)
+    assert (more, cells) == (3, 5)
+    _, tried = counted(BASE, {"terrain.height": [0.03]}, repeats=2, store=store, trials="auto")
+    assert tried == 2  # another question
+    assert len(list(stored_rows(store))) == 12
+
+
+def test_equal_scenarios_run_once(tmp_path: Path) -> None:
+    store = tmp_path / "a.sqlite"
+    found = quiet(BASE, {}, repeats=4, vary={}, store=store)
+    assert len(set(found["identity"].values)) == 1
+    assert len(list(stored_rows(store))) == 1
+
+
+def test_the_table_of_a_store_has_every_run(tmp_path: Path) -> None:
+    store = tmp_path / "a.sqlite"
+    found = quiet(BASE, OVER, repeats=2, store=store, trials=("torque x 2",))
+    table = c2d.table(store)
+    assert table.sizes == {"run": 8}
+    assert set(table["identity"].values) == set(found["identity"].values.flat)
+    assert set(table["trials"].values) == {"torque x 2"}
+    assert set(table["build"].values) == {c2d.build_info()["build_id"]}
+    assert (table["wall_time"] > 0.0).all()
+    by_identity = dict(zip(table["identity"].values, table["tried_torque_x2"].values, strict=True))
+    flat = zip(found["identity"].values.flat, found["tried_torque_x2"].values.flat, strict=True)
+    assert all(by_identity[identity] == tried for identity, tried in flat)
+
+
+def test_a_second_writer_is_told_and_a_reader_is_not_kept_out(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    quiet(BASE, {}, repeats=1, store=path)
+    with Store(path):
+        with pytest.raises(c2d.StoreError, match="is being written by another"):
+            quiet(BASE, {}, repeats=1, store=path)
+        assert c2d.table(path).sizes == {"run": 1}
+    quiet(BASE, {}, repeats=1, store=path)
+
+
+def test_a_full_disk_is_told_and_the_store_stays_readable(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    with Store(path) as store:
+        pages = store._connection.execute("PRAGMA page_count").fetchone()[0]
+        store._connection.execute(f"PRAGMA max_page_count = {pages + 40}")
+        rows = [row for row, *_ in _rows_of(tmp_path / "other.sqlite")]
+        kept = []
+
+        def fill() -> None:
+            for row in rows:
+                store.add([row])
+                kept.append(row)
+
+        with pytest.raises(c2d.StoreError, match="the disk is full"):
+            fill()
+        assert 0 < len(kept) < len(rows)
+    assert c2d.table(path).sizes == {"run": len(kept)}
+    _, missing = counted(BASE, {"terrain.height": [0.03]}, repeats=60, store=path)
+    assert missing == 60 - len(kept)
+
+
+def _rows_of(path: Path) -> Any:
+    quiet(BASE, {"terrain.height": [0.03]}, repeats=60, store=path)
+    return stored_rows(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"no database at all, but long enough to be read as one" * 20, "is no SQLite file"),
+        (None, "no store"),
+    ],
+)
+def test_what_is_no_store_is_refused_and_left_alone(
+    tmp_path: Path, content: bytes | None, message: str
+) -> None:
+    path = tmp_path / "a.sqlite"
+    if content is None:
+        connection = sqlite3.connect(path)
+        connection.execute("CREATE TABLE mine (x)")
+        connection.commit()
+        connection.close()
+    else:
+        path.write_bytes(content)
+    before = path.read_bytes()
+    with pytest.raises(c2d.StoreError, match=message):
+        quiet(BASE, {}, repeats=1, store=path)
+    with pytest.raises(c2d.StoreError, match=message):
+        c2d.table(path)
+    assert path.read_bytes() == before
+
+
+def test_a_place_where_no_file_can_be_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(c2d.StoreError, match="cannot be made"):
+        quiet(BASE, {}, repeats=1, store=tmp_path / "nowhere" / "a.sqlite")
+    with pytest.raises(c2d.ScenarioError, match="must be the path of a file"):
+        quiet(BASE, {}, repeats=1, store=7)
+    with pytest.raises(c2d.StoreError, match="is not there"):
+        c2d.table(tmp_path / "none.sqlite")
+
+
+def test_a_store_of_a_newer_format_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    quiet(BASE, {}, repeats=1, store=path)
+    connection = sqlite3.connect(path)
+    connection.execute("PRAGMA user_version = 99")
+    connection.close()
+    with pytest.raises(c2d.StoreError, match="newer crawler2d"):
+        c2d.table(path)
+
+
+def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
+    one, other, third = (tmp_path / f"{name}.sqlite" for name in "abc")
+    quiet(BASE, OVER, repeats=2, store=one)
+    quiet(BASE, OVER, repeats=3, store=other)
+    assert c2d.join_stores(third, one, other) == 12
+    assert c2d.join_stores(third, one, other) == 0
+    _, missing = counted(BASE, OVER, repeats=3, store=third)
+    assert missing == 0
+    connection = sqlite3.connect(one)
+    connection.execute("UPDATE run SET outcome = 'seized' WHERE rowid = 1")
+    connection.commit()
+    connection.close()
+    with pytest.raises(c2d.StoreError, match="hold different results of the run"):
+        c2d.join_stores(third, one)
+    with pytest.raises(c2d.StoreError, match="is not there"):
+        c2d.join_stores(third, tmp_path / "none.sqlite")
+
+
+SWEEP = """
+import sys
+import crawler2d as c2d
+base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03), duration=4.0)
+over = {"terrain.height": [0.01 * k for k in range(1, 11)]}
+c2d.sweep(base, over, repeats=60, store=sys.argv[1], progress=False, threads=2)
+print("done")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_a_killed_sweep_goes_on_where_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    counts = []
+    for delay in (0.05, 0.2, 0.4):
+        process = subprocess.Popen([sys.executable, "-c", SWEEP, str(path)])
+        while not path.is_file():
+            time.sleep(0.01)
+        before = _count(path)
+        while _count(path) == before and process.poll() is None:
+            time.sleep(0.005)
+        time.sleep(delay)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        counts.append(_count(path))
+    assert counts == sorted(counts)
+    assert counts[0] > 0
+    subprocess.run([sys.executable, "-c", SWEEP, str(path)], check=True, capture_output=True)
+    whole = tmp_path / "b.sqlite"
+    subprocess.run([sys.executable, "-c", SWEEP, str(whole)], check=True, capture_output=True)
+    assert _figures(path) == _figures(whole)
+    assert _count(path) == 600
+
+
+def _count(path: Path) -> int:
+    try:
+        return len(list(stored_rows(path)))
+    except c2d.StoreError:  # not made yet
+        return 0
+
+
+def _figures(path: Path) -> dict[str, tuple[str, str]]:
+    return {row.identity: (row.outcome, repr(row.metrics)) for row, *_ in stored_rows(path)}

@@ -1,0 +1,51 @@
+"""Runs of a batch as a table."""
+
+import pytest
+
+import crawler2d as c2d
+from tests.sweeps.small import BASE, BRIEF, quiet
+
+
+def test_the_table_of_a_batch_has_the_columns_of_a_sweep() -> None:
+    base = BASE.replace({"robot.track": c2d.ForceTrack(), "duration": 8.0})
+    scenarios = [base.replace({"terrain.height": height}) for height in (0.01, 0.12)]
+    runs = c2d.simulate_many(scenarios, record="summary", trials=("torque x 2",))
+    found = c2d.table(runs)
+    swept = quiet(
+        base, {"terrain.height": [0.01, 0.12]}, repeats=1, vary={}, trials=("torque x 2",)
+    )
+    for name in swept.data_vars:
+        if name not in ("seed", "scenario"):
+            assert found[name].values.tolist() == pytest.approx(
+                swept[name].values[:, 0].tolist(), nan_ok=True
+            ), name
+    assert found["scenario"].values.tolist() == [scenario.to_json() for scenario in scenarios]
+    assert (found["wall_time"] > 0.0).all()
+
+
+def test_runs_without_a_result_are_rows_too() -> None:
+    broken = BRIEF.replace({"robot.mass": -1.0})
+    runs = c2d.simulate_many([BRIEF, broken], on_error="record")
+    found = c2d.table(runs)
+    assert found["outcome"].values.tolist() == ["timed_out", "refused"]
+    assert "robot.mass must be" in found["error"].values[1]
+    assert c2d.rate(found, "timed_out", dim="run")["count"].item() == 1
+
+
+def test_an_interrupted_batch_is_a_table_of_what_was_finished() -> None:
+    def stop(done: int, _total: int) -> None:
+        if done >= 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(c2d.BatchInterrupted) as caught:
+        c2d.simulate_many([BASE] * 2000, progress=stop, threads=1, record="summary")
+    found = c2d.table(caught.value.runs)
+    finished = (found["outcome"] == "cleared").sum().item()
+    assert 3 <= finished < 2000
+    assert (found["outcome"] == "failed").sum().item() == 2000 - finished
+
+
+def test_nothing_is_an_empty_table_and_what_is_no_run_is_refused() -> None:
+    assert c2d.table([]).sizes == {"run": 0}
+    with pytest.raises(c2d.ScenarioError, match=r"runs\[0\] must be a Run"):
+        c2d.table([BASE])  # type: ignore[list-item]

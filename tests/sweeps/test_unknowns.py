@@ -1,0 +1,147 @@
+"""What is not known is sampled in an outer loop, and gives a band of rates."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import crawler2d as c2d
+from crawler2d.variation.ranges import Ranges
+from tests.sweeps.small import BASE, BRIEF, quiet, refusal
+
+PRESETS = {
+    "engineer": c2d.robots.engineer,
+    "absolem": c2d.robots.absolem,
+    "marv": c2d.robots.marv,
+    "gz_tracked_vehicle": c2d.robots.gz_tracked_vehicle,
+}
+FRICTION = {"terrain.friction": c2d.uniform(0.5, 1.0)}
+
+
+@pytest.fixture(scope="module")
+def found() -> xr.Dataset:
+    """A line of five on a step that it clears with some frictions."""
+    base = BASE.replace({"robot.track": c2d.LineOfWheels(5), "duration": 8.0})
+    heights = {"terrain.height": [0.02, 0.075]}
+    return quiet(base, heights, unknown=FRICTION, samples=8, repeats=5, seed=3)
+
+
+def test_every_sample_is_a_world_in_which_all_repeats_of_all_cells_run(found: xr.Dataset) -> None:
+    assert found["outcome"].dims == ("height", "sample", "repeat")
+    frictions = found["unknown_friction"].values
+    assert (frictions == frictions[:1, :, :1]).all()
+    assert len(set(frictions[0, :, 0].tolist())) == 8
+    drawn = np.array([json.loads(t)["terrain"]["friction"] for t in found["scenario"].values.flat])
+    own = frictions.ravel()
+    assert (np.abs(drawn / own - 1.0) <= 0.02 + 1e-12).all()  # patches of that floor
+    assert found["drawn_friction"].values.ravel().tolist() == drawn.tolist()
+
+
+def test_a_sample_depends_on_seed_and_path_alone(found: xr.Dataset) -> None:
+    more = {**FRICTION, "robot.mass": c2d.scaled(0.9, 1.1)}
+    other = quiet(BRIEF, {}, unknown=more, samples=20, repeats=1, seed=3)
+    own = found["unknown_friction"].values[0, :, 0]
+    assert other["unknown_friction"].values[:8, 0].tolist() == own.tolist()
+    drawn = found["drawn_approach"].values[0, :, :]
+    assert (drawn == drawn[:1]).all()  # the repeats are the same in every world
+
+
+def test_rates_are_a_band_and_never_averaged(found: xr.Dataset) -> None:
+    rates = c2d.rate(found)
+    assert rates["rate"].dims == ("height", "sample")
+    assert (rates["count"] == 5).all()
+    low, middle, high = (
+        rates[name].sel(height=0.075) for name in ("band_low", "median", "band_high")
+    )
+    own = rates["rate"].sel(height=0.075).values
+    assert (low.item(), middle.item(), high.item()) == tuple(np.quantile(own, [0.05, 0.5, 0.95]))
+    assert low.item() < 0.3
+    assert high.item() > 0.7
+    assert "start.approach: Shifted" in rates.attrs["varied"]
+    assert rates.attrs["unknown"] == "terrain.friction: Uniform(low=0.5, high=1.0)"
+
+
+def test_few_distinct_poses_are_warned_of_unless_something_was_unknown(found: xr.Dataset) -> None:
+    flat = quiet(BRIEF, {}, repeats=10, vary={"start.track_phase": c2d.uniform(0.0, 1e-6)})
+    with pytest.warns(c2d.ScenarioWarning, match="4 or fewer in 1 of 1 cells"):
+        rates = c2d.rate(flat)
+    assert rates["distinct"].item() == 1
+    with pytest.warns(c2d.ScenarioWarning, match="nothing varied"):
+        c2d.rate(quiet(BRIEF, {}, repeats=10, vary={}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        c2d.rate(quiet(BRIEF, {}, repeats=9, vary={}))
+        c2d.rate(found)
+
+
+def test_a_world_that_breaks_a_rule_is_refused_before_anything_runs() -> None:
+    unknown = {"robot.mass": c2d.uniform(-1.0, -0.5)}
+    error = refusal(BRIEF, {}, unknown=unknown, samples=2)
+    assert error.path == "cell[sample=0].robot.mass"
+    table = quiet(BRIEF, {}, unknown=unknown, samples=2, on_error="record")
+    assert (table["outcome"] == "refused").all()
+
+
+def test_what_is_unknown_is_not_replaced_by_what_varies() -> None:
+    vary = {"terrain.friction": c2d.uniform(0.5, 1.0)}
+    assert refusal(BRIEF, {}, unknown=FRICTION, vary=vary).path == "vary['terrain.friction']"
+    over = {"terrain.friction": [0.5]}
+    assert refusal(BRIEF, over, unknown=FRICTION).path == "unknown['terrain.friction']"
+    assert refusal(BRIEF, {}, unknown=FRICTION, samples=0).path == "samples"
+    assert refusal(BRIEF, {}, unknown=["terrain.friction"]).path == "unknown"
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_says_what_is_not_known_of_it_and_why(name: str) -> None:
+    robot = PRESETS[name]()
+    assert robot.name == name
+    ranges = c2d.unknowns.of_robot(robot)
+    assert set(ranges.sources) == set(ranges)
+    assert "robot.center_of_mass[0]" in ranges
+    base = c2d.Scenario(robot, c2d.terrains.step(0.02), duration=0.0)
+    both = ranges | c2d.unknowns.of_ground()
+    table = quiet(base, {}, unknown=both, samples=20, repeats=1)  # every world is legal
+    moved = table["unknown_belly_1"].values[:, 0]
+    assert np.ptp(moved) > 0.005
+
+
+def test_the_belly_moves_as_a_whole() -> None:
+    robot = c2d.robots.engineer()
+    assert robot.belly is not None
+    unknown = {"robot.belly[*][1]": c2d.shifted(-0.01, 0.01)}
+    base = c2d.Scenario(robot, c2d.terrains.step(0.02), duration=0.0)
+    table = quiet(base, {}, unknown=unknown, samples=3, repeats=1)
+    for text, lowest in zip(
+        table["scenario"].values[:, 0], table["unknown_belly_1"].values[:, 0], strict=True
+    ):
+        belly = np.array(json.loads(text)["robot"]["belly"])
+        shift = belly - np.array(robot.belly)
+        assert shift[:, 0].tolist() == [0.0] * len(belly)
+        assert np.allclose(shift[:, 1], lowest - robot.belly[0][1])
+
+
+def test_a_robot_without_belly_and_one_of_ones_own_have_ranges_too() -> None:
+    own = c2d.Robot.simple(10.0, axle_distance=0.3, radius=0.05)
+    assert "robot.belly[*][1]" not in c2d.unknowns.of_robot(own)
+    quiet(
+        c2d.Scenario(own, c2d.terrains.step(0.02), duration=0.0),
+        {},
+        unknown=c2d.unknowns.of_robot(own),
+        samples=3,
+        repeats=1,
+    )
+    with pytest.raises(c2d.ScenarioError, match="must be a Robot"):
+        c2d.unknowns.of_robot("engineer")  # type: ignore[arg-type]
+
+
+def test_joined_ranges_keep_their_sources() -> None:
+    both = c2d.variability.of_start() | {"start.approach": c2d.uniform(0.0, 0.1)}
+    assert isinstance(both, Ranges)
+    assert list(both) == ["start.approach", "start.track_phase"]
+    assert list(both.sources) == ["start.track_phase"]
+    assert both.gives_way == {"start.track_phase"}
+    other = {"gravity": c2d.uniform(9.0, 10.0)} | c2d.variability.of_contact()
+    assert list(other) == ["gravity", "drive.speed", "terrain.friction"]
+    assert "estimate" in repr(other)
