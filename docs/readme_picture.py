@@ -19,12 +19,12 @@ def draw() -> Figure:
     on_wheels, on_belt = figure.subplots(1, 2, sharey=True, width_ratios=[0.8, 1.2])
 
     run = c2d.simulate(wheels, obstacle)
-    run.plot(run.time[-1], axes=on_wheels, trials=False)
+    run.plot(on_wheels, time=run.time[-1], trials=False)
     on_wheels.set_title(f"on wheels: {run.outcome}", loc="left")
     on_wheels.set_xlim(-0.35, 0.45)
 
     run = c2d.simulate(robot, obstacle)
-    run.plot([1.6, 2.3, run.time[-1]], axes=on_belt)
+    run.plot(on_belt, time=[1.6, 2.3, run.time[-1]])
     on_belt.set_title(f"on a belt: {run.outcome}", loc="left")
     on_belt.set(xlim=(-0.45, 0.75), ylim=(-0.05, 0.40), ylabel="")
 

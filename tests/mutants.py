@@ -25,8 +25,10 @@ ROOT = Path(__file__).resolve().parent.parent
 
 TESTS = {
     "statistics": ["tests/sweeps/test_statistics.py", "tests/sweeps/test_statistics_scipy.py"],
-    "draws": ["tests/sweeps/test_draws.py"],
-    "rates": ["tests/sweeps/test_rates.py"],
+    "../variation/draws": ["tests/sweeps/test_draws.py"],
+    "../variation/distributions": ["tests/sweeps/test_draws.py"],
+    "rates": ["tests/sweeps/test_rates.py", "tests/sweeps/test_unknowns.py"],
+    "sequential": ["tests/sweeps/test_sequential.py"],
 }
 """Of each module of the sweeps that is tried."""
 

@@ -11,8 +11,8 @@ from crawler2d._core import Passed
 from crawler2d.errors import ScenarioError
 from crawler2d.results.row import Row as SweepRow
 from crawler2d.runs.threads import thread_count
-from crawler2d.sweeps.collect import RowsInterrupted, collect
-from crawler2d.sweeps.plan import plan_runs
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
+from crawler2d.sweeps.plan import Planner, plan_runs
 from crawler2d.variation.draws import Variation
 
 FAILED = "failed"
@@ -49,8 +49,8 @@ class Interrupted(KeyboardInterrupt):
 def plans(cell: Cell, setting: Setting, count: int, seed: int) -> list[Passed]:
     """Draw the first runs of a cell, as a sweep would."""
     base = cell.scenario(setting)
-    variation, nothing = Variation.of(base, None, ()), Variation({})
-    (plan,) = plan_runs(base, (), variation, nothing, repeats=count, samples=1, seed=seed)
+    planner = Planner(Variation.of(base, None, ()), Variation({}), seed)
+    (plan,) = plan_runs(base, (), planner, repeats=count)
     for each in plan.checked:
         if isinstance(each, ScenarioError):
             raise each
@@ -82,14 +82,8 @@ def simulate(plans: Sequence[Passed], repeats: Sequence[int], threads: int | Non
     chosen = [plans[repeat] for repeat in repeats]
     begin = time.process_time()
     try:
-        rows = collect(
-            chosen,
-            (),
-            store=None,
-            executor=None,
-            threads=thread_count(threads),
-            progress=False,
-        )
+        with Collector((), threads=thread_count(threads)) as collector:
+            rows = collector.rows(collector.batch(chosen), lambda _: None)
     except RowsInterrupted as stopped:
         spent = time.process_time() - begin
         kept = _rows(repeats, stopped.rows, spent, interrupted=True)

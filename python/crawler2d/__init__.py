@@ -49,6 +49,7 @@ from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
 from crawler2d.sweeps.compare import compare
 from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
 from crawler2d.sweeps.store import join_stores
 from crawler2d.sweeps.sweep import sweep
@@ -94,6 +95,7 @@ __all__ = [
     "Start",
     "StoreError",
     "TrackOutline",
+    "Until",
     "build_info",
     "compare",
     "join_stores",
@@ -102,6 +104,7 @@ __all__ = [
     "rate",
     "robots",
     "scaled",
+    "sequential",
     "shifted",
     "simulate",
     "simulate_many",

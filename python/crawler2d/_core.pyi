@@ -6,8 +6,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from crawler2d.errors import ScenarioError
-
 __all__ = [
     "Passed",
     "Simulation",
@@ -36,9 +34,7 @@ class Passed:
     def identity(self) -> str: ...
     @property
     def text(self) -> str: ...
-    def varied(
-        self, fields: list[tuple[str, bool]], rows: NDArray[np.float64]
-    ) -> list[Passed | ScenarioError]: ...
+    def varied(self, fields: list[tuple[str, bool]], rows: NDArray[np.float64]) -> list[Any]: ...
 
 @final
 class Simulation:

@@ -118,7 +118,10 @@ mod _core {
     /// Warns of what in a batch is legal but unlikely to be meant, once for each field.
     #[pyfunction]
     fn warn(py: Python<'_>, scenarios: Vec<PyRef<'_, Passed>>) -> PyResult<()> {
-        errors::warn(py, scenarios.iter().flat_map(|passed| passed.checked.doubts()))
+        errors::warn(
+            py,
+            scenarios.iter().flat_map(|passed| passed.checked.doubts()),
+        )
     }
 
     /// Simulates many scenarios on several threads; an error spoils only its own run.

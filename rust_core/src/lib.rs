@@ -41,9 +41,9 @@ pub use robot::{
     Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
-    Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run, Simulation, Trace,
-    branch, diagnose, escape_force, make_trials, outcome_of, poses, run_of_trial, simulate,
-    simulate_many, what_if,
+    Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run,
+    Simulation, Trace, branch, diagnose, escape_force, make_trials, outcome_of, poses,
+    run_of_trial, simulate, simulate_many, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

@@ -117,7 +117,6 @@ def test_progress_is_a_line_where_the_import_of_tqdm_fails(
     (folder / "tqdm" / "__init__.py").write_text("raise AttributeError('half')")
     for name in [name for name in sys.modules if name.partition(".")[0] == "tqdm"]:
         monkeypatch.delitem(sys.modules, name)
-    with reporter(True, 1) as callback:
-        assert callback is not None
-        callback(1, 1)
+    with reporter(True, 1) as report:
+        report(1)
     assert capsys.readouterr().err.startswith("1 of 1 runs")

@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, sync_playwright
 
 import crawler2d as c2d
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 from tests.shared import ROBOT, with_flippers
 
 STEP = c2d.terrains.step(0.075)
@@ -294,7 +294,7 @@ def test_a_chain_and_its_wheels_lie_where_the_run_has_them(open_page: Open, name
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
     for *place, angle in run.shoe_poses[sample, -22:]:  # of two tracks the right one is in front
         assert has_frame(frames, place, angle)
-    scene = Scene(run)
+    scene = scene_of(run)
     for row in scene.carriers[0].bodies:
         # Those within the guide are drawn smaller.
         if scene.kinds[row].is_in_chain and scene.bodies["body"][row] >= 0:
@@ -306,7 +306,7 @@ def test_a_chain_and_its_wheels_lie_where_the_run_has_them(open_page: Open, name
 def test_the_flippers_of_the_page_lie_where_the_run_has_them(open_page: Open, sample: int) -> None:
     run = simulated("flippers with grousers")
     frames = frames_of_fills(open_page(run.to_html(time=run.time[sample - 1])))
-    scene = Scene(run)
+    scene = scene_of(run)
     _, *arms = scene.carriers
     for arm in arms:
         *place, angle = arm.poses[sample]

@@ -202,8 +202,7 @@ def test_lanes_that_cannot_be_are_refused_by_name(terrain: Any, path: str) -> No
 def test_pictures_show_both_lanes() -> None:
     terrain = c2d.terrains.diagonal_barrier(0.5, height=0.03, thickness=0.04)
     run = c2d.simulate(ENGINEER.with_track(c2d.LineOfWheels(3)), terrain, duration=3.0)
-    axes = run.plot()
-    legend = axes[0].get_legend()
+    legend = run.plot().get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
     assert "left lane" in labels

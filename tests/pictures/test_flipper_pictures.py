@@ -7,7 +7,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 import crawler2d as c2d
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 from tests.pictures.reading import distance, page_of, placed
 from tests.shared import with_flippers
 
@@ -49,12 +49,12 @@ def lifted() -> c2d.Run:
 def drawn_lines(run: c2d.Run, time: float) -> list[Any]:
     """[m] Of the only pose that is drawn."""
     _, ax = plt.subplots()
-    run.plot(time, axes=ax)
+    run.plot(ax, time=time)
     return [np.array(line.get_xydata()) for line in ax.get_lines()]
 
 
 def test_contacts_lie_on_the_flippers(climb: c2d.Run) -> None:
-    table, scene = climb.contacts, Scene(climb)
+    table, scene = climb.contacts, scene_of(climb)
     of_arms = np.concatenate([arm.bodies for arm in scene.carriers[1:]])
     rows = np.flatnonzero(np.isin(table["body"], of_arms))
     assert len(rows) > 200
@@ -68,7 +68,7 @@ def test_contacts_lie_on_the_flippers(climb: c2d.Run) -> None:
 def test_a_picture_holds_every_track_where_it_is(climb: c2d.Run) -> None:
     for sample in (0, climb.time.size // 2, climb.time.size - 1):
         lines = drawn_lines(climb, climb.time[sample])
-        scene = Scene(climb)
+        scene = scene_of(climb)
         for row in np.flatnonzero(climb.bodies["body"] >= 0).tolist():
             outline = scene.outline(row, sample)
             assert any(np.array_equal(outline, line) for line in lines)
@@ -77,7 +77,7 @@ def test_a_picture_holds_every_track_where_it_is(climb: c2d.Run) -> None:
 def test_grousers_travel_round_a_flipper_that_turns_while_the_tracks_stand(
     lifted: c2d.Run,
 ) -> None:
-    table, scene = lifted.contacts, Scene(lifted)
+    table, scene = lifted.contacts, scene_of(lifted)
     circuit = scene.carriers[1].circuit
     assert circuit is not None
     assert np.ptp(lifted.drive_positions) < 5e-3
@@ -91,7 +91,7 @@ def test_grousers_travel_round_a_flipper_that_turns_while_the_tracks_stand(
 
 
 def test_the_centre_of_mass_lies_over_the_centre_of_pressure(lifted: c2d.Run) -> None:
-    table, scene = lifted.contacts, Scene(lifted)
+    table, scene = lifted.contacts, scene_of(lifted)
     lift = table["normal_force"] * table["normal_y"] - table["friction_force"] * table["normal_x"]
     raised, pushing = 19, lifted.time.size - 1  # at rest, both
     for sample in (raised, pushing):
@@ -107,7 +107,7 @@ def test_the_centre_of_mass_lies_over_the_centre_of_pressure(lifted: c2d.Run) ->
 
 
 def test_the_extent_holds_the_flippers(climb: c2d.Run) -> None:
-    scene = Scene(climb)
+    scene = scene_of(climb)
     left, right, bottom, top = scene.extent()
     for row in range(len(scene.kinds)):
         for sample in range(0, climb.time.size, 50):
@@ -115,7 +115,7 @@ def test_the_extent_holds_the_flippers(climb: c2d.Run) -> None:
             assert left < x.min() < x.max() < right
             assert bottom < y.min() < y.max() < top
     _, ax = plt.subplots()
-    climb.plot(0.0, axes=ax)
+    climb.plot(ax, time=0.0)
     assert (*ax.get_xlim(), *ax.get_ylim()) == (left, right, bottom, top)
 
 
@@ -129,7 +129,7 @@ def test_a_page_without_flippers_has_none() -> None:
 def test_an_edge_between_wheels_of_a_flipper_is_marked_and_named() -> None:
     run = c2d.simulate(ROBOTS["gears"], STEP, drive=CLIMB, duration=2.0)
     _, ax = plt.subplots()
-    run.plot(1.5, axes=ax)
+    run.plot(ax, time=1.5)
     (mark,) = [line for line in ax.get_lines() if "inside" in str(line.get_label())]
     assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.2]]
     assert str(mark.get_label()).endswith("between wheels 7 and 8")
@@ -144,7 +144,7 @@ def test_an_edge_between_wheels_of_a_flipper_is_marked_and_named() -> None:
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
 def test_an_intrusion_is_in_the_belt_of_what_the_page_says(terrain: Any) -> None:
     run = c2d.simulate(ROBOTS["gears"], terrain, drive=CLIMB, duration=4.0)
-    borne = Scene(run).carriers
+    borne = scene_of(run).carriers
     told = [event for event in page_of(run)["events"] if event["kind"] == "intrusion"]
     assert {event["carrier"] for event in told} == {0, 1, 2}
     lanes = run.events["lane"][run.events["kind"] == "intrusion"]

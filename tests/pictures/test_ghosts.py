@@ -8,7 +8,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.pictures.ghosts import ghost_lines, ghosts
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 from tests.shared import GEAR, ROBOT, with_flippers
 
 WHEELS = c2d.LineOfWheels(4)
@@ -38,14 +38,14 @@ def test_a_ghost_stands_where_the_run_of_its_trial_ends(run: c2d.Run) -> None:
     trials = [trial for trial in run.trials() if trial.name not in ("unchanged", "rebuilt")]
     assert len(shown) == len(trials) >= 3
     for ghost, trial in zip(shown, trials, strict=True):
-        ends = [carrier.poses[-1] for carrier in Scene(trial.run).carriers]
+        ends = [carrier.poses[-1] for carrier in scene_of(trial.run).carriers]
         assert ghost.frames == pytest.approx(np.array(ends), abs=1e-9), trial.name
         assert ghost.said.startswith(f"{ghost.change}: ")
         assert ghost.freed == trial.freed
 
 
 def test_the_lines_of_a_ghost_are_the_bodies_of_the_robot_moved_as_a_whole(run: c2d.Run) -> None:
-    scene = Scene(run)
+    scene = scene_of(run)
     for ghost in ghosts(run):
         lines = list(ghost_lines(scene, ghost))
         points = np.vstack(lines)
@@ -57,16 +57,16 @@ def test_the_lines_of_a_ghost_are_the_bodies_of_the_robot_moved_as_a_whole(run: 
 
 def test_a_plot_shows_the_ends_of_the_trials_that_freed_the_robot(run: c2d.Run) -> None:
     freed = [ghost.change for ghost in ghosts(run) if ghost.freed]
-    legend = run.plot()[0].get_legend()
+    legend = run.plot().get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
     found = [label for label in labels if label.startswith("end of the trial: ")]
     assert found == [f"end of the trial: {change}" for change in freed]
-    bare = run.plot(trials=False)[0].get_legend()
+    bare = run.plot(trials=False).get_legend()
     assert bare is not None
     assert not any("trial" in text.get_text() for text in bare.get_texts())
     # Before its end there is nothing to compare with.
-    early = run.plot(time=1.0)[0].get_legend()
+    early = run.plot(time=1.0).get_legend()
     assert early is not None
     assert not any("trial" in text.get_text() for text in early.get_texts())
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.common.bodies import BodyKind
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
-from crawler2d.pictures.shapes import Scene
-from crawler2d.results.bodies import BodyKind
+from crawler2d.pictures.scenes import scene_of
 from tests.pictures.reading import distance
 
 ROBOT = c2d.robots.engineer(flippers=None).with_track(c2d.GrouserBeltTrack())
@@ -17,7 +17,7 @@ ROBOT = c2d.robots.engineer(flippers=None).with_track(c2d.GrouserBeltTrack())
 
 def test_contacts_lie_on_the_grousers_that_pictures_show() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.step(0.06), start=c2d.Start(track_phase=0.013))
-    scene = Scene(run)
+    scene = scene_of(run)
     assert scene.kinds.count(BodyKind.GROUSER) == 22
     table = run.contacts
     assert set(table["body_kind"]) <= {BodyKind.BELT, BodyKind.BELLY, BodyKind.GROUSER}

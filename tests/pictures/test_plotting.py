@@ -10,24 +10,27 @@ from matplotlib.text import Text
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.pictures.reading import distance
-from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT
+from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT, refused
 
 WHEELS = ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
 
 
-def test_a_plot_has_a_side_view_and_three_strips(run: c2d.Run) -> None:
-    side, angle, speed, force = run.plot()
-    assert side.get_xlabel() == "x [m]"
+def test_a_plot_is_a_side_view_and_the_history_three_strips(run: c2d.Run) -> None:
+    side = run.plot()
+    assert (side.get_xlabel(), side.get_ylabel()) == ("x [m]", "y [m]")
+    assert "cleared" in side.get_title(loc="left")
+    angle, speed, force = run.plot_history()
     assert "[deg]" in angle.get_ylabel()
     assert "[m/s]" in speed.get_ylabel()
     assert "[N]" in force.get_ylabel()
     assert force.get_xlabel() == "time [s]"
-    assert "cleared" in side.get_title(loc="left")
-    side.figure.canvas.draw()
+    assert angle.get_title(loc="left") == run.title
+    for ax in (side, angle):
+        ax.figure.canvas.draw()
 
 
 def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
-    side = run.plot()[0]
+    side = run.plot()
     left, right = side.get_xlim()
     bottom, top = side.get_ylim()
     x, y = run.position.T
@@ -39,28 +42,40 @@ def test_the_side_view_shows_the_whole_path(run: c2d.Run) -> None:
 @pytest.mark.parametrize("name", ["$5", "a $ b $ c", "$\\frac{$", "\\$", "x_{$1^$", "100 %"])
 def test_a_name_is_no_formula(scenario: Scenario, name: str) -> None:
     run = c2d.simulate(scenario.replace({"robot.name": name, "duration": 0.1}))
-    side = run.plot()[0]
+    side = run.plot()
     side.figure.canvas.draw()
     title = next(text for text in side.findobj(Text) if text.get_text().startswith(name))
     assert not title.get_parse_math()
 
 
-def test_one_axes_takes_the_side_view_alone(run: c2d.Run) -> None:
-    _, ax = plt.subplots()
-    assert run.plot([0.0, 1.0], axes=ax) == (ax,)
-    assert ax.get_lines()
-
-
-def test_four_axes_of_the_caller_are_used(run: c2d.Run) -> None:
+def test_a_plot_is_drawn_into_the_axes_it_is_given(run: c2d.Run) -> None:
     _, axes = plt.subplots(4, 1)
-    assert run.plot(1.0, axes=axes) == tuple(axes)
+    assert run.plot(axes[0], time=[0.0, 1.0]) is axes[0]
+    assert run.plot_history(axes[1:]) == tuple(axes[1:])
     assert all(ax.get_lines() for ax in axes)
+    assert len(plt.get_fignums()) == 1
 
 
-def test_another_number_of_axes_is_refused(run: c2d.Run) -> None:
+@pytest.mark.parametrize("ax", [1.0, [0.0, 1.0], "side"])
+def test_what_is_no_axes_is_refused(run: c2d.Run, ax: Any) -> None:
+    error = refused(lambda: run.plot(ax))
+    assert (error.path, error.rule) == ("ax", "must be an Axes of matplotlib")
+
+
+def test_another_number_of_axes_is_refused_for_the_history(run: c2d.Run) -> None:
     _, axes = plt.subplots(2, 1)
-    with pytest.raises(c2d.ScenarioError, match="one Axes or four"):
-        run.plot(axes=tuple(axes))
+    assert refused(lambda: run.plot_history(axes)).path == "axes"
+    assert refused(lambda: run.plot_history(axes[0])).path == "axes"
+    wrong: Any = [axes[0], None, axes[1]]
+    assert refused(lambda: run.plot_history(wrong)).path == "axes[1]"
+
+
+def test_without_a_history_no_figure_is_left_behind() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.2, record="summary")
+    for draw in (run.plot, run.plot_history):
+        with pytest.raises(AttributeError, match="no history"):
+            draw()
+    assert plt.get_fignums() == []
 
 
 @pytest.mark.parametrize(
@@ -75,7 +90,7 @@ def test_another_number_of_axes_is_refused(run: c2d.Run) -> None:
     ids=["belt", "skids that stop", "wheels", "gears", "free wheels"],
 )
 def test_every_kind_of_robot_and_ground_is_drawn(track: Any, terrain: Any) -> None:
-    side = c2d.simulate(ROBOT.with_track(track), terrain).plot()[0]
+    side = c2d.simulate(ROBOT.with_track(track), terrain).plot()
     side.figure.canvas.draw()
 
 
@@ -84,7 +99,7 @@ def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:
     run = c2d.simulate(ROBOT.with_track(track), c2d.terrains.step(0.06), duration=3.0)
     assert run.diagnosis is not None  # it stopped, so that its last contacts are those of its pose
     _, ax = plt.subplots()
-    run.plot(run.time[-1], axes=ax)
+    run.plot(ax, time=run.time[-1])
     black = [line for line in ax.get_lines() if line.get_color() == "#222222"]
     drawn = [np.array(line.get_xydata()) for line in black]
     gears = [outline for outline in drawn if len(outline) == 8 * 14 + 1]
@@ -99,7 +114,7 @@ def test_gears_are_drawn_turned_as_far_as_they_have_run() -> None:
 
 def test_an_edge_inside_the_track_is_marked_and_named() -> None:
     run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
-    side, *strips = run.plot()
+    side, strips = run.plot(), run.plot_history()
     (mark,) = [line for line in side.get_lines() if "inside" in str(line.get_label())]
     assert np.array(mark.get_xydata()).tolist() == [[0.0, 0.1]]
     depth = 1e3 * run.metrics["intrusion_depth"]
@@ -114,7 +129,7 @@ def labels(ax: Any) -> list[str]:
 
 def test_the_last_pose_has_its_contacts_with_a_stated_scale() -> None:
     run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
-    side = run.plot()[0]
+    side = run.plot()
     last = run.contacts["time"] == run.time[-1]
     force = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])[last].max()
     speed = np.abs(run.contacts["surface_speed"][last]).max()
@@ -130,7 +145,7 @@ def test_the_last_pose_has_its_contacts_with_a_stated_scale() -> None:
 def test_contacts_are_those_of_the_last_pose_that_is_drawn() -> None:
     run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
     _, ax = plt.subplots()
-    run.plot([0.0, 0.5], axes=ax)
+    run.plot(ax, time=[0.0, 0.5])
     now = run.contacts["time"] == run.time[np.abs(run.time - 0.5).argmin()]
     (forces,) = [c for c in ax.collections if "contact force" in str(c.get_label())]
     assert np.allclose(np.asarray(forces.get_offsets())[:, 0], run.contacts["x"][now])
@@ -139,20 +154,26 @@ def test_contacts_are_those_of_the_last_pose_that_is_drawn() -> None:
 
 def test_the_belt_is_drawn_round_wheels_alone(run: c2d.Run) -> None:
     belt = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.5)
-    assert "envelope (taut belt round the wheels)" in labels(run.plot()[0])
-    assert "envelope (taut belt round the wheels)" not in labels(belt.plot()[0])
+    assert "envelope (taut belt round the wheels)" in labels(run.plot())
+    assert "envelope (taut belt round the wheels)" not in labels(belt.plot())
 
 
 def test_the_title_says_why_the_robot_stopped() -> None:
     run = c2d.simulate(WHEELS, c2d.terrains.step(0.1), duration=4.0)
-    title, *why = run.plot()[0].get_title(loc="left").splitlines()
+    side = run.plot()
+    title, *why = side.get_title(loc="left").splitlines()
     assert title == run.title
     assert " ".join(why) == str(run.diagnosis)
-    assert max(map(len, why)) <= 120
+    # In a small picture the sentence would be all that one sees.
+    _, axes = plt.subplots(1, 3, figsize=(9.0, 4.0))
+    assert run.plot(axes[1]).get_title(loc="left").replace("\n", " ") == run.title
+    for ax in (side, axes[1]):
+        (written,) = [text for text in ax.findobj(Text) if text.get_text().startswith(title[:20])]
+        assert written.get_window_extent().width < ax.get_window_extent().width
 
 
 def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) -> None:
-    side, *strips = run.plot()
+    side, strips = run.plot(), run.plot_history()
     assert not [line for line in side.get_lines() if "inside" in str(line.get_label())]
     assert "intrusion" in run.events["kind"]
     assert not any(strip.patches for strip in strips)
@@ -161,4 +182,5 @@ def test_no_edge_is_marked_and_nothing_shaded_when_a_run_clears(run: c2d.Run) ->
 def test_a_run_of_one_sample_is_drawn() -> None:
     run = c2d.simulate(ROBOT, c2d.terrains.flat(), duration=0.0, gravity=0.0)
     with np.errstate(all="raise"):
-        assert len(run.plot()) == 4
+        assert run.plot().get_lines()
+        assert len(run.plot_history()) == 3

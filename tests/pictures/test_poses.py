@@ -7,7 +7,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 from tests.pictures.reading import PageRobot, distance, page_of, placed
 from tests.shared import GEAR, ROBOT, with_flippers
 
@@ -75,7 +75,7 @@ def test_angles_count_full_turns(run: c2d.Run) -> None:
 
 
 def test_the_page_has_every_body_to_a_tenth_of_a_millimetre(run: c2d.Run) -> None:
-    scene, robot = Scene(run), PageRobot(page_of(run))
+    scene, robot = scene_of(run), PageRobot(page_of(run))
     near = np.concatenate([carrier.bodies for carrier in scene.carriers])
     for sample in range(0, run.time.size, 250):
         drawn = robot.outlines(sample)

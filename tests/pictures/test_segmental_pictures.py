@@ -10,10 +10,11 @@ from matplotlib import pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import crawler2d as c2d
+from crawler2d.common.bodies import BodyKind
 from crawler2d.common.table import Table
+from crawler2d.drawings.scene import Scene
 from crawler2d.parameters.track import Track
-from crawler2d.pictures.shapes import Scene
-from crawler2d.results.bodies import BodyKind
+from crawler2d.pictures.scenes import scene_of
 from tests.pictures.reading import distance, page_of, placed, unpacked
 
 STEP = c2d.terrains.step(0.06)
@@ -59,7 +60,7 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
     distances = []
     for sample in range(20, chain.time.size, 8):
         _, ax = plt.subplots()
-        chain.plot(chain.time[sample], axes=ax)
+        chain.plot(ax, time=chain.time[sample])
         outlines = drawn_shoes(ax)
         plt.close("all")
         assert len(outlines) == len(pieces)
@@ -79,7 +80,7 @@ def test_contacts_lie_on_the_shoes_that_are_drawn(chain: c2d.Run) -> None:
 
 def test_each_pose_has_its_shoes(chain: c2d.Run) -> None:
     _, ax = plt.subplots()
-    chain.plot([0.0, 1.0, 2.0], axes=ax)
+    chain.plot(ax, time=[0.0, 1.0, 2.0])
     assert len([c for c in ax.collections if type(c) is PolyCollection]) == 3
 
 
@@ -112,7 +113,7 @@ def test_teeth_stand_between_the_pins_that_are_drawn(terrain: Any, flippers: boo
     bare = c2d.robots.engineer(flippers=None, track=SPROCKET)
     robot = c2d.robots.engineer(track=SPROCKET) if flippers else bare
     run = c2d.simulate(robot, terrain, duration=4.0)
-    scene, poses = Scene(run), run.poses
+    scene, poses = scene_of(run), run.poses
     assert (len(scene.carriers) > 1) == flippers
     (sprocket,) = rows_of(scene, BodyKind.SPROCKET)
     plates = rows_of(scene, BodyKind.SHOE)
@@ -135,9 +136,9 @@ def directed(angle: float) -> Any:
 
 def test_the_picture_has_sprocket_idler_and_wheels_and_no_guide() -> None:
     run = simulated(SPROCKET, duration=0.5)
-    scene = Scene(run)
+    scene = scene_of(run)
     _, ax = plt.subplots()
-    run.plot(0.3, axes=ax)
+    run.plot(ax, time=0.3)
     lines = [np.array(line.get_xydata()) for line in ax.get_lines()]
     sample = int(np.abs(run.time - 0.3).argmin())
     in_chain = [kind for kind in BodyKind if kind.is_in_chain]
@@ -153,7 +154,7 @@ def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
     run = simulated(SPROCKET)
     row = next(row for row, bodies in enumerate(run.events["bodies"]) if len(set(bodies)) == 2)
     _, ax = plt.subplots()
-    run.plot(0.5 * (run.events["start"][row] + run.events["end"][row]), axes=ax)
+    run.plot(ax, time=0.5 * (run.events["start"][row] + run.events["end"][row]))
     (told,) = [
         str(line.get_label()) for line in ax.get_lines() if "inside" in str(line.get_label())
     ]
@@ -163,7 +164,7 @@ def test_no_edge_is_between_the_wheels_in_a_chain() -> None:
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
 def test_the_page_has_sprocket_idler_and_wheels(terrain: Any) -> None:
     run = simulated(SPROCKET, terrain, duration=0.5)
-    robot, scene = page_of(run)["robot"], Scene(run)
+    robot, scene = page_of(run)["robot"], scene_of(run)
     (chassis,) = robot["carriers"]
     assert (chassis["envelope"], chassis["circuit"]) == (None, None)
     kinds = [body["kind"] for body in chassis["bodies"]]

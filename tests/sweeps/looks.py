@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crawler2d import wilson
-from crawler2d.sweeps.sequential import Stopping, sequential
+from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import Interval
 
 Flags = NDArray[np.bool_]
@@ -47,13 +47,13 @@ class Looks:
         """Which intervals do not hold a rate."""
         return (self.low > rate) | (self.high < rate)
 
-    def stops(self, stopping: Stopping) -> Flags:
-        """Which of these intervals end a cell: `Stopping.is_done` with any kind of interval."""
+    def stops(self, until: Until) -> Flags:
+        """Which of these intervals end a cell: `Until.is_done` with any kind of interval."""
         runs = np.arange(len(self.low))[:, np.newaxis]
-        enough = self.high - self.low <= stopping.width
-        if stopping.threshold is not None:
-            enough |= self.misses(stopping.threshold)
-        return (runs >= stopping.least) & enough | (runs >= stopping.most)
+        enough = self.high - self.low <= until.width
+        if until.threshold is not None:
+            enough |= self.misses(until.threshold)
+        return (runs >= until.least) & enough | (runs >= until.most)
 
 
 @cache
@@ -90,9 +90,9 @@ def ever_missed(looks: Looks, rate: float, least: int = 1) -> float:
     return float(endings(rate, looks.misses(rate) & (runs >= least)).sum())
 
 
-def missed_at_the_end(looks: Looks, rate: float, stopping: Stopping) -> float:
+def missed_at_the_end(looks: Looks, rate: float, until: Until) -> float:
     """Return the probability that the interval with which a cell ends does not hold the rate."""
-    return float(endings(rate, looks.stops(stopping))[looks.misses(rate)].sum())
+    return float(endings(rate, looks.stops(until))[looks.misses(rate)].sum())
 
 
 def expected_runs(rate: float, ends: Flags) -> float:
@@ -131,13 +131,13 @@ def wrong_rows() -> Iterator[list[str]]:
     """Yield the table of how often intervals are wrong."""
     kinds = ("Wilson", "sequential")
     yield ["rate", *(f"{kind}, {when}" for when in ("ever", "at the end") for kind in kinds)]
-    stopping = Stopping(threshold=0.5)
+    until = Until(threshold=0.5)
     shares = {
         rate: (
             ever_missed(wilsons(), rate, LEAST),
             ever_missed(sequentials(), rate),
-            missed_at_the_end(wilsons(), rate, stopping),
-            missed_at_the_end(sequentials(), rate, stopping),
+            missed_at_the_end(wilsons(), rate, until),
+            missed_at_the_end(sequentials(), rate, until),
         )
         for rate in UP_TO_HALF
     }
@@ -159,7 +159,7 @@ def cost_rows() -> Iterator[list[str]]:
             f"{wilson_runs(rate, 0.2)}",
             "-" if undecided else f"{expected_runs(rate, looks.misses(0.5)):.0f}",
             "-" if undecided else f"{binomial_runs(rate, 0.95)}",
-            f"{expected_runs(rate, looks.stops(Stopping(threshold=0.5))):.0f}",
+            f"{expected_runs(rate, looks.stops(Until(threshold=0.5))):.0f}",
         ]
 
 

@@ -11,7 +11,7 @@ import crawler2d as c2d
 from crawler2d._core import Passed
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
-from crawler2d.sweeps.plan import Plan, plan_runs
+from crawler2d.sweeps.plan import Plan, Planner, plan_runs
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 from crawler2d.variation.draws import Variation, uniform_numbers
 from tests.shared import ROBOT, VARIANTS
@@ -20,7 +20,7 @@ DEFAULT_PATHS = ["start.approach", "start.track_phase", "drive.speed", "terrain.
 
 
 def planned(cell: Scenario, variation: Variation, repeats: int) -> Plan:
-    (plan,) = plan_runs(cell, [], variation, Variation({}), repeats=repeats, samples=1, seed=0)
+    (plan,) = plan_runs(cell, [], Planner(variation, Variation({}), seed=0), repeats=repeats)
     return plan
 
 

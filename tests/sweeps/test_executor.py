@@ -104,8 +104,9 @@ def test_ctrl_c_keeps_what_came_back() -> None:
         swept(Unreliable(losses=1, error=KeyboardInterrupt()))  # type: ignore[arg-type]
     table = c2d.table(caught.value.runs)
     assert table.sizes == {"run": 32}
-    assert set(table["outcome"].values) == {"failed"}
-    assert "interrupted" in str(table["error"].values[0])
+    failed = table["outcome"] == "failed"
+    assert 0 < failed.sum() <= 32
+    assert "interrupted" in str(table["error"].values[failed][0])
 
 
 def test_a_worker_of_another_build_is_refused() -> None:

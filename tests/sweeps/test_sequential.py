@@ -14,7 +14,7 @@ import pytest
 
 from crawler2d import ScenarioError, wilson
 from crawler2d.sweeps import sequential as module
-from crawler2d.sweeps.sequential import Stopping, sequential
+from crawler2d.sweeps.sequential import Until, sequential
 from tests.sweeps import looks
 
 PAGE = (Path(__file__).parents[2] / "docs/studies/stopping.md").read_text(encoding="utf-8")
@@ -100,21 +100,21 @@ def test_a_confidence_of_50_percent_is_kept_too() -> None:
 
 
 @pytest.mark.parametrize(
-    "stopping",
+    "until",
     [
-        Stopping(),
-        Stopping(width=0.3),
-        Stopping(threshold=0.5),
-        Stopping(threshold=0.5, least=0),
-        Stopping(threshold=0.95, least=1),
-        Stopping(threshold=0.1, width=0.05, most=500),
+        Until(),
+        Until(width=0.3),
+        Until(threshold=0.5),
+        Until(threshold=0.5, least=0),
+        Until(threshold=0.95, least=1),
+        Until(threshold=0.1, width=0.05, most=500),
     ],
 )
-def test_the_interval_of_a_cell_that_ends_holds_the_rate_in_95_percent(stopping: Stopping) -> None:
-    ends = looks.sequentials().stops(stopping)
-    for rate in {*RATES[::4], *(1.0 - rate for rate in RATES[::4]), stopping.threshold or 0.5}:
+def test_the_interval_of_a_cell_that_ends_holds_the_rate_in_95_percent(until: Until) -> None:
+    ends = looks.sequentials().stops(until)
+    for rate in {*RATES[::4], *(1.0 - rate for rate in RATES[::4]), until.threshold or 0.5}:
         assert looks.endings(rate, ends).sum() == pytest.approx(1.0)
-        assert looks.missed_at_the_end(looks.sequentials(), rate, stopping) < 0.035
+        assert looks.missed_at_the_end(looks.sequentials(), rate, until) < 0.035
 
 
 def test_wilson_at_repeated_looks_misses_a_rate_in_28_to_43_percent() -> None:
@@ -123,8 +123,8 @@ def test_wilson_at_repeated_looks_misses_a_rate_in_28_to_43_percent() -> None:
 
 
 def test_wilson_with_a_threshold_finds_the_wrong_side_of_a_rate_on_it_in_27_percent() -> None:
-    stopping = Stopping(threshold=0.5)
-    found = looks.missed_at_the_end(looks.wilsons(), 0.5, stopping)
+    until = Until(threshold=0.5)
+    found = looks.missed_at_the_end(looks.wilsons(), 0.5, until)
     assert found == pytest.approx(0.275, abs=0.001)
 
 
@@ -229,7 +229,7 @@ def test_an_interval_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     for k, m in numbers:
         sequential(k, k + m)
     # Two bounds; each takes three to start with. Half a microsecond a step.
-    assert calls[0] / len(numbers) < 14
+    assert calls[0] / len(numbers) < 14.5
 
 
 def test_no_runs_know_nothing() -> None:
@@ -248,7 +248,7 @@ def test_numpy_numbers_give_the_same() -> None:
 @pytest.mark.parametrize(("successes", "count"), [(-1, 5), (6, 5), (0, -1)])
 def test_impossible_counts_are_refused(successes: int, count: int) -> None:
     message = f"^successes must be from 0 to count = {count}, got {successes}$"
-    for refuse in (sequential, Stopping().is_done, Stopping().side):
+    for refuse in (sequential, Until().is_done, Until().side):
         with pytest.raises(ValueError, match=message):
             refuse(successes, count)
 
@@ -265,61 +265,61 @@ def test_impossible_confidence_is_refused(confidence: float) -> None:
 
 
 def test_a_cell_ends_where_its_interval_says() -> None:
-    for stopping in (
-        Stopping(width=0.3, most=60),
-        Stopping(width=0.25, threshold=0.75, least=0, confidence=0.8),
-        Stopping(threshold=0.4, least=70, most=70),
+    for until in (
+        Until(width=0.3, most=60),
+        Until(width=0.25, threshold=0.75, least=0, confidence=0.8),
+        Until(threshold=0.4, least=70, most=70),
     ):
         found = np.zeros((91, 91), dtype=bool)
         sides = np.zeros((91, 91), dtype=int)
         for n in range(91):
             for k in range(n + 1):
-                found[n, k] = stopping.is_done(k, n)
-                sides[n, k] = stopping.side(k, n)
-        each = looks.Looks.of(partial(sequential, confidence=stopping.confidence), most=90)
+                found[n, k] = until.is_done(k, n)
+                sides[n, k] = until.side(k, n)
+        each = looks.Looks.of(partial(sequential, confidence=until.confidence), most=90)
         seen = np.tri(91, dtype=bool)
-        assert (found == each.stops(stopping))[seen].all()
-        if stopping.threshold is None:
+        assert (found == each.stops(until))[seen].all()
+        if until.threshold is None:
             assert not sides.any()
         else:
-            assert ((sides == 1) == (each.low > stopping.threshold))[seen].all()
-            assert ((sides == -1) == (each.high < stopping.threshold))[seen].all()
+            assert ((sides == 1) == (each.low > until.threshold))[seen].all()
+            assert ((sides == -1) == (each.high < until.threshold))[seen].all()
             assert {-1, 0, 1} == set(sides[seen].tolist())
 
 
 def test_least_and_most_come_before_what_is_known() -> None:
-    stopping = Stopping(threshold=0.5, least=12, most=15)
-    assert stopping.side(11, 11) == 1
-    assert not stopping.is_done(11, 11)
-    assert stopping.is_done(12, 12)
-    assert not stopping.is_done(7, 14)
-    assert stopping.is_done(8, 15)
-    assert stopping.is_done(8, 16)
-    assert stopping.side(8, 15) == 0
+    until = Until(threshold=0.5, least=12, most=15)
+    assert until.side(11, 11) == 1
+    assert not until.is_done(11, 11)
+    assert until.is_done(12, 12)
+    assert not until.is_done(7, 14)
+    assert until.is_done(8, 15)
+    assert until.is_done(8, 16)
+    assert until.side(8, 15) == 0
 
 
 def test_an_interval_that_ends_at_the_threshold_is_not_beyond_it() -> None:
     _, low, high = sequential(14, 20)
-    assert Stopping(threshold=low).side(14, 20) == 0
-    assert Stopping(threshold=math.nextafter(low, 0.0)).side(14, 20) == 1
-    assert Stopping(threshold=high).side(14, 20) == 0
-    assert Stopping(threshold=math.nextafter(high, 1.0)).side(14, 20) == -1
-    assert Stopping(width=high - low).is_done(14, 20)
-    assert not Stopping(width=math.nextafter(high - low, 0.0)).is_done(14, 20)
+    assert Until(threshold=low).side(14, 20) == 0
+    assert Until(threshold=math.nextafter(low, 0.0)).side(14, 20) == 1
+    assert Until(threshold=high).side(14, 20) == 0
+    assert Until(threshold=math.nextafter(high, 1.0)).side(14, 20) == -1
+    assert Until(width=high - low).is_done(14, 20)
+    assert not Until(width=math.nextafter(high - low, 0.0)).is_done(14, 20)
 
 
 def test_ten_equal_outcomes_tell_the_side_of_a_half() -> None:
-    stopping = Stopping(threshold=0.5)
-    assert [stopping.side(n, n) for n in (9, 10)] == [0, 1]
-    assert [stopping.side(0, n) for n in (9, 10)] == [0, -1]
-    assert stopping.is_done(10, 10)
-    assert stopping.is_done(0, 10)
+    until = Until(threshold=0.5)
+    assert [until.side(n, n) for n in (9, 10)] == [0, 1]
+    assert [until.side(0, n) for n in (9, 10)] == [0, -1]
+    assert until.is_done(10, 10)
+    assert until.is_done(0, 10)
 
 
 def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
     widths = looks.sequentials().high - looks.sequentials().low
-    wide = [n for n in range(1, looks.MOST) if widths[n, : n + 1].max() > Stopping().width]
-    assert max(wide) + 1 == 245 <= Stopping().most
+    wide = [n for n in range(1, looks.MOST) if widths[n, : n + 1].max() > Until().width]
+    assert max(wide) + 1 == 245 <= Until().most
     assert "at most 245 runs" in PAGE
 
 
@@ -347,33 +347,40 @@ def test_every_rate_reaches_the_default_width_within_the_default_most() -> None:
 )
 def test_what_breaks_a_rule_is_refused_at_once(field: str, value: Any, rule: str) -> None:
     with pytest.raises(ScenarioError) as caught:
-        Stopping(**{field: value})
-    assert (caught.value.path, caught.value.rule) == (f"stopping.{field}", rule)
+        Until(**{field: value})
+    assert (caught.value.path, caught.value.rule) == (f"until.{field}", rule)
     assert caught.value.value is value or caught.value.value == value or math.isnan(value)
 
 
+def test_a_list_is_no_number() -> None:
+    for field in ("width", "threshold", "least", "most", "confidence"):
+        given: Any = {field: np.array([0.5, 0.5])}
+        with pytest.raises(ScenarioError, match=f"^until.{field} must be a (whole )?number"):
+            Until(**given)
+
+
 def test_the_ends_of_every_rule_are_allowed() -> None:
-    assert Stopping(width=1.0, least=10**6, most=10**6).is_done(0, 10**6)
-    assert Stopping() == Stopping(width=0.2, threshold=None, least=10, most=250, confidence=0.95)
+    assert Until(width=1.0, least=10**6, most=10**6).is_done(0, 10**6)
+    assert Until() == Until(width=0.2, threshold=None, least=10, most=250, confidence=0.95)
 
 
 def test_at_least_one_run_is_made() -> None:
     with pytest.raises(ScenarioError, match=r"must be a whole number from 1 to 1000000, got 0$"):
-        Stopping(least=0, most=0)
-    assert not Stopping(least=0, most=1, width=0.9).is_done(0, 0)
-    assert Stopping(least=0, most=1, width=0.9).is_done(1, 1)
+        Until(least=0, most=0)
+    assert not Until(least=0, most=1, width=0.9).is_done(0, 0)
+    assert Until(least=0, most=1, width=0.9).is_done(1, 1)
 
 
 def test_a_rule_is_frozen_equal_to_its_copy_and_made_of_python_numbers() -> None:
     given: Any = (np.float32(0.25), np.float64(0.5), np.int32(5), np.uint64(80), np.array(0.9))
-    names = [field.name for field in dataclasses.fields(Stopping)]
-    stopping = Stopping(**dict(zip(names, given, strict=True)))
-    expected = Stopping(width=0.25, threshold=0.5, least=5, most=80, confidence=0.9)
-    assert stopping == expected == pickle.loads(pickle.dumps(stopping))
-    assert hash(stopping) == hash(expected)
-    assert repr(stopping) == repr(expected)
+    names = [field.name for field in dataclasses.fields(Until)]
+    until = Until(**dict(zip(names, given, strict=True)))
+    expected = Until(width=0.25, threshold=0.5, least=5, most=80, confidence=0.9)
+    assert until == expected == pickle.loads(pickle.dumps(until))
+    assert hash(until) == hash(expected)
+    assert repr(until) == repr(expected)
     with pytest.raises(dataclasses.FrozenInstanceError):
-        stopping.width = 0.1  # type: ignore[misc]
+        until.width = 0.1  # type: ignore[misc]
 
 
 # The page.

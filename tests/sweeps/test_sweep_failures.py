@@ -13,7 +13,7 @@ import crawler2d as c2d
 from crawler2d.common.units import METRICS
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.row import Row
-from crawler2d.sweeps import collect as collecting
+from crawler2d.sweeps.collect import Collector
 from crawler2d.variation.distributions import scaled, uniform
 from tests.shared import ROBOT
 from tests.sweeps.small import BASE, BRIEF, MODELS, quiet, refusal
@@ -125,14 +125,15 @@ def test_a_sweep_of_refused_cells_alone_has_no_metrics() -> None:
 def diverging(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
     """Let one run of every batch diverge."""
 
-    def collect(*given: Any, **options: Any) -> list[Row]:
-        rows = collecting.collect(*given, **options)
+    whole = Collector.rows
+
+    def rows_of(*given: Any) -> list[Row]:
+        rows = whole(*given)
         error = c2d.SimulationDiverged("chassis is not finite", step=7, body="chassis")
         rows[index] = Row.of_error(error, rows[index].identity, rows[index].scenario)
         return rows
 
-    # By the table of modules: the package may have a function of that name.
-    monkeypatch.setattr(sys.modules["crawler2d.sweeps.sweep"], "collect", collect)
+    monkeypatch.setattr(Collector, "rows", rows_of)
 
 
 def test_a_run_that_diverged_can_be_recorded(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,9 +1,13 @@
 """Runs of a batch as a table."""
 
+from pathlib import Path
+
+import pandas as pd
 import pytest
+import xarray as xr
 
 import crawler2d as c2d
-from tests.sweeps.small import BASE, BRIEF, quiet
+from tests.sweeps.small import BASE, BRIEF, MODELS, quiet
 
 
 def test_the_table_of_a_batch_has_the_columns_of_a_sweep() -> None:
@@ -49,3 +53,15 @@ def test_nothing_is_an_empty_table_and_what_is_no_run_is_refused() -> None:
     assert c2d.table([]).sizes == {"run": 0}
     with pytest.raises(c2d.ScenarioError, match=r"runs\[0\] must be a Run"):
         c2d.table([BASE])  # type: ignore[list-item]
+
+
+def test_tables_and_rates_go_to_netcdf_and_back_and_to_parquet(tmp_path: Path) -> None:
+    unknown = {"terrain.friction": c2d.uniform(0.5, 1.0)}
+    found = quiet(BASE, {"robot.track": MODELS}, unknown=unknown, samples=2, trials="auto")
+    for name, dataset in {"runs": found, "rates": c2d.rate(found)}.items():
+        dataset.to_netcdf(tmp_path / f"{name}.nc")
+        xr.testing.assert_identical(dataset, xr.load_dataset(tmp_path / f"{name}.nc"))
+    found.to_dataframe().to_parquet(tmp_path / "runs.parquet")
+    back = pd.read_parquet(tmp_path / "runs.parquet")
+    assert back["scenario"].tolist() == found["scenario"].values.ravel().tolist()
+    assert back["final_x"].tolist() == found["final_x"].values.ravel().tolist()

@@ -53,7 +53,7 @@ def test_rates_are_a_band_and_never_averaged(found: xr.Dataset) -> None:
     assert rates["rate"].dims == ("height", "sample")
     assert (rates["count"] == 5).all()
     low, middle, high = (
-        rates[name].sel(height=0.075) for name in ("band_low", "median", "band_high")
+        rates[name].sel(height=0.075) for name in ("band_low", "band_median", "band_high")
     )
     own = rates["rate"].sel(height=0.075).values
     assert (low.item(), middle.item(), high.item()) == tuple(np.quantile(own, [0.05, 0.5, 0.95]))

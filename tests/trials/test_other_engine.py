@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 from tests.trials.robots import draw
 
 pymunk = pytest.importorskip("pymunk")
@@ -52,7 +52,7 @@ def set_at_rest(run: c2d.Run) -> tuple[Any, Any]:
     space = pymunk.Space()
     space.gravity, space.iterations = (0.0, -run.scenario.gravity), ITERATIONS
     space.collision_slop, space.collision_bias = 1e-5, math.exp(-60.0)
-    profile = Scene(run).lanes[0][1]
+    profile = scene_of(run).lanes[0][1]
     for one, other in zip(profile[:-1].tolist(), profile[1:].tolist(), strict=True):
         finish(pymunk.Segment(space.static_body, one, other, 0.0), 0, friction, space)
     x, y = run.position[-1].tolist()

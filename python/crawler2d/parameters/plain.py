@@ -45,6 +45,25 @@ class Parameters:
     either: ClassVar[tuple[str, ...]] = ()
     """Fields of which only one may be set: a path that sets one takes the others off."""
 
+    def __init_subclass__(cls) -> None:
+        """Keep `dataclass` from giving the class a repr of its own."""
+        super().__init_subclass__()
+        cls.__repr__ = Parameters.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """Write an expression that makes an equal object.
+
+        Fields that have their defaults are left out, except for those that say which of several
+        models it is.
+        """
+        given = []
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            value = getattr(self, field.name)
+            # Texts can be compared whatever a field holds.
+            if repr(value) != repr(field.default) or _is_model(value):
+                given.append(f"{field.name}={value!r}")
+        return f"{type(self).__name__}({', '.join(given)})"
+
     def __post_init__(self) -> None:
         """Convert every field to its plain Python form."""
         for name, hint in field_hints(type(self)).items():
@@ -57,6 +76,10 @@ class Parameters:
             else:
                 value = frozen_scalar(value, whole=float not in alternatives(hint))
             object.__setattr__(self, name, value)
+
+
+def _is_model(value: Any) -> bool:
+    return isinstance(value, Parameters) and bool(value.kind)
 
 
 _HINTS: dict[type[Parameters], dict[str, Any]] = {}

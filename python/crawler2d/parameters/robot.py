@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
@@ -16,6 +16,9 @@ from crawler2d.parameters.plain import Parameters
 from crawler2d.parameters.settings import Drive, Solver
 from crawler2d.parameters.terrain import Points
 from crawler2d.parameters.track import BeltTrack, Track
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = ["Drivetrain", "Robot", "TrackOutline"]
 
@@ -234,11 +237,64 @@ class Robot(Parameters):
         >>> wheels["x"][:3].tolist(), wheels["mass"][:3].tolist()
         ([-0.1825, 0.0, 0.1825], [0.8, 0.8, 0.8])
         """
+        return Table(_core.wheels(self._alone()))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the side view in the chassis frame, with the flippers at their `angle`.
+
+        It shows what the track model consists of, belly, axles and centre of mass, the main
+        dimensions and, where the model deviates from it, the outline of the track as built.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; None makes a figure.
+
+        Returns
+        -------
+        Axes
+            With x and y in metres, to one scale.
+
+        Raises
+        ------
+        ScenarioError
+            If the robot breaks a rule.
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> ax = c2d.robots.engineer(track=c2d.LineOfWheels(4)).plot()
+        >>> ax.get_title(loc="left")
+        'engineer: 4 round wheels in a line'
+        """
+        from crawler2d.drawings.robot_view import draw_robot  # noqa: PLC0415 - optional
+
+        return draw_robot(self._alone(), self.in_words, ax)
+
+    @property
+    def in_words(self) -> str:
+        """Its name and what its tracks are, for titles."""
+        arms = None if self.flippers is None else self.flippers.track
+        of_arms = "" if arms is None else f"; flippers: {arms.in_words}"
+        return f"{self.name}: {self.track.in_words}{of_arms}"
+
+    def _alone(self) -> str:
+        """Write a scenario in which only the robot itself can break a rule."""
         ground = Points(((-1e3, 0.0), (1e3, 0.0)), goal=0.0)
-        # At rest and with the shortest steps, only the robot itself can break a rule.
+        # At rest and with the shortest steps.
         drive, solver = Drive(speed=0.0), Solver(time_step=1e-5)
-        alone = Form(self, ground, drive=drive, solver=solver)
-        return Table(_core.wheels(alone.to_json()))
+        return Form(self, ground, drive=drive, solver=solver).to_json()
+
+    def _repr_html_(self) -> str | None:
+        """Show side view and main figures in a notebook; a broken robot is shown as text."""
+        from crawler2d.drawings.card import robot_card  # noqa: PLC0415 - costs nothing until used
+
+        try:
+            return robot_card(self._alone(), self.in_words)
+        except Exception:  # the display of a robot must never fail
+            return None
 
     @staticmethod
     def simple(

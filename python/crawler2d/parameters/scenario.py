@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import textwrap
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError, ScenarioWarning
@@ -16,7 +17,13 @@ from crawler2d.parameters.plain import from_plain
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.terrain import Terrain
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 __all__ = ["Scenario"]
+
+_LONGEST = 120
+"""Characters of a terrain in a notebook: one of points may have thousands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +155,50 @@ class Scenario(Form):
             If the scenario breaks a rule.
         """
         return _core.identity(self.to_json())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the ground with the robot at its start, the goal and the height of the obstacle.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; None makes a figure.
+
+        Returns
+        -------
+        Axes
+            With x and y in metres, to one scale.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario breaks a rule.
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> ax = c2d.Scenario(c2d.robots.engineer(), c2d.terrains.step(0.1)).plot()
+        >>> ax.get_title(loc="left")
+        'engineer: smooth belt; ground: step'
+        """
+        from crawler2d.drawings.scenario_view import draw_scenario  # noqa: PLC0415 - optional
+
+        return draw_scenario(self.to_json(), self._in_words(), ax)
+
+    def _in_words(self) -> str:
+        return f"{self.robot.in_words}; ground: {self.terrain.kind.replace('_', ' ')}"
+
+    def _repr_html_(self) -> str | None:
+        """Show start and ground in a notebook; a broken scenario is shown as text."""
+        from crawler2d.drawings.card import scenario_card  # noqa: PLC0415 - costs nothing until used
+
+        try:
+            terrain = textwrap.shorten(repr(self.terrain), _LONGEST)
+            return scenario_card(self.to_json(), self._in_words(), terrain)
+        except Exception:  # the display of a scenario must never fail
+            return None
 
 
 def _leaves_mass_of_arms(before: Robot, after: Robot) -> bool:

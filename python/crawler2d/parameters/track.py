@@ -112,6 +112,11 @@ class LineOfWheels(Parameters):
     wheel: Wheel = RoundWheel()
     as_track: bool = True
 
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return f"{self.count} {self.wheel.kind} wheels in a line"
+
 
 @dataclass(frozen=True, slots=True)
 class CircumferentialWheels(Parameters):
@@ -147,6 +152,11 @@ class CircumferentialWheels(Parameters):
     wheel_radius: float | None = None
     wheel: Wheel = RoundWheel()
 
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return f"{self.count} {self.wheel.kind} wheels all round"
+
 
 @dataclass(frozen=True, slots=True)
 class HybridWheels(Parameters):
@@ -177,6 +187,11 @@ class HybridWheels(Parameters):
     _: KW_ONLY
     wheel: Wheel = RoundWheel()
 
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return f"{len(self.placements)} {self.wheel.kind} wheels placed by hand"
+
 
 @dataclass(frozen=True, slots=True)
 class BeltTrack(Parameters):
@@ -187,6 +202,11 @@ class BeltTrack(Parameters):
 
     kind: ClassVar[str] = "belt"
     place: ClassVar[str] = "robot.track"
+
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return "smooth belt"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -210,6 +230,11 @@ class GrouserBeltTrack(Parameters):
     place: ClassVar[str] = "robot.track"
 
     grouser_count: int | None = None
+
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return "belt with grousers"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -289,6 +314,11 @@ class SegmentalTrack(Parameters):
     road_wheel_count: int | None = None
     return_roller_count: int | None = None
 
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return f"chain of shoes {'on a guide' if self.mechanism == 'guide' else 'round a sprocket'}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceTrack(Parameters):
@@ -314,6 +344,12 @@ class ForceTrack(Parameters):
     support: Literal["skids", "wheels"] = "skids"
     skid_friction: float = 0.0
     wheel_count: int = 5
+
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        carrying = "skids" if self.support == "skids" else f"{self.wheel_count} free wheels"
+        return f"{carrying} pushed by a force"
 
 
 OpenTrack = (
@@ -363,6 +399,11 @@ class ClosedTrack(Parameters):
     of: OpenTrack
     _: KW_ONLY
     surface: Literal["own", "smooth"] = "own"
+
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return f"belt closed round {self.of.in_words}"
 
 
 Track = OpenTrack | ClosedTrack

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.pictures.shapes import closed, placed, relative
-from crawler2d.results.bodies import moved
+from crawler2d.common.bodies import moved
+from crawler2d.drawings.plane import closed, placed, relative
 from crawler2d.results.glossary import TRIALS
 from crawler2d.results.sentence import told
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.pictures.shapes import Scene
+    from crawler2d.drawings.scene import Scene
     from crawler2d.results.findings import Tried
     from crawler2d.results.record import Record
 
@@ -89,5 +89,5 @@ def _frames(run: Record, trials: list[Tried]) -> NDArray[np.float64]:
         "flipper_angles": np.array([tried.flipper_angles for tried in trials]),
         **{name: np.repeat(values, len(trials), axis=0) for name, values in last.items()},
     }
-    arms = moved(run.scenario, columns)["arms"]
+    arms = moved(run.scenario.to_json(), columns)["arms"]
     return np.concatenate([chassis[:, None], arms], axis=1)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Literal
 
+from crawler2d.common.bodies import BodyKind
 from crawler2d.common.table import Table
-from crawler2d.results.bodies import BodyKind
 from crawler2d.results.glossary import MECHANISMS, listed
 from crawler2d.results.outcome import Outcome
 

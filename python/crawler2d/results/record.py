@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from crawler2d.common.bodies import bodies_of, moved
 from crawler2d.common.frozen import Figures, read_only
 from crawler2d.common.table import Table
 from crawler2d.errors import Crawler2dError
-from crawler2d.results.bodies import bodies_of, moved
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -181,7 +181,7 @@ class Record:
         `outline`  m     corners in its own frame, counter-clockwise, shape (m, 2)
         =========  ====  ==========================================================================
         """
-        return bodies_of(self.scenario)
+        return bodies_of(self.scenario.to_json())
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -207,7 +207,7 @@ class Record:
         True
         """
         self._recorded("time")
-        return read_only(moved(self.scenario, self._trace)["bodies"])
+        return read_only(moved(self.scenario.to_json(), self._trace)["bodies"])
 
     @property
     def contacts(self) -> Table:
@@ -244,16 +244,20 @@ class Record:
     @property
     def title(self) -> str:
         """What ran and how it ended, in one line for tables and plots."""
+        if self.error is not None:
+            return f"{self.subject}: {type(self.error).__name__}"
+        return f"{self.subject}: {self.outcome} after {self.metrics['time']:.2f} s"
+
+    @property
+    def subject(self) -> str:
+        """What ran, in one line."""
         robot, terrain = self.scenario.robot, self.scenario.terrain
         names = (
             getattr(robot, "name", robot),
             _kind(getattr(robot, "track", None)),
             _kind(terrain),
         )
-        subject = ", ".join(str(name) for name in names)
-        if self.error is not None:
-            return f"{subject}: {type(self.error).__name__}"
-        return f"{subject}: {self.outcome} after {self.metrics['time']:.2f} s"
+        return ", ".join(str(name) for name in names)
 
 
 def _kind(part: object) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.results.bodies import BodyKind
+from crawler2d.common.bodies import BodyKind
 from crawler2d.results.outcome import Outcome
 
 if TYPE_CHECKING:

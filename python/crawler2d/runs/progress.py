@@ -17,21 +17,45 @@ Progress = Callable[[int, int], None]
 _BETWEEN_LINES = 5.0
 
 
+class Reporter:
+    """Counts finished runs, and shows them.
+
+    Parameters
+    ----------
+    show : callable
+        Given the number of finished runs and of all runs.
+    total : int
+        Number of runs.
+    done : int
+        How many of them are finished at the beginning.
+    """
+
+    def __init__(self, show: Progress, total: int, done: int = 0) -> None:
+        self._show, self._total, self._done = show, total, done
+        show(done, total)
+
+    def __call__(self, more: int) -> None:
+        """Count runs that have been finished."""
+        self._done += more
+        self._show(self._done, self._total)
+
+    def expect(self, more: int) -> None:
+        """Count runs that are to be made besides."""
+        self._total += more
+        self._show(self._done, self._total)
+
+
 @contextlib.contextmanager
-def reporter(
-    progress: bool | Progress | None, total: int, done: int = 0
-) -> Iterator[Callable[[int], None]]:
-    """Turn the argument `progress` into a function that is told how many runs have been finished.
+def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Iterator[Reporter]:
+    """Turn the argument `progress` into what counts the finished runs.
 
     Parameters
     ----------
     progress : bool, callable or None
         True shows a bar or a line, False and None nothing; a callable is given the number of
         finished runs and of all runs.
-    total : int
-        Number of runs.
-    done : int
-        How many of them are finished at the beginning.
+    total, done : int
+        See `Reporter`.
 
     Raises
     ------
@@ -39,38 +63,27 @@ def reporter(
         If `progress` is something else.
     """
     if progress is None or progress is False:
-        yield lambda _more: None
+        yield Reporter(lambda _done, _total: None, total, done)
     elif callable(progress):
-        yield _counted(progress, done, total)
+        yield Reporter(progress, total, done)
     elif progress is True:
-        with _bar(total) as shown:
-            yield _counted(shown, done, total)
+        with _bar(total, done) as show:
+            yield Reporter(show, total, done)
     else:
         raise ScenarioError("progress", progress, "must be True, False or a callable")
 
 
-def _counted(progress: Progress, done: int, total: int) -> Callable[[int], None]:
-    finished = done
-    progress(finished, total)
-
-    def add(more: int) -> None:
-        nonlocal finished
-        finished += more
-        progress(finished, total)
-
-    return add
-
-
 @contextlib.contextmanager
-def _bar(total: int) -> Iterator[Progress]:
+def _bar(total: int, begun: int) -> Iterator[Progress]:
     try:
         tqdm = extra("tqdm.auto", "progress").tqdm
     except ImportError:  # then a line must do
         yield _line()
         return
-    with tqdm(total=total, unit="run") as bar:
+    with tqdm(total=total, initial=begun, unit="run") as bar:
 
-        def advance(done: int, _total: int) -> None:
+        def advance(done: int, total: int) -> None:
+            bar.total = total
             bar.update(done - bar.n)
 
         yield advance

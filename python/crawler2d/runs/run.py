@@ -20,7 +20,7 @@ from crawler2d.runs.trials import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from os import PathLike
     from pathlib import Path
 
@@ -372,27 +372,62 @@ class Run(Record):
         return to_dataset(self)
 
     def plot(
-        self,
-        time: ArrayLike | None = None,
-        *,
-        axes: Axes | tuple[Axes, ...] | None = None,
-        trials: bool = True,
-    ) -> tuple[Axes, ...]:
-        """Draw the side view, and chassis angle, track speed and drive force over time.
+        self, ax: Axes | None = None, *, time: ArrayLike | None = None, trials: bool = True
+    ) -> Axes:
+        """Draw the side view: ground, robot at some instants, and its contacts at the last of them.
 
         Parameters
         ----------
+        ax : Axes, optional
+            Where to draw; None makes a figure.
         time : array_like, shape (k,), optional
             [s] When to draw the robot; None draws it about every robot length.
-        axes : Axes or tuple of 4 Axes, optional
-            Where to draw; a single Axes gets the side view only. None makes a figure.
         trials : bool
             Whether to draw where the trials ended that freed the robot, if its stop is drawn.
 
         Returns
         -------
-        tuple of Axes
-            Side view, chassis angle, track speed, drive force; or only the side view.
+        Axes
+            With x and y in metres, to one scale.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+
+        Examples
+        --------
+        Side view and history in one figure:
+
+        >>> import matplotlib.pyplot as plt
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.05))
+        >>> figure, (side, *history) = plt.subplots(4, figsize=(8, 9), layout="constrained")
+        >>> run.plot(side) is side
+        True
+        >>> angle, speed, force = run.plot_history(history)
+        >>> speed.get_ylabel()
+        'speed [m/s]'
+        """
+        from crawler2d.pictures.side_view import plot_run  # noqa: PLC0415 - optional
+
+        return plot_run(self, ax, time, trials=trials)
+
+    def plot_history(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
+        """Draw chassis angle, speeds and drive force over time, stops shaded.
+
+        Parameters
+        ----------
+        axes : sequence of 3 Axes, optional
+            Where to draw; None makes a figure.
+
+        Returns
+        -------
+        tuple of 3 Axes
+            Chassis angle; commanded speed, speed of the track and of the chassis; drive force.
 
         Raises
         ------
@@ -401,9 +436,55 @@ class Run(Record):
         AttributeError
             If the run was recorded with ``record="summary"``.
         """
-        from crawler2d.pictures.plotting import plot_run  # noqa: PLC0415 - optional
+        from crawler2d.pictures.history import plot_history  # noqa: PLC0415 - optional
 
-        return plot_run(self, time, axes, trials=trials)
+        return plot_history(self, axes)
+
+    def animate(
+        self,
+        path: str | PathLike[str],
+        *,
+        fps: float = 25.0,
+        speed: float = 1.0,
+        follow: bool | None = None,
+        width: int = 800,
+    ) -> Path:
+        """Write a film of the side view with the contact forces, which ends with the outcome.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Where to write it. Its suffix says what: ``.gif`` for slides and web pages, ``.mp4`` for
+            a smaller file that can be paused.
+        fps : float
+            [1/s] Frames per second, from 1 to 50.
+        speed : float
+            [-] How many times faster than real time; below 1 is slow motion.
+        follow : bool, optional
+            Whether the view moves with the robot. False shows all that it visits; None does so
+            unless the robot would be too small to see.
+        width : int
+            [px] Width of the film, from 200 to 4000.
+
+        Returns
+        -------
+        Path
+            The written file. It appears once it is complete.
+
+        Raises
+        ------
+        ScenarioError
+            If the path has another suffix, or a number is out of range.
+        ImportError
+            If matplotlib, or for an MP4 ffmpeg is missing; the message names the extra to install.
+        AttributeError
+            If the run was recorded with ``record="summary"``.
+        OSError
+            If the file cannot be written.
+        """
+        from crawler2d.pictures.animation import animate  # noqa: PLC0415 - optional
+
+        return animate(self, path, fps=fps, speed=speed, follow=follow, width=width)
 
     @overload
     def to_html(self, path: None = None, *, time: float | None = None) -> str: ...

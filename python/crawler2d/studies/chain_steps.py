@@ -14,7 +14,7 @@ from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
 from crawler2d.runs.batch import simulate_many
 from crawler2d.studies.columns import aligned
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.sweep import sweep
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def chain_steps(
     rides = simulate_many(
         [level.replace({"solver.accuracy": accuracy}) for accuracy in accuracies], threads=threads
     )
-    rates = rate(table)
+    rates = rates_of(table)
     found = []
     for accuracy, ride in zip(accuracies, rides, strict=True):
         own, cells = table.sel(accuracy=accuracy), rates.sel(accuracy=accuracy)

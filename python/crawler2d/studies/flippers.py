@@ -16,7 +16,7 @@ from crawler2d.presets.robots import engineer
 from crawler2d.studies.columns import aligned
 from crawler2d.studies.models import StudyModel, study_models
 from crawler2d.studies.paper import TABLE_3
-from crawler2d.sweeps.rates import rate
+from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.sweep import sweep
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def highest_steps(
             "terrain.height": list(heights),
         }
         table = sweep(base, over, repeats=repeats, seed=seed, threads=threads, on_error="record")
-        rates = rate(table)["rate"]
+        rates = rates_of(table)["rate"]
         for label, model in models.items():
             shares = rates.sel(track=label).to_numpy()
             found.append(_highest(name, label, model, (heights, shares, table.sel(track=label))))

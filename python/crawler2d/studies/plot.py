@@ -147,7 +147,7 @@ def plot_posts(runs: Mapping[tuple[float, bool], Run]) -> Figure:
     figure: Figure = figures.Figure(figsize=(8.0, 2.2 * rows), layout="constrained")
     axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
     for ax, ((height, belly), run) in zip(axes.flat, stuck.items(), strict=False):
-        run.plot(run.time[-1], axes=ax)
+        run.plot(ax, time=run.time[-1])
         built = "belly" if belly else "no belly"
         title = f"post of {1e3 * height:.0f} mm, {built}: {run.outcome}"
         ax.set_title(title, loc="left", fontsize="medium")

@@ -34,7 +34,7 @@ COLUMNS = (
         "identity",
         "scenario",
     ),
-    *("rate", "low", "high", "count", "distinct"),
+    *("rate", "low", "high", "count", "distinct", "band_low", "band_median", "band_high"),
 )
 """Columns of a sweep and its rates besides the metrics; no axis may have these names."""
 

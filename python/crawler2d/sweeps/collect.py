@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from typing import Any
+from typing import Any, Self, cast
 
 from crawler2d import _core
 from crawler2d.errors import (
@@ -17,11 +16,10 @@ from crawler2d.errors import (
     SimulationDiverged,
 )
 from crawler2d.results.row import Row
-from crawler2d.runs.progress import Progress, reporter
 from crawler2d.sweeps.chunk import simulate_chunk
 from crawler2d.sweeps.store import Place, Store
 
-__all__ = ["RowsInterrupted", "collect"]
+__all__ = ["Batch", "Collector", "RowsInterrupted"]
 
 # Runs that a task of an executor has: milliseconds to seconds of work, little to send.
 _CHUNK = 25
@@ -29,6 +27,9 @@ _CHUNK = 25
 _OUT = 256
 # How often a task is given out before the loss of its worker ends the batch.
 _ATTEMPTS = 5
+
+Checked = _core.Passed | ScenarioError
+"""A scenario that can be run, or the rule that it breaks."""
 
 Take = Callable[[list[tuple[int, dict[str, Any]]]], None]
 
@@ -41,88 +42,137 @@ class RowsInterrupted(KeyboardInterrupt):
         self.rows = rows
 
 
-def collect(
-    checked: Sequence[_core.Passed | ScenarioError],
-    trials: Sequence[str],
-    *,
-    store: Place | None,
-    executor: Executor | None,
-    threads: int,
-    progress: bool | Progress | None,
-) -> list[Row]:
-    """Simulate what is not in the store, each scenario once, and return a row for every scenario.
+class Collector:
+    """Where rows come from, and where they are kept: one for a whole sweep or study.
 
-    Raises
-    ------
-    RowsInterrupted
-        On Ctrl-C.
-    StoreError
-        If the store cannot be used, or not written any longer.
-    InternalError
-        If the executor lost its workers; what was finished is in the store.
+    Parameters
+    ----------
+    trials : sequence of str
+        What to try at a stop.
+    store : str or path-like, optional
+        The file that keeps every run; it is locked until the end.
+    executor : Executor, optional
+        Where to simulate; None takes the threads of this process.
+    threads : int
+        How many of them.
     """
-    places: dict[str, list[int]] = {}
-    rows: list[Row | None] = [None] * len(checked)
-    firsts: list[_core.Passed] = []
-    for place, each in enumerate(checked):
-        if isinstance(each, ScenarioError):
-            rows[place] = Row.of_error(each)
-            continue
-        same = places.setdefault(each.identity, [])
-        same.append(place)
-        if len(same) == 1:
-            firsts.append(each)
 
-    def keep(row: Row) -> int:
-        for place in places[row.identity]:
-            rows[place] = row
-        return len(places[row.identity])
+    def __init__(
+        self,
+        trials: Sequence[str],
+        *,
+        store: Place | None = None,
+        executor: Executor | None = None,
+        threads: int = 1,
+    ) -> None:
+        self._trials = list(trials)
+        self._executor, self._threads = executor, threads
+        self._store = None if store is None else Store(store, trials)
 
-    _core.warn(firsts)
-    with _opened(store, trials) as kept:
-        known = kept.found(list(places)) if kept is not None else {}
-        done = sum(row is not None for row in rows)
-        done += sum(map(keep, known.values()))
-        missing = [each for each in firsts if each.identity not in known]
-        with reporter(progress, len(checked), done) as report:
+    def __enter__(self) -> Self:
+        """Return the collector."""
+        return self
 
-            def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
-                made = []
-                for place, result in finished:
-                    each = missing[place]
-                    made.append(Row.of_result(each.identity, each.text, result))
-                if kept is not None:
-                    kept.add(row for row in made if _is_lasting(row))
-                report(sum(map(keep, made)))
+    def __exit__(self, *error: object) -> None:
+        """Close the store."""
+        if self._store is not None:
+            self._store.close()
 
-            if executor is None:
-                interrupted = _core.simulate_many(missing, threads, 0.01, "row", list(trials), take)
+    def batch(self, checked: Sequence[Checked]) -> Batch:
+        """Read what is in the store of these scenarios."""
+        batch = Batch(checked)
+        if self._store is not None:
+            known = self._store.found([each.identity for each in batch.missing])
+            batch.take(known.values())
+        return batch
+
+    def rows(self, batch: Batch, report: Callable[[int], None]) -> list[Row]:
+        """Simulate what is missing of a batch, each scenario once, and return a row for every one.
+
+        Raises
+        ------
+        RowsInterrupted
+            On Ctrl-C.
+        StoreError
+            If the store cannot be written any longer.
+        InternalError
+            If the executor lost its workers; what was finished is in the store.
+        """
+        missing = batch.missing
+        _core.warn(missing)
+
+        def take(finished: list[tuple[int, dict[str, Any]]]) -> None:
+            made = []
+            for place, result in finished:
+                each = missing[place]
+                made.append(Row.of_result(each.identity, each.text, result))
+            if self._store is not None:
+                self._store.add(row for row in made if _is_lasting(row))
+            report(batch.take(made))
+
+        if self._executor is None:
+            interrupted = _core.simulate_many(
+                missing, self._threads, 0.01, "row", self._trials, take
+            )
+        else:
+            interrupted = _by_executor(self._executor, missing, self._trials, take)
+        rows = batch.rows()
+        if interrupted:
+            raise RowsInterrupted(rows)
+        return rows
+
+
+class Batch:
+    """Scenarios, and the rows of those that are finished.
+
+    Attributes
+    ----------
+    done : int
+        How many scenarios have a row.
+    """
+
+    def __init__(self, checked: Sequence[Checked]) -> None:
+        self._checked = checked
+        self._rows: list[Row | None] = [None] * len(checked)
+        self._places: dict[str, list[int]] = {}
+        self.done = 0
+        for place, each in enumerate(checked):
+            if isinstance(each, ScenarioError):
+                self._rows[place] = Row.of_error(each)
+                self.done += 1
             else:
-                interrupted = _by_executor(executor, missing, trials, take)
-    whole = [
-        Row.of_error(RunUnfinished("the batch was interrupted"), each.identity, each.text)
-        if row is None and isinstance(each, _core.Passed)
-        else row
-        for row, each in zip(rows, checked, strict=True)
-    ]
-    found = [row for row in whole if row is not None]
-    if interrupted:
-        raise RowsInterrupted(found)
-    return found
+                self._places.setdefault(each.identity, []).append(place)
+
+    @property
+    def missing(self) -> list[_core.Passed]:
+        """The scenarios without a row, each once."""
+        lacking = (places[0] for places in self._places.values() if self._rows[places[0]] is None)
+        return [cast("_core.Passed", self._checked[place]) for place in lacking]
+
+    def take(self, rows: Iterable[Row]) -> int:
+        """Take finished rows; returns how many scenarios have got one."""
+        before = self.done
+        for row in rows:
+            places = self._places[row.identity]
+            for place in places:
+                self._rows[place] = row
+            self.done += len(places)
+        return self.done - before
+
+    def rows(self) -> list[Row]:
+        """Return a row for every scenario; one that was not finished says so."""
+        unfinished = RunUnfinished("the batch was interrupted before this run had ended")
+        return [
+            Row.of_error(unfinished, each.identity, each.text)
+            if row is None and isinstance(each, _core.Passed)
+            else cast("Row", row)
+            for row, each in zip(self._rows, self._checked, strict=True)
+        ]
 
 
 def _is_lasting(row: Row) -> bool:
     """Whether a run would end in the same way again: not so if memory was short."""
     return row.error is None or isinstance(row.error, SimulationDiverged)
-
-
-@contextlib.contextmanager
-def _opened(store: Place | None, trials: Sequence[str]) -> Iterator[Store | None]:
-    if store is None:
-        yield None
-        return
-    with Store(store, trials) as kept:
-        yield kept
 
 
 def _by_executor(

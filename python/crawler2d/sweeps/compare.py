@@ -19,7 +19,7 @@ from crawler2d.sweeps.axes import Axis
 from crawler2d.sweeps.labels import Label, labelled
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
-from crawler2d.sweeps.sweep import tabulate
+from crawler2d.sweeps.tabulate import tabulate
 
 if TYPE_CHECKING:
     import xarray

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.axes import Axis
 
-__all__ = ["Plan", "plan_runs"]
+__all__ = ["Plan", "Planner", "World", "plan_runs"]
 
 Checked = _core.Passed | ScenarioError
 """A scenario that can be run, or the rule that it breaks."""
@@ -31,43 +31,136 @@ _UNKNOWN = "unknown "
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """The planned runs of one cell with one sample of the unknowns.
+class World:
+    """A cell with one sample of the unknowns.
 
     Attributes
     ----------
     labels : tuple of str
         Cell and sample, for messages.
-    checked : list of Checked
-        One a repeat.
-    drawn : mapping of str to ndarray, shape (repeats,)
-        By path of `vary`; empty if the cell breaks a rule.
+    cell : Scenario
+        Without the sample.
+    checked : Checked
+        With it.
+    own : mapping of str to float
+        By path of a field, what the sample has there.
     sampled : mapping of str to float
         By path of `unknown`.
     """
 
     labels: tuple[str, ...]
-    checked: list[Checked]
-    drawn: Mapping[str, NDArray[np.float64]]
+    cell: Scenario
+    checked: Checked
+    own: Mapping[str, float]
     sampled: Mapping[str, float]
 
-    def place(self, repeat: int) -> str:
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The planned runs of a world.
+
+    Attributes
+    ----------
+    world : World
+        What they share.
+    begin : int
+        The first repeat.
+    checked : list of Checked
+        One a repeat.
+    drawn : mapping of str to ndarray, shape (repeats,)
+        By path of `vary`; empty if the world breaks a rule.
+    """
+
+    world: World
+    begin: int
+    checked: list[Checked]
+    drawn: Mapping[str, NDArray[np.float64]]
+
+    def place(self, index: int) -> str:
         """Name one of its runs, for messages."""
-        return _place([*self.labels, f"repeat={repeat}"])
+        return _place([*self.world.labels, f"repeat={self.begin + index}"])
+
+
+@dataclass(frozen=True, slots=True)
+class Planner:
+    """Makes the scenarios of runs: the same number for the same seed, path and repeat or sample.
+
+    Attributes
+    ----------
+    variation, unknowns : Variation
+        What is drawn for every repeat, and for every sample.
+    seed : int
+        Of the draws.
+    samples : int
+        Of the unknowns; without meaning if there are none.
+    """
+
+    variation: Variation
+    unknowns: Variation
+    seed: int
+    samples: int = 1
+
+    def worlds(
+        self, cell: Scenario, names: Sequence[str], like: _core.Passed | None = None
+    ) -> list[World]:
+        """Set every sample of the unknowns in a cell; what `like` shares is not built again.
+
+        Raises
+        ------
+        ScenarioError
+            If the cell lacks a path.
+        """
+        place = _place(names)
+        whole = _opened(cell, place, like)
+        if not self.unknowns.distributions:
+            return [World(tuple(names), cell, whole, {}, {})]
+        with _named(place):
+            numbers = self.unknowns.numbers(self.seed, self.samples, kind=_UNKNOWN)
+            drawn = self.unknowns.draw(cell, numbers)
+            variants = _varied(cell, whole, drawn, self.samples)
+        worlds = []
+        for sample, each in enumerate(variants):
+            labels = (*names, f"sample={sample}")
+            if isinstance(each, ScenarioError) and each is not whole:
+                variants[sample] = _moved(each, _place(labels))
+            own = {path: float(values[sample]) for path, values in drawn.values.items()}
+            shown = {path: float(values[sample]) for path, values in drawn.shown.items()}
+            worlds.append(World(labels, cell, variants[sample], own, shown))
+        return worlds
+
+    def runs(self, world: World, begin: int, end: int) -> Plan:
+        """Draw some repeats of a world.
+
+        Raises
+        ------
+        ScenarioError
+            If the cell lacks a path; a scenario that breaks a rule stands in the plan as its error.
+        """
+        whole, count = world.checked, end - begin
+        if isinstance(whole, ScenarioError):
+            return Plan(world, begin, [whole] * count, {})
+        numbers = self.variation.numbers(self.seed, end)
+        with _named(_place(world.labels)):
+            some = {path: each[begin:] for path, each in numbers.items()}
+            drawn = self.variation.draw(world.cell, some, world.own)
+            runs = _varied(world.cell, whole, drawn, count)
+            kept = _dropped(world, whole, drawn, runs, self.variation.gives_way)
+        plan = Plan(world, begin, runs, kept)
+        for index, run in enumerate(runs):
+            if isinstance(run, ScenarioError):
+                runs[index] = _moved(run, plan.place(index))
+        return plan
 
 
 def plan_runs(
     base: Scenario,
     axes: Sequence[Axis],
-    variation: Variation,
-    unknowns: Variation,
+    planner: Planner,
     *,
     repeats: int,
-    samples: int,
-    seed: int,
     like: _core.Passed | None = None,
 ) -> list[Plan]:
-    """Make the scenario of every run: cell by cell, the samples of a cell in order.
+    """Plan every run: cell by cell, the samples of a cell in order.
 
     What a cell has in common with the one before it, the first with `like`, is not built again.
 
@@ -76,38 +169,14 @@ def plan_runs(
     ScenarioError
         If a cell lacks a path; a scenario that breaks a rule stands in its plan as its error.
     """
-    numbers = variation.numbers(seed, repeats)
-    outer = unknowns.numbers(seed, samples, kind=_UNKNOWN)
     plans: list[Plan] = []
-    last = like
     for points in itertools.product(*(axis.points() for axis in axes)):
         names = [point for point, _ in points]
         with _named(_place(names)):
-            fields = {path: v for _, values in points for path, v in values.items()}
-            cell = base.replace(fields)
-            whole = _opened(cell, _place(names), last)
-            if isinstance(whole, _core.Passed):
-                last = whole
-            sampled = unknowns.draw(cell, outer) if unknowns.distributions else None
-            wholes = _varied(cell, whole, sampled, samples)
-        for sample, world in enumerate(wholes):
-            labels = (*names, f"sample={sample}") if sampled else tuple(names)
-            place = _place(labels)
-            own = {path: float(v[sample]) for path, v in sampled.values.items()} if sampled else {}
-            shown = {path: float(v[sample]) for path, v in sampled.shown.items()} if sampled else {}
-            if isinstance(world, ScenarioError):
-                refused = world if world is whole else _moved(world, place)
-                plans.append(Plan(labels, [refused] * repeats, {}, shown))
-                continue
-            with _named(place):
-                drawn = variation.draw(cell, numbers, own)
-                runs = _varied(cell, world, drawn, repeats)
-                kept = _dropped(cell, world, drawn, runs, own=own, gives_way=variation.gives_way)
-            plan = Plan(labels, runs, kept, shown)
-            for repeat, run in enumerate(runs):
-                if isinstance(run, ScenarioError):
-                    runs[repeat] = _moved(run, plan.place(repeat))
-            plans.append(plan)
+            cell = base.replace({path: v for _, values in points for path, v in values.items()})
+        worlds = planner.worlds(cell, names, like)
+        like = next((w.checked for w in worlds if isinstance(w.checked, _core.Passed)), like)
+        plans += [planner.runs(world, 0, repeats) for world in worlds]
     return plans
 
 
@@ -125,12 +194,10 @@ def _varied(cell: Scenario, whole: Checked, drawn: Drawn | None, count: int) -> 
 
 
 def _dropped(
-    cell: Scenario,
+    world: World,
     whole: _core.Passed,
     drawn: Drawn,
     runs: list[Checked],
-    *,
-    own: Mapping[str, float],
     gives_way: Collection[str],
 ) -> dict[str, NDArray[np.float64]]:
     """Drop the draws that break a rule and may be dropped: those runs keep their own values.
@@ -145,7 +212,8 @@ def _dropped(
     for repeat, run in enumerate(runs):
         if not isinstance(run, ScenarioError):
             continue
-        row = np.array([own.get(path, read_path(cell, path)) for path in drawn.values], dtype=float)
+        held = [world.own.get(path, read_path(world.cell, path)) for path in drawn.values]
+        row = np.array(held, dtype=float)
         for column, path in enumerate(drawn.values):
             trial = row.copy()
             trial[column] = rows[repeat, column]

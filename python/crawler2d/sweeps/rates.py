@@ -35,7 +35,7 @@ _SPOKEN = {
     "high": "upper bound",
     "count": "number of runs",
     "distinct": "number of distinct final poses",
-    "median": "median of the rates over the unknowns",
+    "band_median": "median of the rates over the unknowns",
     "band_low": "5th percentile of the rates over the unknowns",
     "band_high": "95th percentile of the rates over the unknowns",
 }
@@ -81,8 +81,8 @@ def rate(
         rate is nan and the interval 0 to 1. A table with final poses also gives `distinct`, how
         many of them differ by more than about 1 mm or 0.1 degree.
 
-        With unknowns, these have the dimension `sample`, and there are `median`, `band_low` and
-        `band_high` besides: the median, 5 % and 95 % of the rates of a cell over the samples. A
+        With unknowns, these have the dimension `sample`, and there are `band_low`, `band_median`
+        and `band_high` besides: 5 %, 50 % and 95 % of the rates of a cell over the samples. A
         band holds the chance of few repeats, too: each of its rates has its own interval.
 
         The attributes `varied` and `unknown` name the populations; a rate without them says little.
@@ -155,7 +155,7 @@ def rates_of(
             )
         if _SAMPLE in counts.dims:
             band = variables["rate"].quantile(_BAND, _SAMPLE, skipna=True)
-            for name, part in zip(("band_low", "median", "band_high"), _BAND, strict=True):
+            for name, part in zip(("band_low", "band_median", "band_high"), _BAND, strict=True):
                 variables[name] = band.sel(quantile=part, drop=True)
     for name, variable in variables.items():
         if name in counts.coords:

@@ -10,7 +10,7 @@ from crawler2d.common.arrays import frozen_scalar, real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.sweeps.statistics import Interval
 
-__all__ = ["Stopping", "sequential"]
+__all__ = ["Until", "sequential"]
 
 # What is known of a rate p before the first run, as a beta distribution: 1/2 + 5 p successes and
 # 1/2 + 5 (1 - p) failures. The 5 that are like p narrow intervals of 50 to 300 runs, the two halves
@@ -97,7 +97,7 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stopping:
+class Until:
     """When a cell was simulated often enough: its rate is known well, or on which side it lies.
 
     One may ask after every run, or after any number of them: the interval is that of `sequential`.
@@ -123,10 +123,10 @@ class Stopping:
 
     Examples
     --------
-    >>> stopping = Stopping(threshold=0.5)
-    >>> stopping.is_done(10, 15), stopping.is_done(14, 15)
+    >>> until = Until(threshold=0.5)
+    >>> until.is_done(10, 15), until.is_done(14, 15)
     (False, True)
-    >>> stopping.side(10, 15), stopping.side(14, 15)
+    >>> until.side(10, 15), until.side(14, 15)
     (0, 1)
     """
 
@@ -139,11 +139,11 @@ class Stopping:
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0.0 < self._keep_real("width") <= 1.0:
-            raise ScenarioError("stopping.width", self.width, "must be above 0 and at most 1")
-        for name in ("threshold", "confidence"):
-            given = getattr(self, name)
-            if (name, given) != ("threshold", None) and not 0.0 < self._keep_real(name) < 1.0:
-                raise ScenarioError(f"stopping.{name}", given, "must be between 0 and 1")
+            raise ScenarioError("until.width", self.width, "must be above 0 and at most 1")
+        for name in ("confidence",) if self.threshold is None else ("threshold", "confidence"):
+            number = self._keep_real(name)
+            if not 0.0 < number < 1.0:
+                raise ScenarioError(f"until.{name}", number, "must be between 0 and 1")
         self._keep_whole("least", 0)
         self._keep_whole("most", max(self.least, 1))
 
@@ -191,7 +191,7 @@ class Stopping:
         return (interval.low > self.threshold) - (interval.high < self.threshold)
 
     def _keep_real(self, name: str) -> float:
-        number = real_number(getattr(self, name), f"stopping.{name}")
+        number = real_number(getattr(self, name), f"until.{name}")
         object.__setattr__(self, name, number)
         return number
 
@@ -200,7 +200,7 @@ class Stopping:
         number = frozen_scalar(given, whole=True)
         if type(number) is not int or not least <= number <= _MOST:
             rule = f"must be a whole number from {least} to {_MOST}"
-            raise ScenarioError(f"stopping.{name}", given, rule)
+            raise ScenarioError(f"until.{name}", given, rule)
         object.__setattr__(self, name, number)
 
 

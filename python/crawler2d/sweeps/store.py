@@ -84,7 +84,11 @@ class Store:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close it; everything that was added is in the file."""
+        """Close it."""
+        self.close()
+
+    def close(self) -> None:
+        """End; everything that was added is in the file."""
         with contextlib.suppress(sqlite3.Error):
             self._connection.close()
         self._lock.close()

@@ -267,7 +267,10 @@ mod tests {
         assert_eq!(moved.scenario, variant);
         assert_eq!(moved.position, opened(&variant, None).position);
         let refused = found[1].as_ref().expect_err("NaN is no friction");
-        assert!(refused.to_string().contains("terrain.friction"), "{refused}");
+        assert!(
+            refused.to_string().contains("terrain.friction"),
+            "{refused}"
+        );
         let own = found[2].as_ref().expect("it is valid");
         assert_eq!(own.scenario.terrain, engineer().terrain);
     }

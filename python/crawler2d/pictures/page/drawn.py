@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.bodies import BodyKind
+from crawler2d.drawings.plane import SLIVER, inset, relative
 from crawler2d.pictures.page.packed import packed
-from crawler2d.pictures.shapes import SLIVER, inset, relative
-from crawler2d.results.bodies import BodyKind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.pictures.shapes import Carrier, Circuit, Scene
+    from crawler2d.drawings.scene import Carrier, Circuit, Scene
     from crawler2d.results.record import Record
 
 __all__ = ["drawn"]

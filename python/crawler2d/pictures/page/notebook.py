@@ -5,8 +5,9 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
+from crawler2d.common.markup import escaped, table
 from crawler2d.pictures.page.replay import replay_page
-from crawler2d.pictures.page.words import all_figures, escaped, heading, sentence
+from crawler2d.pictures.page.words import all_figures, heading, sentence
 
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
@@ -38,14 +39,11 @@ def embedded(run: Record) -> str:
 
 
 def _summary(run: Record) -> str:
-    rows = "".join(
-        f"<tr><th>{escaped(name)}</th><td>{escaped(value)}</td></tr>"
-        for name, value in all_figures(run)
-    )
-    table = f"<table><tbody>{rows}</tbody></table>" if rows else ""
     try:
         why = sentence(run)
     except Exception:
         why = ""
     note = f"<p>{escaped(why)}</p>" if why else ""
-    return f"<div><p><strong>{escaped(heading(run))}</strong></p>{note}{table}</div>"
+    return (
+        f"<div><p><strong>{escaped(heading(run))}</strong></p>{note}{table(all_figures(run))}</div>"
+    )

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.pictures.arrows import usual_size
 from crawler2d.pictures.ghosts import ghosts
 from crawler2d.pictures.page.drawn import drawn
 from crawler2d.pictures.page.packed import packed
-from crawler2d.pictures.shapes import Scene
+from crawler2d.pictures.scenes import scene_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from crawler2d.drawings.scene import Scene
     from crawler2d.parameters.robot import Robot
     from crawler2d.results.record import Record
 
@@ -28,9 +30,6 @@ _LENGTH, _ANGLE, _TIME = 1e-5, 1e-4, 1e-4
 _SPEED = 1e-4
 # The same for arrows, as a share of the typical size, which is drawn about 100 pixels long.
 _ARROW = 1e-2
-# Percentile that sets the scale of arrows: an impact lasts one sample, and at its scale all
-# other arrows would be unreadable.
-_USUAL = 98.0
 
 
 def recording(run: Record, time: float | None = None) -> dict[str, Any]:
@@ -54,7 +53,7 @@ def recording(run: Record, time: float | None = None) -> dict[str, Any]:
     if time is None:
         stops = run.events["end"][run.events["kind"] == "stop"]
         time = float(run.time[-1] if (stops == run.time[-1]).any() else run.time[0])
-    scene = Scene(run)
+    scene = scene_of(run)
     return {
         "samples": count,
         "every": every,
@@ -92,10 +91,8 @@ def _contacts(run: Record, kept: NDArray[np.int64]) -> dict[str, Any]:
     forces = np.hypot(normal, friction)
     weight = run.scenario.robot.mass * run.scenario.gravity
     speeds = table["surface_speed"][rows]
-    force, speed = weight, abs(run.scenario.drive.speed)
-    if rows.size:
-        force = max(force, float(np.percentile(forces, _USUAL)))
-        speed = max(speed, float(np.percentile(np.abs(speeds), _USUAL)))
+    force = usual_size(forces, weight)
+    speed = usual_size(np.abs(speeds), abs(run.scenario.drive.speed))
     counts = np.bincount(frames[rows], minlength=run.time.size)
     return {
         "counts": packed(counts[kept], 1.0),

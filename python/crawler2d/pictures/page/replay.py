@@ -11,9 +11,10 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from crawler2d import _core
+from crawler2d.common.markup import escaped
 from crawler2d.pictures.ghosts import ghosts
 from crawler2d.pictures.page.recording import recording
-from crawler2d.pictures.page.words import all_figures, escaped, figures, heading, sentence, verdict
+from crawler2d.pictures.page.words import all_figures, figures, heading, sentence, verdict
 
 if TYPE_CHECKING:
     from crawler2d.results.findings import Mechanism

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import math
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from crawler2d.common.units import METRICS
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["all_figures", "escaped", "figures", "heading", "sentence", "verdict"]
+__all__ = ["all_figures", "figures", "heading", "sentence", "verdict"]
 
 # metric, label, factor from the metric's unit, unit shown, decimals
 _FIGURES = (
@@ -28,11 +27,6 @@ _FIGURES = (
 )
 # Shown only if not zero.
 _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
-
-
-def escaped(text: str) -> str:
-    """Make any text harmless in HTML and valid in UTF-8."""
-    return html.escape(text.encode("utf-8", "replace").decode())
 
 
 def heading(run: Record) -> str:

@@ -16,9 +16,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from crawler2d.parameters.scenario import Scenario
+__all__ = ["TRACED", "BodyKind", "Lane", "bodies_of", "moved"]
 
-__all__ = ["BodyKind", "Lane", "bodies_of", "moved"]
+TRACED = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
+"""Columns of a run that the poses of all bodies follow from."""
 
 
 class BodyKind(IntEnum):
@@ -63,17 +64,24 @@ class Lane(IntEnum):
     """Under the belly, where that has ground of its own."""
 
 
-def bodies_of(scenario: Scenario) -> Table:
-    """List the bodies of a scenario's robot; see `Run.bodies`."""
-    columns = _core.geometry(scenario.to_json())["bodies"]
+def bodies_of(text: str) -> Table:
+    """List the bodies of the robot of a scenario in JSON; see `Run.bodies`."""
+    columns = _core.geometry(text)["bodies"]
     outlines = np.empty(len(columns["outline"]), dtype=object)
     for row, outline in enumerate(columns["outline"]):
         outlines[row] = read_only(outline)
     return Table({**columns, "outline": outlines})
 
 
-def moved(scenario: Scenario, trace: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
-    """Compute the poses of all bodies at the n samples of a run.
+def moved(text: str, trace: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
+    """Compute the poses of all bodies at n samples of a run.
+
+    Parameters
+    ----------
+    text : str
+        The scenario in JSON.
+    trace : mapping of str to ndarray
+        Columns of the run, at least those that `TRACED` names.
 
     Returns
     -------
@@ -82,4 +90,4 @@ def moved(scenario: Scenario, trace: Mapping[str, Any]) -> dict[str, NDArray[np.
         at each end, midway between their axles; `travels`: [m] distance that the surface of each
         body has moved relative to its carrier, shape (n, k); `center_of_mass`: [m], shape (n, 2).
     """
-    return _core.poses(scenario.to_json(), dict(trace))
+    return _core.poses(text, dict(trace))

@@ -1,26 +1,35 @@
-"""The geometry that pictures draw: the ground, the bodies of the near track, and their poses."""
+"""What is drawn of a robot on its ground: outlines, in the order of drawing, and their poses."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from crawler2d import _core
-from crawler2d.results.bodies import BodyKind, Lane, moved
+from crawler2d.common.bodies import TRACED, BodyKind, Lane, moved
+from crawler2d.drawings.plane import closed, placed, relative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from crawler2d.results.record import Record
-
-__all__ = ["SLIVER", "Carrier", "Circuit", "Scene", "closed", "inset", "placed", "relative"]
-
-SLIVER = 2e-5
-"""[m] Lines that coincide enclose slivers by rounding; anything shallower is not an intrusion."""
+__all__ = ["Carrier", "Circuit", "Look", "Scene", "at_start", "on_chassis"]
 
 _MARGIN = 0.05  # [m] round the extent
+
+
+class Look(Enum):
+    """How a body is drawn."""
+
+    BELLY = "belly"
+    HINT = "hint"
+    """Faintly: shoes or a belt run over it, and hide it."""
+    LINE = "line"
+    SHOE = "shoe"
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +90,14 @@ class Carrier:
 
 
 class Scene:
-    """Everything that pictures draw of a run, as the core provides it.
+    """Everything that is drawn of a robot and its ground, as the core provides it.
+
+    Parameters
+    ----------
+    text : str
+        The scenario in JSON.
+    columns : mapping of str to ndarray
+        Where the robot is at n samples: the columns of a run that `TRACED` names.
 
     Attributes
     ----------
@@ -103,11 +119,9 @@ class Scene:
         The chassis, then the front flippers, then the rear ones.
     """
 
-    def __init__(self, run: Record) -> None:
-        scenario = run.scenario
-        geometry = _core.geometry(scenario.to_json())
-        columns = ("position", "chassis_angle", "drive_positions", "shoe_poses", "flipper_angles")
-        found = moved(scenario, {name: getattr(run, name) for name in columns})
+    def __init__(self, text: str, columns: Mapping[str, NDArray[np.float64]]) -> None:
+        geometry = _core.geometry(text)
+        found = moved(text, columns)
         self.lanes: list[tuple[int, NDArray[np.float64]]] = [
             lane for lane in geometry["lanes"] if lane[0] != Lane.MIDDLE
         ]
@@ -118,7 +132,7 @@ class Scene:
         self.travels = found["travels"]
         self.center_of_mass = found["center_of_mass"]
         self.kinds = [BodyKind(kind) for kind in self.bodies["kind"]]
-        chassis = np.column_stack([run.position, run.chassis_angle])
+        chassis = np.column_stack([columns["position"], columns["chassis_angle"]])
         frames = [chassis, *np.moveaxis(found["arms"], 1, 0)]
         self.carriers = [
             self._carrier(each, poses)
@@ -145,6 +159,32 @@ class Scene:
         """[m] The closed outline of a body at a sample."""
         return placed(closed(self.bodies["outline"][body]), self.poses[sample, body])
 
+    def parts(self, *, hidden: bool = False) -> list[tuple[int, Look]]:
+        """List the bodies that are seen with their looks, in the order of drawing.
+
+        With `hidden`, it has the wheels within belts, too, which meet nothing.
+        """
+        looks = {int(body): self._look(int(body)) for each in self.carriers for body in each.bodies}
+        order = list(Look)
+        return sorted(
+            ((body, look) for body, look in looks.items() if hidden or self._is_met(body)),
+            key=lambda part: order.index(part[1]),
+        )
+
+    def _look(self, body: int) -> Look:
+        kind = self.kinds[body]
+        if kind == BodyKind.BELLY:
+            return Look.BELLY
+        if self.is_shoe(body):
+            return Look.SHOE
+        # What shoes run on is hidden by them, except for the teeth of the sprocket.
+        is_hint = kind.is_in_chain and (kind != BodyKind.SPROCKET or not self._is_met(body))
+        return Look.HINT if is_hint else Look.LINE
+
+    def _is_met(self, body: int) -> bool:
+        """Tell whether something can touch a body: ground, or the shoes of a chain."""
+        return bool(self.bodies["body"][body] >= 0)
+
     def carrier_of(self, body: int) -> int:
         """Find the index of the carrier of a body, of either track."""
         names = [carrier.name for carrier in self.carriers]
@@ -155,7 +195,7 @@ class Scene:
         return bool(self.bodies["shoe"][body] >= 0)
 
     def extent(self) -> tuple[float, float, float, float]:
-        """[m] Left, right, bottom and top of the stretch that the run visits."""
+        """[m] Left, right, bottom and top of the stretch that the robot visits."""
         chassis, *arms = self.carriers
         centers, radii = chassis.circles[:, :2], chassis.circles[:, 2]
         reach = float((np.hypot(*centers.T) + radii).max()) + _MARGIN
@@ -169,41 +209,29 @@ class Scene:
                 right = max(right, float(x.max()) + radius + _MARGIN)
                 low = min(low, float(y.min()) - radius)
                 high = max(high, float(y.max()) + radius + _MARGIN)
-        visited = []
-        for _, profile in self.lanes:
-            visited.append(profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1])
-            visited.append(np.interp([left, right], profile[:, 0], profile[:, 1]))
-        ground = np.concatenate(visited)
+        ground = self.heights(left, right)
         bottom = min(float(ground.min()), low) - _MARGIN
         return left, right, bottom, max(float(ground.max()), high)
 
-
-def placed(points: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] Points of a frame, shape (..., 2), moved by the poses of that frame, shape (..., 3)."""
-    (x, y), (left, up, angle) = np.moveaxis(points, -1, 0), np.moveaxis(poses, -1, 0)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.stack([left + cosine * x - sine * y, up + sine * x + cosine * y], axis=-1)
-
-
-def relative(poses: NDArray[np.float64], frames: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m, m, rad] Poses at n samples, shape (n, 3), relative to frames with these poses."""
-    (x, y), angle = (poses - frames).T[:2], frames[:, 2]
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, poses[:, 2] - angle])
+    def heights(self, left: float, right: float) -> NDArray[np.float64]:
+        """[m] Heights of the corners of all lanes between two places, and of the lanes there."""
+        found = []
+        for _, profile in self.lanes:
+            found.append(profile[(profile[:, 0] > left) & (profile[:, 0] < right), 1])
+            found.append(np.interp([left, right], profile[:, 0], profile[:, 1]))
+        return np.concatenate(found)
 
 
-def closed(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[m] A polygon as a line that ends where it began."""
-    return np.vstack([polygon, polygon[:1]])
+def at_start(text: str) -> dict[str, NDArray[np.float64]]:
+    """Find where the robot of a scenario in JSON stands at time 0: one sample for a `Scene`."""
+    start = json.dumps({**json.loads(text), "duration": 0.0})
+    trace = _core.simulate(start, 1.0, "full", [])["trace"]
+    return {name: trace[name] for name in TRACED}
 
 
-def inset(belt: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
-    """[m] A closed convex line, counter-clockwise, offset inwards by a depth."""
-    way = np.roll(belt, -1, axis=0) - belt
-    belt = belt[np.hypot(*way.T) > 1e-9]  # drops coincident corners
-    way = np.roll(belt, -1, axis=0) - belt
-    inwards = np.column_stack([-way[:, 1], way[:, 0]])
-    inwards /= np.hypot(*way.T)[:, None]
-    inwards = inwards + np.roll(inwards, 1, axis=0)
-    line: NDArray[np.float64] = belt + depth * inwards / np.hypot(*inwards.T)[:, None]
-    return line
+def on_chassis(columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+    """Turn a sample so that the frame of the chassis is that of the drawing."""
+    frame = np.column_stack([columns["position"], columns["chassis_angle"]])
+    shoes = relative(columns["shoe_poses"][0], frame)[None]
+    still = {name: np.zeros_like(columns[name]) for name in ("position", "chassis_angle")}
+    return {**columns, **still, "shoe_poses": shoes}

@@ -1,0 +1,162 @@
+"""A run as a film: the side view with the contact forces, at even intervals."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.common.arrays import real_number
+from crawler2d.common.extras import extra
+from crawler2d.drawings.canvas import Canvas
+from crawler2d.drawings.extents import robot_box
+from crawler2d.drawings.outlines import Outlines, draw_goal, draw_ground
+from crawler2d.drawings.palette import RED
+from crawler2d.errors import ScenarioError
+from crawler2d.pictures.arrows import draw_forces, usual_size
+from crawler2d.pictures.film import checked_path, write_film
+from crawler2d.pictures.inside import Envelopes
+from crawler2d.pictures.scenes import scene_of
+
+if TYPE_CHECKING:
+    import os
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from crawler2d.drawings.scene import Scene
+    from crawler2d.results.record import Record
+
+__all__ = ["Film", "animate"]
+
+# In a wider view than this many lengths of the robot it would be too small.
+_WIDEST = 5.0
+# In the same lengths: size of a view that follows the robot.
+_WINDOW = (3.0, 1.6)
+# A longer film is a mistake.
+_MOST_FRAMES = 10_000
+# [inch] Width of the figure, which becomes `width` pixels wide.
+_FIGURE_WIDTH = 9.0
+
+
+def animate(
+    run: Record,
+    path: str | os.PathLike[str],
+    *,
+    fps: float,
+    speed: float,
+    follow: bool | None,
+    width: int,
+) -> Path:
+    """Write a run as a film; see `Run.animate`."""
+    checked = checked_path(path)
+    fps = _in_range(fps, "fps", (1.0, 50.0))
+    speed = _in_range(speed, "speed", (1e-3, 1e3))
+    width = round(_in_range(width, "width", (200.0, 4000.0)))
+    start, end = float(run.time[0]), float(run.time[-1])
+    count = math.ceil((end - start) * fps / speed - 1e-9) + 1
+    if count > _MOST_FRAMES:
+        raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
+    times = np.minimum(start + np.arange(count) * speed / fps, end)
+    film = Film(run, times, pace=speed, follow=follow, width=width)
+    write_film(checked, film.figure, film.show, count=count, fps=fps)
+    return checked
+
+
+class Film:
+    """The side view of a run in a figure of its own, at one of several instants at a time.
+
+    Parameters
+    ----------
+    run : Run
+        A run with history.
+    times : ndarray, shape (k,)
+        [s] The instants.
+    pace : float
+        [-] How many times faster than real time they are shown.
+    follow, width
+        See `Run.animate`.
+    """
+
+    def __init__(
+        self,
+        run: Record,
+        times: NDArray[np.float64],
+        *,
+        pace: float,
+        follow: bool | None,
+        width: int,
+    ) -> None:
+        figures = extra("matplotlib.figure", "animation")
+        agg = extra("matplotlib.backends.backend_agg", "animation")
+        scene = scene_of(run, times)
+        self._run, self._times = run, times
+        self._pace = "" if pace == 1.0 else f" ({pace:g} x real time)"
+        self._samples = np.searchsorted(0.5 * (run.time[1:] + run.time[:-1]), times)
+        extent = scene.extent()
+        self._views = _views(scene, extent, follow=follow)
+        self.figure = figures.Figure(dpi=width / _FIGURE_WIDTH)
+        agg.FigureCanvasAgg(self.figure)
+        canvas = Canvas(None, tuple(self._views[0]), self.figure)
+        ax = self._ax = canvas.ax
+        draw_ground(scene.lanes, extent[2], ax)
+        draw_goal(scene.goal, ax)
+        self._moving: list[Outlines | Envelopes] = [Outlines(scene, ax), Envelopes(run, scene, ax)]
+        forces = np.hypot(run.contacts["normal_force"], run.contacts["friction_force"])
+        self._most = usual_size(forces, run.scenario.robot.mass * run.scenario.gravity)
+        label = f"contact forces, the longest {self._most:.0f} N"
+        ax.plot([], [], color=RED, linewidth=2.5, label=label)
+        self._arrows: list[Any] = []
+        canvas.caption(run.title)
+        self._title = canvas.title
+
+    def show(self, number: int) -> None:
+        """Draw a frame."""
+        left, right, bottom, top = self._views[number]
+        self._ax.set(xlim=(left, right), ylim=(bottom, top))
+        for each in self._moving:
+            each.show(number)
+        # Arrows cannot be updated: their number changes.
+        for arrow in self._arrows:
+            arrow.remove()
+        self._arrows = draw_forces(self._run, int(self._samples[number]), self._ax, self._most)
+        time, run = self._times[number], self._run
+        is_last = number == len(self._times) - 1
+        self._title.set_text(run.title if is_last else f"{run.subject}: {time:.2f} s{self._pace}")
+
+
+def _views(
+    scene: Scene, extent: tuple[float, float, float, float], *, follow: bool | None
+) -> NDArray[np.float64]:
+    """[m] Left, right, bottom and top of what each frame shows."""
+    left, right, bottom, top = extent
+    start, end, _, _ = robot_box(scene)
+    length = end - start
+    if follow is None:
+        follow = right - left > _WIDEST * length
+    places = scene.carriers[0].poses[:, :2]
+    if not follow:
+        return np.tile(extent, (len(places), 1))
+    sides = [
+        _window(places[:, 0], (left, right), _WINDOW[0] * length),
+        _window(places[:, 1], (bottom, top), _WINDOW[1] * length),
+    ]
+    return np.column_stack(sides)
+
+
+def _window(
+    middle: NDArray[np.float64], whole: tuple[float, float], size: float
+) -> NDArray[np.float64]:
+    """[m] Ends of windows about some places, none beyond the whole, shape (k, 2)."""
+    least, most = whole
+    size = min(size, most - least)
+    starts = np.clip(middle - 0.5 * size, least, most - size)
+    return np.column_stack([starts, starts + size])
+
+
+def _in_range(value: float, name: str, bounds: tuple[float, float]) -> float:
+    number = real_number(value, name)
+    if not bounds[0] <= number <= bounds[1]:
+        raise ScenarioError(name, value, f"must be from {bounds[0]:g} to {bounds[1]:g}")
+    return number
