@@ -26,7 +26,7 @@ help: ## list the verbs
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | sort | expand -t 14
 
 study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
-	$(BIN)/python -m crawler2d.studies $(ARGS)
+	$(BIN)/python -m crawler2d study $(ARGS)
 
 test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
 	$(CARGO) test --release

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from crawler2d.reports.tables import Cell, Phase
     from crawler2d.runs.run import Run
-    from crawler2d.studies.tables import Cell, Phase
 
 __all__ = ["plot_phases", "plot_posts", "plot_rates"]
 

@@ -1,8 +1,8 @@
-"""The seizure study: which track models get the Engineer over an edge, how often, and why not.
+"""The project's own studies: `seizure`, the main one, `chains`, `chain-steps` and `flippers`.
 
-Run it with ``python -m crawler2d.studies``; ``--help`` lists the options. ``chains`` compares
-chains of shoes with simpler models on steps, ``chain-steps`` finds out how finely a chain must be
-stepped, ``flippers`` finds the highest step that the Engineer climbs with its flippers.
+`seizure` asks which track models get the Engineer over an edge, how often, and why not; `chains`
+compares chains of shoes with simpler models on steps, `chain-steps` finds out how finely a chain
+must be stepped, `flippers` finds the highest step that the Engineer climbs with its flippers.
 """
 
 from __future__ import annotations
@@ -10,31 +10,29 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crawler2d.reports import report, stops_report
+from crawler2d.reports import tables as rows
+from crawler2d.reports.chain_steps import chain_steps, chain_steps_text
+from crawler2d.reports.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.reports.flippers import HEIGHTS, highest_steps, highest_steps_text
+from crawler2d.reports.models import gear_pairs
+from crawler2d.reports.public_model import posts, public_wheel_model
+from crawler2d.reports.replays import write_replays
+from crawler2d.reports.stops import gear_against_round, stops
+from crawler2d.reports.sweeps import FULL, QUICK, Study
 from crawler2d.runs.interrupted import BatchInterrupted
-from crawler2d.studies import report, stops_report
-from crawler2d.studies import tables as rows
-from crawler2d.studies.chain_steps import chain_steps, chain_steps_text
-from crawler2d.studies.chains import CHAINS, CHAINS_QUICK, chain_models
-from crawler2d.studies.flippers import HEIGHTS, highest_steps, highest_steps_text
-from crawler2d.studies.models import gear_pairs
-from crawler2d.studies.public_model import posts, public_wheel_model
-from crawler2d.studies.replays import write_replays
-from crawler2d.studies.stops import gear_against_round, stops
-from crawler2d.studies.sweeps import FULL, QUICK, Study
 
 if TYPE_CHECKING:
     from crawler2d.runs.run import Run
 
-__all__ = ["main"]
+__all__ = ["add_arguments", "run"]
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the study from the command line."""
-    parser = argparse.ArgumentParser(prog="python -m crawler2d.studies", description=__doc__)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``python -m crawler2d study``."""
     parser.add_argument(
         "what",
         nargs="?",
@@ -47,7 +45,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
     parser.add_argument("--threads", type=int, default=None, help="default: all cores")
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
-    options = parser.parse_args(arguments)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a study; returns the exit status."""
     options.out.mkdir(parents=True, exist_ok=True)
     try:
         if options.what == "chains":
@@ -71,14 +72,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         else:
             design = QUICK if options.quick else FULL
             study = Study(design=design, seed=options.seed, threads=options.threads)
-            _run(study, options.out)
+            _run_seizure(study, options.out)
     except BatchInterrupted as interrupt:
         print(interrupt, file=sys.stderr)
         return 130
     return 0
 
 
-def _run(study: Study, out: Path) -> None:
+def _run_seizure(study: Study, out: Path) -> None:
     begin = time.perf_counter()
     print(report.header(study), flush=True)
     sweeps = {obstacle: study.on_obstacle(obstacle) for obstacle in study.design.heights}
@@ -151,7 +152,7 @@ def _run_chains(study: Study, out: Path) -> None:
     table.drop_vars("scenario").to_dataframe().to_csv(out / "runs_chains.csv")
     rows.write_csv(out / "chains.csv", found)
     try:
-        from crawler2d.studies.chains_plot import plot_chains  # noqa: PLC0415 - optional
+        from crawler2d.reports.chains_plot import plot_chains  # noqa: PLC0415 - optional
 
         plot_chains(found).savefig(out / "chains.png", dpi=100)
     except ImportError as missing:
@@ -166,14 +167,10 @@ def _draw(
     out: Path,
 ) -> None:
     try:
-        from crawler2d.studies import plot  # noqa: PLC0415 - optional
+        from crawler2d.reports import plot  # noqa: PLC0415 - optional
 
         plot.plot_rates(cells).savefig(out / "rates.png", dpi=100)
         plot.plot_phases(phases).savefig(out / "phases.png", dpi=100)
         plot.plot_posts(runs).savefig(out / "posts.png", dpi=100)
     except ImportError as missing:
         print(f"no pictures: {missing}", file=sys.stderr)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

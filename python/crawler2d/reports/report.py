@@ -7,14 +7,14 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from crawler2d._core import build_info
-from crawler2d.studies import paper
-from crawler2d.studies.columns import aligned, in_mm, mm
+from crawler2d.reports import paper
+from crawler2d.reports.columns import aligned, in_mm, mm
 
 if TYPE_CHECKING:
-    from crawler2d.studies.models import StudyModel
-    from crawler2d.studies.public_model import Post
-    from crawler2d.studies.sweeps import Study
-    from crawler2d.studies.tables import Cell, Climb, Phase, Ride
+    from crawler2d.reports.models import StudyModel
+    from crawler2d.reports.public_model import Post
+    from crawler2d.reports.sweeps import Study
+    from crawler2d.reports.tables import Cell, Climb, Phase, Ride
 
 __all__ = [
     "beside_the_paper",

@@ -5,8 +5,8 @@ import math
 import pytest
 
 import crawler2d as c2d
-from crawler2d.studies import paper
-from crawler2d.studies.models import study_models
+from crawler2d.reports import paper
+from crawler2d.reports.models import study_models
 
 
 def test_the_heights_of_table_3_are_metres() -> None:

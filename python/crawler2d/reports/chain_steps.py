@@ -12,8 +12,8 @@ from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.track import SegmentalTrack
 from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
+from crawler2d.reports.columns import aligned
 from crawler2d.runs.batch import simulate_many
-from crawler2d.studies.columns import aligned
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.sweep import sweep
 

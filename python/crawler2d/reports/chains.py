@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from crawler2d.parameters.track import SegmentalTrack
 from crawler2d.presets.robots import engineer
-from crawler2d.studies.models import StudyModel, study_models
-from crawler2d.studies.sweeps import FULL, QUICK
+from crawler2d.reports.models import StudyModel, study_models
+from crawler2d.reports.sweeps import FULL, QUICK
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,9 +13,9 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive
 from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
-from crawler2d.studies.columns import aligned
-from crawler2d.studies.models import StudyModel, study_models
-from crawler2d.studies.paper import TABLE_3
+from crawler2d.reports.columns import aligned
+from crawler2d.reports.models import StudyModel, study_models
+from crawler2d.reports.paper import TABLE_3
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.sweep import sweep
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.__main__ import main
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies import __main__ as command
-from crawler2d.studies.__main__ import main
-from crawler2d.studies.chain_steps import ChainStep, chain_steps, chain_steps_text
-from crawler2d.studies.chains import CHAINS, CHAINS_QUICK, chain_models
-from crawler2d.studies.chains_plot import plot_chains
-from crawler2d.studies.sweeps import Study
-from crawler2d.studies.tables import Cell
+from crawler2d.reports import study as command
+from crawler2d.reports.chain_steps import ChainStep, chain_steps, chain_steps_text
+from crawler2d.reports.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.reports.chains_plot import plot_chains
+from crawler2d.reports.sweeps import Study
+from crawler2d.reports.tables import Cell
 from tests.shared import ROBOT
 
 MODELS = chain_models()
@@ -71,7 +71,7 @@ def test_it_writes_its_table_and_its_picture(
 ) -> None:
     design = replace(CHAINS_QUICK, heights={"step": (0.03,)}, repeats=1)
     monkeypatch.setattr(command, "CHAINS_QUICK", design)
-    assert main(["chains", "--quick", "--out", str(tmp_path)]) == 0
+    assert main(["study", "chains", "--quick", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     with (tmp_path / "chains.csv").open(newline="") as file:
         found = list(csv.DictReader(file))

@@ -7,12 +7,12 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from crawler2d.studies.columns import aligned, mm
-from crawler2d.studies.stops import STOPS
+from crawler2d.reports.columns import aligned, mm
+from crawler2d.reports.stops import STOPS
 
 if TYPE_CHECKING:
-    from crawler2d.studies.replays import Replay
-    from crawler2d.studies.stops import Against, Stops
+    from crawler2d.reports.replays import Replay
+    from crawler2d.reports.stops import Against, Stops
 
 __all__ = ["against_text", "replays_text", "stops_text"]
 

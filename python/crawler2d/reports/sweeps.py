@@ -11,8 +11,8 @@ from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.track import GearWheel, LineOfWheels
 from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
-from crawler2d.studies.models import StudyModel, study_models
-from crawler2d.studies.stops import TRIED
+from crawler2d.reports.models import StudyModel, study_models
+from crawler2d.reports.stops import TRIED
 from crawler2d.sweeps.sweep import sweep
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from crawler2d.studies.tables import Cell
+    from crawler2d.reports.tables import Cell
 
 __all__ = ["plot_chains"]
 

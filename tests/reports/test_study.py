@@ -12,16 +12,16 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
+from crawler2d.__main__ import main
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies import __main__ as command
-from crawler2d.studies import plot, report, stops_report, tables
-from crawler2d.studies.__main__ import main
-from crawler2d.studies.models import gear_pairs, study_models
-from crawler2d.studies.public_model import posts, public_wheel_model
-from crawler2d.studies.replays import write_replays
-from crawler2d.studies.stops import FIGURES, gear_against_round, stops
-from crawler2d.studies.sweeps import QUICK, Design, Study, robots_of_the_study
+from crawler2d.reports import plot, report, stops_report, tables
+from crawler2d.reports import study as command
+from crawler2d.reports.models import gear_pairs, study_models
+from crawler2d.reports.public_model import posts, public_wheel_model
+from crawler2d.reports.replays import write_replays
+from crawler2d.reports.stops import FIGURES, gear_against_round, stops
+from crawler2d.reports.sweeps import QUICK, Design, Study, robots_of_the_study
 from tests.shared import ROBOT
 
 MODELS = study_models(ROBOT.outline.axle_distance)
@@ -282,7 +282,7 @@ def test_the_quick_study_writes_its_tables_and_its_pictures(
 ) -> None:
     monkeypatch.setattr(command, "QUICK", TINY)
     out = tmp_path / "out"
-    assert main(["--quick", "--out", str(out)]) == 0
+    assert main(["study", "--quick", "--out", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "torque 6.0 N m per sprocket" in printed
     text = (out / "study.txt").read_text(encoding="utf-8")
@@ -317,7 +317,7 @@ def test_ctrl_c_ends_the_study_with_its_own_exit_code(
         raise c2d.BatchInterrupted([])
 
     monkeypatch.setattr(Study, "on_obstacle", interrupted)
-    assert main(["--quick", "--out", str(tmp_path)]) == 130
+    assert main(["study", "--quick", "--out", str(tmp_path)]) == 130
     assert "Traceback" not in capsys.readouterr().err
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.reports.stops import STOPS, TRIED
 from crawler2d.runs.batch import simulate_many
-from crawler2d.studies.stops import STOPS, TRIED
 from crawler2d.sweeps.stops import short_name
 
 if TYPE_CHECKING:

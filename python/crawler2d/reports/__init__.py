@@ -1,0 +1,1 @@
+"""The project's own studies, as programs of ``python -m crawler2d``."""

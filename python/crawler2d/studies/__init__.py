@@ -1,1 +1,0 @@
-"""The seizure study: which track models get a robot over an edge, how often, and why not."""
