@@ -10,6 +10,7 @@ Units are SI, angles radians, x forward, y up.
 'cleared'
 """
 
+from crawler2d import studies
 from crawler2d._core import build_info
 from crawler2d.common.bodies import BodyKind, Lane
 from crawler2d.errors import (
@@ -108,6 +109,7 @@ __all__ = [
     "shifted",
     "simulate",
     "simulate_many",
+    "studies",
     "sweep",
     "table",
     "terrains",

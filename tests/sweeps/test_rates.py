@@ -35,6 +35,7 @@ def test_every_cell_has_its_rate_and_wilsons_interval() -> None:
         assert (cell.rate, cell.low, cell.high) == pytest.approx(tuple(expected), nan_ok=True)
     assert found["height"].attrs == {"units": "m"}
     assert found.attrs == {
+        "figure": "rates",
         "outcome": "cleared",
         "confidence_level": 0.95,
         "interval": "Wilson",

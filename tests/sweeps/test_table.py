@@ -60,8 +60,9 @@ def test_tables_and_rates_go_to_netcdf_and_back_and_to_parquet(tmp_path: Path) -
     found = quiet(BASE, {"robot.track": MODELS}, unknown=unknown, samples=2, trials="auto")
     for name, dataset in {"runs": found, "rates": c2d.rate(found)}.items():
         dataset.to_netcdf(tmp_path / f"{name}.nc")
-        xr.testing.assert_identical(dataset, xr.load_dataset(tmp_path / f"{name}.nc"))
+        back = xr.load_dataset(tmp_path / f"{name}.nc")
+        assert back.identical(dataset)
     found.to_dataframe().to_parquet(tmp_path / "runs.parquet")
-    back = pd.read_parquet(tmp_path / "runs.parquet")
-    assert back["scenario"].tolist() == found["scenario"].values.ravel().tolist()
-    assert back["final_x"].tolist() == found["final_x"].values.ravel().tolist()
+    frame = pd.read_parquet(tmp_path / "runs.parquet")
+    assert frame["scenario"].tolist() == found["scenario"].values.ravel().tolist()
+    assert frame["final_x"].tolist() == found["final_x"].values.ravel().tolist()

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["compare"]
+__all__ = ["Variant", "compare", "variants"]
 
 Variant = Parameters | Mapping[str, Any]
 """A part of a scenario, such as a track, or new values by dotted path."""
@@ -111,17 +111,17 @@ def compare(
     >>> found.rate.values.tolist()
     [1.0, 0.0]
     """
-    variants = {label: _fields(model, label) for label, model in labelled(models, "models").items()}
-    if len(variants) < 2:
+    named = variants(models)
+    if len(named) < 2:
         raise ScenarioError("models", models, "must hold at least two models")
-    labels = list(variants)
+    labels = list(named)
     if reference is not None and reference not in labels:
         names = ", ".join(map(str, labels))
         raise ScenarioError("reference", reference, f"must be a label of the models: {names}")
-    paths = dict.fromkeys(path for fields in variants.values() for path in fields)
+    paths = dict.fromkeys(path for fields in named.values() for path in fields)
     table = tabulate(
         scenario,
-        [Axis("model", tuple(paths), variants)],
+        [Axis("model", tuple(paths), named)],
         repeats=repeats,
         seed=seed,
         vary=vary,
@@ -140,6 +140,11 @@ def compare(
     rows = [_against(table, index, base) for index in range(len(labels))]
     columns = {name: ("model", [row[name] for row in rows], _attributes(name)) for name in rows[0]}
     return table.merge(rates).assign(columns).assign_attrs(reference=labels[base])
+
+
+def variants(models: object) -> dict[Label, Mapping[str, Any]]:
+    """Read the argument `models`: what each replaces, by path, by its label."""
+    return {label: _fields(model, label) for label, model in labelled(models, "models").items()}
 
 
 def _fields(model: object, label: Label) -> Mapping[str, Any]:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
+    from crawler2d.sweeps.found import Found
+
 __all__ = ["rate"]
 
 _STOPPED = "stopped"
@@ -54,7 +56,7 @@ def rate(
     dim: str | Iterable[str] = "repeat",
     *,
     confidence_level: float = 0.95,
-) -> xarray.Dataset:
+) -> Found:
     """Estimate the rate of an outcome in every cell, with Wilson's interval.
 
     A rate is one over what varied from run to run; where `sweep` had unknowns, there is one for
@@ -76,10 +78,11 @@ def rate(
 
     Returns
     -------
-    xarray.Dataset
-        Variables `rate`, `low`, `high` and `count`, without the dimension `dim`. Without runs the
-        rate is nan and the interval 0 to 1. A table with final poses also gives `distinct`, how
-        many of them differ by more than about 1 mm or 0.1 degree.
+    Found
+        An `xarray.Dataset` whose `plot` draws it. Variables `rate`, `low`, `high` and `count`,
+        without the dimension `dim`. Without runs the rate is nan and the interval 0 to 1. A table
+        with final poses also gives `distinct`, how many of them differ by more than about 1 mm or
+        0.1 degree.
 
         With unknowns, these have the dimension `sample`, and there are `band_low`, `band_median`
         and `band_high` besides: 5 %, 50 % and 95 % of the rates of a cell over the samples. A
@@ -123,7 +126,7 @@ def rates_of(
     dim: str | Iterable[str] = "repeat",
     *,
     confidence_level: float = 0.95,
-) -> xarray.Dataset:
+) -> Found:
     """Estimate rates, see `rate`, without a warning."""
     xr = extra("xarray", "analysis")
     wanted = _name(outcome, "outcome", [*Outcome, _STOPPED])
@@ -162,9 +165,12 @@ def rates_of(
             rule = "must have no other dimension or coordinate of that name: rename it"
             raise ScenarioError("table", name, rule)
         variable.attrs = {"units": "1", "long_name": _SPOKEN.get(name, f"rate of {wanted}")}
-    found: xarray.Dataset = xr.Dataset(
+    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+
+    return Found(
         variables,
         attrs={
+            "figure": "rates",
             "outcome": wanted,
             "confidence_level": level,
             "interval": "Wilson",
@@ -172,7 +178,6 @@ def rates_of(
             "unknown": runs.attrs.get("unknown", ""),
         },
     )
-    return found
 
 
 def _warn_of_few(rates: xarray.Dataset) -> None:

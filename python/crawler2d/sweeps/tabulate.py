@@ -30,7 +30,7 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OnError", "runs_of", "tabulate"]
+__all__ = ["OnError", "runs_of", "tabulate", "whole_number"]
 
 OnError = Literal["raise", "record"]
 
@@ -63,9 +63,9 @@ def tabulate(
     with_times = yes_or_no(wall_time, "wall_time")
     tried = trial_names(trials)
     count = thread_count(threads)
-    repeats = _whole(repeats, "repeats", 1, 10**6)
-    samples = _whole(samples, "samples", 1, 10**5)
-    seed = _whole(seed, "seed", 0, 2**64 - 1)
+    repeats = whole_number(repeats, "repeats", 1, 10**6)
+    samples = whole_number(samples, "samples", 1, 10**5)
+    seed = whole_number(seed, "seed", 0, 2**64 - 1)
     base = Passed(scenario.to_json())
     swept = [path for axis in axes for path in axis.paths]
     unknowns = Variation.of(scenario, unknown or {}, swept, "unknown")
@@ -145,7 +145,8 @@ def _raise_first(errors: Iterable[Crawler2dError | None]) -> None:
             raise error
 
 
-def _whole(value: object, path: str, least: int, most: int) -> int:
+def whole_number(value: object, path: str, least: int, most: int) -> int:
+    """Accept a whole number within bounds."""
     number = frozen_scalar(value, whole=True)
     if type(number) is not int or not least <= number <= most:
         raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")

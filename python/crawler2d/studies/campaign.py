@@ -1,0 +1,291 @@
+"""Cells that are simulated again and again, each until its rate is known well enough."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import TYPE_CHECKING, Any, TypedDict
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.outcome import Outcome
+from crawler2d.results.row import Row
+from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.runs.progress import Progress, Reporter, reporter
+from crawler2d.runs.threads import thread_count
+from crawler2d.runs.trials import Trials, trial_names
+from crawler2d.sweeps.collect import Collector, RowsInterrupted
+from crawler2d.sweeps.plan import Planner, World
+from crawler2d.sweeps.sequential import Until, sequential
+from crawler2d.sweeps.statistics import Interval
+from crawler2d.sweeps.tabulate import runs_of, whole_number
+from crawler2d.variation.draws import Variation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Campaign", "Cell", "Counts", "How", "Tally", "campaign", "is_cleared"]
+
+
+class How(TypedDict, total=False):
+    """How a study is made: keywords that every function of `crawler2d.studies` takes.
+
+    until : Until
+        When a cell has been simulated often enough.
+    vary, unknown : mapping of str to distribution
+        What differs from run to run, and what is not known: see `sweep`.
+    samples : int
+        Of the unknowns, 20 unless given.
+    seed : int
+        Of the draws.
+    trials : {"auto", "all"} or sequence of str
+        What to try at every stop; see `simulate`.
+    store : str or path-like
+        A file that keeps every run; see `sweep`.
+    executor : concurrent.futures.Executor
+        Where to simulate instead; see `sweep`.
+    threads : int
+        See `simulate_many`.
+    progress : bool or callable
+        See `simulate_many`; the number of all runs grows as cells want more.
+    """
+
+    until: Until
+    vary: Mapping[str, Any] | None
+    unknown: Mapping[str, Any] | None
+    samples: int
+    seed: int
+    trials: Trials
+    store: str | PathLike[str] | None
+    executor: Executor | None
+    threads: int | None
+    progress: bool | Progress | None
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One setting that is tried.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Such as "height=0.1", for messages.
+    scenario : Scenario
+        Without draws.
+    """
+
+    names: tuple[str, ...]
+    scenario: Scenario
+
+
+Counts = Callable[[Row], bool]
+"""Which runs are successes."""
+
+
+def is_cleared(row: Row) -> bool:
+    """Whether the whole robot passed the goal."""
+    return row.outcome == Outcome.CLEARED
+
+
+@dataclass(slots=True)
+class Tally:
+    """The runs of one cell with one sample of the unknowns, so far.
+
+    Attributes
+    ----------
+    world : World
+        What is simulated.
+    until : Until
+        When that is enough.
+    counts : callable
+        Which runs are successes.
+    rows : list of Row
+        One a repeat.
+    drawn : list of mapping of str to ndarray
+        What was drawn for each batch of repeats, by path.
+    """
+
+    world: World
+    until: Until
+    counts: Counts = is_cleared
+    rows: list[Row] = field(default_factory=list)
+    drawn: list[Mapping[str, NDArray[np.float64]]] = field(default_factory=list)
+
+    @property
+    def made(self) -> list[Row]:
+        """The runs with a result."""
+        return [row for row in self.rows if row.error is None]
+
+    @property
+    def successes(self) -> int:
+        """How many of them count."""
+        return sum(map(self.counts, self.made))
+
+    @property
+    def interval(self) -> Interval:
+        """The rate with its interval, which holds however often one looked."""
+        return sequential(self.successes, len(self.made), self.until.confidence)
+
+    @property
+    def side(self) -> int:
+        """-1 or 1 if the rate certainly lies below or above the threshold, else 0."""
+        return self.until.side(self.successes, len(self.made))
+
+    @property
+    def wants(self) -> int:
+        """How many runs are still to be made: half as many again, so that few rounds are needed."""
+        count = len(self.rows)
+        if count >= self.until.most or self.until.is_done(self.successes, len(self.made)):
+            return 0
+        return min(max(self.until.least - count, count // 2, 5), self.until.most - count)
+
+
+class Campaign:
+    """All simulations of one study; see `campaign`.
+
+    Attributes
+    ----------
+    base : Scenario
+        What all cells share.
+    until : Until
+        When a cell has been simulated often enough.
+    trials : tuple of str
+        What is tried at every stop.
+    planner : Planner
+        Draws the repeats.
+    settings : int
+        How many cells have been tried.
+    """
+
+    def __init__(
+        self, base: Scenario, how: How, planner: Planner, collector: Collector, report: Reporter
+    ) -> None:
+        self.base = base
+        self.until = how["until"]
+        self.trials = trial_names(how.get("trials"))
+        self.planner = planner
+        self.settings = 0
+        self._collector, self._report = collector, report
+
+    def repeat(
+        self, cells: Sequence[Cell], counts: Counts = is_cleared, until: Until | None = None
+    ) -> list[list[Tally]]:
+        """Simulate cells until each is known well enough.
+
+        Parameters
+        ----------
+        cells : sequence of Cell
+            The settings.
+        counts : callable
+            Which runs are successes.
+        until : Until, optional
+            Instead of the study's own.
+
+        Returns
+        -------
+        list of list of Tally
+            By cell and sample.
+
+        Raises
+        ------
+        ScenarioError
+            If a cell or a draw breaks a rule; its cells have not been simulated.
+        """
+        self.settings += len(cells)
+        rule = self.until if until is None else until
+        found = [
+            [Tally(world, rule, counts) for world in self.planner.worlds(each.scenario, each.names)]
+            for each in cells
+        ]
+        everyone = [tally for tallies in found for tally in tallies]
+        _raise_first(tally.world.checked for tally in everyone)
+        while due := [(tally, tally.wants) for tally in everyone if tally.wants]:
+            self._simulate(due)
+        return found
+
+    def once(self, cells: Sequence[Cell], repeats: int = 1) -> list[list[Tally]]:
+        """Simulate cells a fixed number of times; see `repeat`."""
+        fixed = Until(width=1e-9, least=repeats, most=repeats)
+        return self.repeat(cells, until=fixed)
+
+    def _simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
+        plans = []
+        for tally, more in due:
+            begin = len(tally.rows)
+            plans.append(self.planner.runs(tally.world, begin, begin + more))
+        checked = [each for plan in plans for each in plan.checked]
+        _raise_first(checked)
+        batch = self._collector.batch(checked)
+        self._report.expect(len(checked))
+        self._report(batch.done)
+        rows = iter(self._collector.rows(batch, self._report))
+        for (tally, _), plan in zip(due, plans, strict=True):
+            tally.rows += [next(rows) for _ in plan.checked]
+            tally.drawn.append(plan.drawn)
+
+
+def _raise_first(checked: Iterable[object]) -> None:
+    for each in checked:
+        if isinstance(each, ScenarioError):
+            raise each
+
+
+@contextlib.contextmanager
+def campaign(
+    base: Scenario, how: How, swept: Sequence[str] = (), *, threshold: float | None = None
+) -> Iterator[Campaign]:
+    """Open what a study needs: its store, its progress bar, its draws.
+
+    Parameters
+    ----------
+    base : Scenario
+        What all cells share.
+    how : How
+        The keywords of the study.
+    swept : sequence of str
+        Paths that the study sets itself.
+    threshold : float, optional
+        [-] Where a rate decides, unless `until` is given.
+
+    Raises
+    ------
+    ScenarioError
+        If a keyword is unknown, or breaks a rule.
+    BatchInterrupted
+        On Ctrl-C; a store keeps what was finished.
+    """
+    for name in how:
+        if name not in How.__annotations__:
+            rule = f"must be one of {', '.join(How.__annotations__)}"
+            raise ScenarioError(name, how[name], rule)  # type: ignore[literal-required]
+    if not isinstance(base, Scenario):
+        raise ScenarioError("scenario", base, "must be a Scenario")
+    base.validate()
+    how = {"until": Until(threshold=threshold), **how}
+    unknowns = Variation.of(base, how.get("unknown") or {}, swept, "unknown")
+    variation = Variation.of(base, how.get("vary"), [*swept, *unknowns.distributions])
+    if not isinstance(how["until"], Until):
+        raise ScenarioError("until", how["until"], "must be an Until")
+    seed = whole_number(how.get("seed", 0), "seed", 0, 2**64 - 1)
+    samples = whole_number(how.get("samples", 20), "samples", 1, 10**5)
+    planner = Planner(variation, unknowns, seed, samples)
+    store = how.get("store")
+    try:
+        with (
+            Collector(
+                trial_names(how.get("trials")),
+                store=store,
+                executor=how.get("executor"),
+                threads=thread_count(how.get("threads")),
+            ) as collector,
+            reporter(how.get("progress", True), 0) as report,
+        ):
+            yield Campaign(base, how, planner, collector, report)
+    except RowsInterrupted as interrupt:
+        kept = "" if store is None else str(store)
+        raise BatchInterrupted(runs_of(interrupt.rows), kept) from None

@@ -1,0 +1,196 @@
+"""The highest obstacle, the steepest slope, the widest gap: rates over a measure of the ground."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.paths import read_path
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.studies.campaign import Cell, How, Tally, campaign
+from crawler2d.studies.models import Models, read_models
+from crawler2d.studies.tables import found_of
+from crawler2d.sweeps.axes import field_attributes
+
+if TYPE_CHECKING:
+    from crawler2d.sweeps.found import Found
+
+__all__ = ["max_gap", "max_obstacle", "max_slope"]
+
+
+def max_obstacle(
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    heights: Sequence[float] | None = None,
+    **how: Unpack[How],
+) -> Found:
+    """Find the highest obstacle that each model clears.
+
+    Every height is tried, because a lower one may fail where a higher one does not: wheels seize on
+    edges that come just between them.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its terrain has a `height`, as a step or a barrier has.
+    models : mapping of str to track or fields, optional
+        As for `compare`; None takes the scenario's own robot.
+    heights : sequence of float, optional
+        [m] Heights to try; None takes every sixth of the front radius, from a sixth to twice.
+    **how
+        See `crawler2d.studies`. Each cell is simulated until its rate is known to lie on one side
+        of one half, or within 0.2, unless `until` says otherwise.
+
+    Returns
+    -------
+    Found
+        Dimensions `model`, `height`, `sample` if there are unknowns, and `repeat`; besides `rate`,
+        `low`, `high`, `count`, `side`, and the columns of `sweep`:
+
+        - `highest` [m]: the greatest height whose rate is at least one half; nan if there is none;
+        - `certain` [m]: the greatest whose interval lies above one half;
+        - `gaps`: how many lower heights have a rate below one half;
+        - `limit`: how most runs end on the next height.
+
+    Raises
+    ------
+    ScenarioError
+        If the terrain has no such measure, or an argument breaks a rule.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
+    >>> models = {"belt": c2d.BeltTrack(), "skids": c2d.ForceTrack()}
+    >>> found = c2d.studies.max_obstacle(
+    ...     base, models=models, heights=[0.03, 0.06], progress=False
+    ... )
+    >>> found["highest"].values.tolist()
+    [0.06, 0.03]
+    """
+    radius = scenario.robot.outline.front_radius
+    given = [radius * k / 6.0 for k in range(1, 13)] if heights is None else heights
+    return _ladder(scenario, "max_obstacle", ("terrain.height", given), models, how)
+
+
+def max_slope(
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    angles: Sequence[float] | None = None,
+    **how: Unpack[How],
+) -> Found:
+    """Find the steepest slope that each model climbs; see `max_obstacle`.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its terrain has an `angle`, as a ramp has.
+    models, **how
+        See `max_obstacle`.
+    angles : sequence of float, optional
+        [rad] Angles to try; None takes 5 to 60 degrees, 5 apart.
+    """
+    given = [math.radians(5.0 * k) for k in range(1, 13)] if angles is None else angles
+    return _ladder(scenario, "max_slope", ("terrain.angle", given), models, how)
+
+
+def max_gap(
+    scenario: Scenario,
+    *,
+    models: Models | None = None,
+    widths: Sequence[float] | None = None,
+    **how: Unpack[How],
+) -> Found:
+    """Find the widest gap that each model crosses; see `max_obstacle`.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its terrain has a `width`, as a gap has.
+    models, **how
+        See `max_obstacle`.
+    widths : sequence of float, optional
+        [m] Widths to try; None takes every tenth of the axle distance up to the whole.
+    """
+    length = scenario.robot.outline.axle_distance
+    given = [length * k / 10.0 for k in range(1, 11)] if widths is None else widths
+    return _ladder(scenario, "max_gap", ("terrain.width", given), models, how)
+
+
+def _ladder(
+    scenario: Scenario,
+    figure: str,
+    over: tuple[str, Sequence[float]],
+    models: Models | None,
+    how: How,
+) -> Found:
+    path, values = over
+    read_path(scenario, path)  # the terrain has it
+    name = path.rpartition(".")[2]
+    rungs = sorted(float(value) for value in values)
+    if not rungs:
+        raise ScenarioError(f"{name}s", values, "must have at least one value")
+    fields = read_models(scenario, models)
+    swept = [path, *dict.fromkeys(key for each in fields.values() for key in each)]
+    with campaign(scenario, how, swept, threshold=0.5) as study:
+        cells = [
+            Cell((f"model={label}", f"{name}={value:g}"), scenario.replace({**own, path: value}))
+            for label, own in fields.items()
+            for value in rungs
+        ]
+        tallies = study.repeat(cells)
+        found = found_of(
+            study,
+            figure,
+            tallies,
+            {"model": (list(fields), {}), name: (rungs, field_attributes([path]))},
+        )
+    others = tuple(str(dim) for dim in found["rate"].dims if dim != name)
+    rates = found["rate"].transpose(*others, name)
+    often = (rates >= 0.5).to_numpy()
+    sure = (found["side"].transpose(*others, name) > 0).to_numpy()
+    shape = often.shape[:-1]
+    columns: dict[str, Any] = {
+        "highest": _greatest(often, rungs),
+        "certain": _greatest(sure, rungs),
+    }
+    below = np.array(rungs) < columns["highest"][..., None]
+    columns["gaps"] = (~often & below).sum(axis=-1)
+    flat = [tally for each in tallies for tally in each]
+    order = found["rate"].dims.index(name)
+    index = np.moveaxis(np.arange(len(flat)).reshape(found["rate"].shape), order, -1)
+    limits = np.empty(shape, object)
+    for place in np.ndindex(shape):
+        above = np.flatnonzero(np.array(rungs) > columns["highest"][place])
+        if math.isnan(columns["highest"][place]):
+            above = np.arange(len(rungs))
+        next_up = "" if above.size == 0 else _ending(flat[index[(*place, above[0])]])
+        limits[place] = next_up or "none up to here"
+    columns["limit"] = limits
+    units = field_attributes([path]).get("units", "1")
+    attributes: Mapping[str, dict[str, str]] = {
+        "highest": {"units": units, "long_name": f"greatest {name} with a rate of 0.5 or more"},
+        "certain": {"units": units, "long_name": f"greatest {name} certainly above a rate of 0.5"},
+        "gaps": {"units": "1", "long_name": f"lower {name}s with a rate below 0.5"},
+        "limit": {"long_name": "how most runs end on the next"},
+    }
+    return found.assign({k: (others, v, attributes[k]) for k, v in columns.items()})
+
+
+def _greatest(holds: np.ndarray[Any, Any], rungs: Sequence[float]) -> np.ndarray[Any, Any]:
+    """Return the greatest value of the last axis where something holds; nan if nowhere."""
+    where = np.where(holds, np.array(rungs), -np.inf).max(axis=-1)
+    return np.where(np.isinf(where), np.nan, where)
+
+
+def _ending(tally: Tally) -> str:
+    """Tell how most runs that did not succeed ended."""
+    ends = Counter(row.outcome for row in tally.made if not tally.counts(row))
+    return ends.most_common(1)[0][0] if ends else ""

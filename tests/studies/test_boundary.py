@@ -1,0 +1,75 @@
+"""The boundary of a rate along one field: tried at both ends, within, and where it passes."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from tests.shared import ROBOT
+
+SLOPE = c2d.Scenario(ROBOT, c2d.terrains.ramp(math.atan(0.5)))
+STEADY: dict[str, Any] = {"vary": {"start.track_phase": c2d.uniform(0.0, 0.048)}, "progress": False}
+
+
+def friction_of(**how: Any) -> Any:
+    return c2d.studies.critical(SLOPE, "terrain.friction", (0.3, 0.8), points=3, **STEADY, **how)
+
+
+def test_a_belt_climbs_where_friction_exceeds_the_slope() -> None:
+    found = friction_of(tolerance=0.002)
+    low, high = found["bracket_low"].item(), found["bracket_high"].item()
+    assert 0.0 < high - low <= 0.002
+    # The tangent of the slope; its one metre is so short that the run-up counts for a per cent.
+    assert low == pytest.approx(0.5, abs=0.01)
+    assert found["rises"].item()
+    assert found["monotone"].item()
+    tried = found["friction"].to_numpy()
+    assert {0.3, 0.55, 0.8} <= set(tried.round(9))
+    rates = found["rate"].to_numpy()[0]
+    assert (rates[tried <= low] == 0.0).all()
+    assert (rates[tried >= high] == 1.0).all()
+
+
+def test_every_model_and_sample_has_its_own_bracket() -> None:
+    models = {"as it is": {}, "half": {"robot.drivetrain.max_torque": 3.0}}
+    unknown = {"robot.mass": c2d.uniform(18.0, 24.0)}
+    found = friction_of(models=models, unknown=unknown, samples=2, tolerance=0.05)
+    assert found["bracket_low"].dims == ("model", "sample")
+    assert found["bracket_low"].sel(model="as it is").notnull().all()
+    assert found["rate"].dims == ("model", "friction", "sample")
+
+
+def test_where_nothing_passes_one_half_there_is_no_bracket() -> None:
+    found = c2d.studies.critical(SLOPE, "terrain.friction", (0.1, 0.3), points=2, **STEADY)
+    assert math.isnan(found["bracket_low"].item())
+    assert found["monotone"].item()
+    assert found.attrs["settings"] == 2
+
+
+def test_a_rate_that_goes_down_and_up_is_not_monotone() -> None:
+    edge = c2d.Scenario(
+        c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5)),
+        c2d.terrains.step(0.05),
+        drive=c2d.Drive(speed=0.05),
+    )
+    found = c2d.studies.critical(edge, "terrain.height", (0.02, 0.16), points=8, **STEADY)
+    ways = found["rate"].sel(model=found["model"].values[0]).to_numpy() >= 0.5
+    ways = ways[found["count"].to_numpy()[0] > 0]
+    assert found["monotone"].item() == (np.count_nonzero(np.diff(ways)) <= 1)
+
+
+def test_what_is_wrong_is_refused_by_name() -> None:
+    cases: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
+        (("robot.name", (0.1, 0.2)), {}, "path"),
+        (("terrain.friction", (0.2, 0.1)), {}, "between"),
+        (("terrain.friction", 0.1), {}, "between"),
+        (("terrain.friction", ("a", 0.1)), {}, "between[0]"),
+        (("terrain.friction", (0.1, 0.2)), {"tolerance": 0.0}, "tolerance"),
+        (("terrain.friction", (0.1, 0.2)), {"points": 1}, "points"),
+    ]
+    for given, how, path in cases:
+        with pytest.raises(c2d.ScenarioError) as caught:
+            c2d.studies.critical(SLOPE, *given, **how)
+        assert caught.value.path == path

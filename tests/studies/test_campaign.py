@@ -1,0 +1,146 @@
+"""Studies repeat each cell until its rate is known, and say what they did."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.sweeps.store import stored_rows
+from tests.shared import ROBOT
+
+BASE = c2d.Scenario(ROBOT, c2d.terrains.step(0.05))
+MODELS = {"belt": c2d.BeltTrack(), "3 gears": c2d.LineOfWheels(3, wheel=c2d.GearWheel())}
+HEIGHTS = [0.04, 0.088]
+
+
+def found_of(**how: Any) -> Any:
+    given = {"models": MODELS, "heights": HEIGHTS, "progress": False, **how}
+    return c2d.studies.max_obstacle(BASE, **given)
+
+
+def test_a_cell_is_simulated_until_it_is_known_and_no_longer() -> None:
+    found = found_of()
+    counts = found["count"].to_numpy()
+    assert counts[0, 0] == 10  # ten of ten are certain enough
+    assert (counts <= 250).all()
+    assert counts.max() > 10
+    made = (found["outcome"] != "").sum("repeat").to_numpy()
+    assert made.tolist() == counts.tolist()
+    until = c2d.Until(threshold=0.5)
+    successes = (found["outcome"] == "cleared").sum("repeat").to_numpy()
+    for k, n in zip(successes.flat, counts.flat, strict=True):
+        assert until.is_done(int(k), int(n))
+    assert found.attrs["settings"] == 4
+    assert found.attrs["runs"] == counts.sum()
+
+
+def test_the_runs_are_those_of_a_sweep_with_the_same_seed() -> None:
+    found = found_of(seed=4)
+    over = {"robot.track": MODELS, "terrain.height": HEIGHTS}
+    table = c2d.sweep(BASE, over, repeats=10, seed=4, progress=False)
+    first = found.isel(repeat=slice(0, 10))
+    assert first["final_x"].values.tolist() == table["final_x"].values.tolist()
+    assert first["drawn_approach"].values.tolist() == table["drawn_approach"].values.tolist()
+
+
+def test_the_rule_is_the_one_that_is_given() -> None:
+    fixed = found_of(until=c2d.Until(width=0.01, least=7, most=7))
+    assert (fixed["count"] == 7).all()
+    assert fixed.sizes["repeat"] == 7
+    assert "least=7" in fixed.attrs["until"]
+
+
+def test_what_is_not_known_has_a_rate_for_every_sample() -> None:
+    unknown = {"terrain.friction": c2d.uniform(0.3, 1.0)}
+    found = found_of(unknown=unknown, samples=4, until=c2d.Until(threshold=0.5, most=20))
+    assert found["rate"].dims == ("model", "height", "sample")
+    assert found["highest"].dims == ("model", "sample")
+    assert found["unknown_friction"].sel(model="belt", height=0.04).shape == (4,)
+    assert "terrain.friction" in found.attrs["unknown"]
+
+
+def test_a_store_keeps_the_runs_of_a_study(tmp_path: Path) -> None:
+    store = tmp_path / "a.sqlite"
+    first = found_of(store=store)
+    assert len(list(stored_rows(store))) == first.attrs["runs"]
+    calls: list[tuple[int, int]] = []
+    again = found_of(store=store, progress=lambda done, total: calls.append((done, total)))
+    assert again.drop_vars("wall_time").identical(first.drop_vars("wall_time"))
+    assert len(list(stored_rows(store))) == first.attrs["runs"]
+    assert calls[-1] == (first.attrs["runs"],) * 2
+
+
+def test_what_is_wrong_is_refused_by_name() -> None:
+    cases: list[tuple[dict[str, Any], str]] = [
+        ({"repeats": 5}, "repeats"),
+        ({"until": 5}, "until"),
+        ({"models": {"a": 4}}, "models['a']"),
+        ({"heights": []}, "heights"),
+        ({"heights": [-1.0]}, "cell[model=belt, height=-1].terrain.height"),
+        ({"vary": {"terrain.height": c2d.uniform(0, 1)}}, "vary['terrain.height']"),
+        ({"samples": 0, "unknown": {"gravity": c2d.uniform(9, 10)}}, "samples"),
+        ({"seed": -1}, "seed"),
+    ]
+    for how, path in cases:
+        with pytest.raises(c2d.ScenarioError) as caught:
+            found_of(**how)
+        assert caught.value.path == path
+    with pytest.raises(c2d.ScenarioError, match=r"terrain\.height must be a known field"):
+        c2d.studies.max_obstacle(BASE.replace({"terrain": c2d.terrains.flat()}))
+
+
+def test_ctrl_c_is_told_and_the_store_goes_on(tmp_path: Path) -> None:
+    store = tmp_path / "a.sqlite"
+
+    def stop(done: int, _total: int) -> None:
+        if done > 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(c2d.BatchInterrupted, match=r"a\.sqlite keeps them"):
+        found_of(store=store, progress=stop, threads=1)
+    kept = len(list(stored_rows(store)))
+    assert kept > 5
+    assert found_of(store=store).identical(found_of(store=store))
+
+
+def test_the_highest_obstacle_its_gaps_and_its_limit_are_those_of_the_rates() -> None:
+    found = found_of(heights=[0.04, 0.088, 0.2])
+    rates = found["rate"].sel(model="belt").to_numpy()
+    heights = found["height"].to_numpy()
+    assert found["highest"].sel(model="belt").item() == heights[rates >= 0.5].max()
+    assert found["certain"].sel(model="belt").item() <= found["highest"].sel(model="belt").item()
+    assert (found["gaps"] == 0).all()
+    above = found["outcome"].sel(model="belt", height=0.2).to_numpy()
+    assert found["limit"].sel(model="belt").item() in set(above)
+    none = found_of(heights=[0.3, 0.4])
+    assert np.isnan(none["highest"]).all()
+    assert (none["gaps"] == 0).all()
+
+
+def test_slopes_and_gaps_are_climbed_up_to_their_limit() -> None:
+    slope = BASE.replace({"terrain": c2d.terrains.ramp(0.3)})
+    steep = c2d.studies.max_slope(slope, angles=[0.3, 0.6, 1.2], progress=False)
+    assert steep["highest"].values.tolist() == [0.6]
+    gap = BASE.replace({"terrain": c2d.terrains.gap(0.1)})
+    wide = c2d.studies.max_gap(gap, widths=[0.1, 0.36], progress=False)
+    assert wide["highest"].values.tolist() == [0.1]
+    assert list(steep["model"].values) == [ROBOT.track.in_words]
+
+
+def test_rates_draw_themselves_into_the_axes_they_are_given() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    found = found_of(until=c2d.Until(threshold=0.5, most=10))
+    _, ax = plt.subplots()
+    assert found.plot(ax) is ax
+    assert len(ax.get_lines()) == 2
+    assert ax.get_xlabel() == "height [mm]"
+    assert "approach" in ax.get_title(loc="left")
+    table = c2d.sweep(BASE, {"terrain.height": HEIGHTS}, repeats=3, progress=False)
+    own = c2d.rate(table).plot()
+    assert own.get_ylim() == (-0.03, 1.03)
+    with pytest.raises(c2d.ScenarioError, match="must have a dimension of numbers"):
+        c2d.rate(table.isel(height=0, drop=True)).plot()
+    plt.close("all")
