@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 
 import crawler2d as c2d
-
 from crawler2d.parameters.terrain import Points
 
 LIMIT = 512 << 20  # [bytes]
