@@ -18,9 +18,6 @@ from crawler2d.parameters.terrain import Points
 
 LIMIT = 512 << 20  # [bytes]
 
-# pandas imports it where it is installed, and it takes 165 MB of addresses: a third of the limit.
-sys.modules["pyarrow"] = None  # type: ignore[assignment]
-
 ENGINEER = c2d.robots.engineer(flippers=None)
 SHORT = c2d.Scenario(ENGINEER, c2d.terrains.step(0.05), duration=0.3)
 
@@ -124,6 +121,8 @@ REQUESTS: list[Callable[[], None]] = [
 
 def main() -> None:
     count, seed = int(sys.argv[1]), int(sys.argv[2])
+    # pandas imports it where it is installed, and it takes 165 MB of addresses.
+    sys.modules["pyarrow"] = None  # type: ignore[assignment]
     resource.setrlimit(resource.RLIMIT_AS, (LIMIT, LIMIT))
     rng = random.Random(seed)
     told: Counter[str] = Counter()
