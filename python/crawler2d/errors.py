@@ -8,6 +8,7 @@ not be swallowed by ``except Exception``. It is defined with the runs, which it 
 from __future__ import annotations
 
 import reprlib
+from collections.abc import Iterable
 
 __all__ = [
     "Crawler2dError",
@@ -18,6 +19,8 @@ __all__ = [
     "ScenarioWarning",
     "SimulationDiverged",
     "StoreError",
+    "own_error",
+    "raise_first",
 ]
 
 
@@ -190,3 +193,17 @@ class StoreError(Crawler2dError, OSError):
 
 class InternalError(Crawler2dError, RuntimeError):
     """A fault of crawler2d itself or of the process it runs in, not of the scenario."""
+
+
+def own_error(error: BaseException) -> Crawler2dError:
+    """Return an error of the package, made of any other, such as a MemoryError, if it is none."""
+    if isinstance(error, Crawler2dError):
+        return error
+    return InternalError(f"{type(error).__name__}: {error}")
+
+
+def raise_first(results: Iterable[object]) -> None:
+    """Raise the first error of the package among results of any kind."""
+    for result in results:
+        if isinstance(result, Crawler2dError):
+            raise result

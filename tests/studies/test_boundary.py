@@ -48,7 +48,7 @@ def test_where_nothing_passes_one_half_there_is_no_bracket() -> None:
     assert found.attrs["settings"] == 2
 
 
-def test_a_rate_that_goes_down_and_up_is_not_monotone() -> None:
+def test_monotone_is_a_rate_that_passes_one_half_once() -> None:
     edge = c2d.Scenario(
         c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5)),
         c2d.terrains.step(0.05),

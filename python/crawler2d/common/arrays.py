@@ -58,6 +58,20 @@ def real_number(value: Any, path: str) -> float:
     return number
 
 
+def whole_number(value: Any, path: str, least: int, most: int) -> int:
+    """Accept a whole number within bounds.
+
+    Raises
+    ------
+    ScenarioError
+        If it is no whole number, or out of bounds; a bool is none.
+    """
+    number = frozen_scalar(value, whole=True)
+    if type(number) is not int or not least <= number <= most:
+        raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")
+    return number
+
+
 def frozen_rows(value: Any, path: str, *, rows: bool, columns: int) -> Any:
     """Copy an array-like of real numbers to tuples of floats, exactly.
 

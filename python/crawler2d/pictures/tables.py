@@ -34,8 +34,6 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
     Bars are intervals; thick ones are the bands of the rates over the unknowns.
     """
     rates = found["rate"]
-    if "sample" in rates.dims and "band_low" not in found:
-        found = found.assign(banded(rates))
     banded_too = "band_low" in found
     shown = found["band_median"] if banded_too else rates
     along = _along(shown)
@@ -67,13 +65,6 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
     if len(ax.get_lines()) > 1:
         ax.legend(fontsize="small", loc="best")
     return ax
-
-
-def banded(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
-    """Return the band of rates over the samples of the unknowns, without that dimension."""
-    parts = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
-    found = {name: rates.quantile(part, "sample") for name, part in parts.items()}
-    return {name: part.drop_vars("quantile") for name, part in found.items()}
 
 
 def populations(attributes: Mapping[str, Any], *, banded: bool) -> str:

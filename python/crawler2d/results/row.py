@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged
+from crawler2d.errors import Crawler2dError, ScenarioError, SimulationDiverged, own_error
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.record import Record
 
@@ -54,7 +54,7 @@ class Row:
         """Take what the core returned for a scenario."""
         error = result.get("error")
         if error is not None:
-            return cls.of_error(error, identity, scenario)
+            return cls.of_error(own_error(error), identity, scenario)
         return cls(
             identity,
             scenario,

@@ -6,12 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from crawler2d import _core
-from crawler2d.errors import (
-    Crawler2dError,
-    InternalError,
-    RunUnfinished,
-    ScenarioError,
-)
+from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -144,10 +139,10 @@ def simulate_many(
     batch = list(scenarios)
     checked = _checked(batch)
     if on_error == "raise":
-        _raise_first(checked)
+        raise_first(checked)
     runs = simulate_passed(batch, checked, recorded, threads=count, progress=progress)
     if on_error == "raise":
-        _raise_first([run.error for run in runs])
+        raise_first([run.error for run in runs])
     return runs
 
 
@@ -207,12 +202,6 @@ def _checked(batch: list[Scenario]) -> list[_core.Passed | ScenarioError]:
     return results
 
 
-def _raise_first(results: Iterable[object]) -> None:
-    for result in results:
-        if isinstance(result, Crawler2dError):
-            raise result
-
-
 def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> Run:
     if result is None:
         return Run(
@@ -223,6 +212,4 @@ def _run(scenario: Scenario, result: dict[str, Any] | ScenarioError | None) -> R
     error = result.get("error")
     if error is None:
         return Run(scenario, result)
-    if not isinstance(error, Crawler2dError):  # such as a MemoryError while its arrays were created
-        error = InternalError(f"{type(error).__name__}: {error}")
-    return Run(scenario, {}, error)
+    return Run(scenario, {}, own_error(error))

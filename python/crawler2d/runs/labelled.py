@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from crawler2d.results.record import Record
 
-__all__ = ["UNITS", "to_dataset"]
+__all__ = ["UNITS", "build_attributes", "to_dataset"]
 
 UNITS = {
     "time": "s",
@@ -48,6 +48,11 @@ _DIMENSIONS = {
 }
 
 
+def build_attributes() -> dict[str, str | int]:
+    """Return what the core is made of, as attributes of a data set."""
+    return {f"build_{name}": value for name, value in build_info().items()}
+
+
 def to_dataset(run: Record) -> xarray.Dataset:
     """Copy the history of a run to a labelled data set; see `Run.to_xarray`."""
     xr = extra("xarray", "analysis")
@@ -72,7 +77,7 @@ def to_dataset(run: Record) -> xarray.Dataset:
             **run.metrics,
             "scenario": run.scenario.to_json(),
             "identity": run.scenario.identity,
-            **{f"build_{name}": value for name, value in build_info().items()},
+            **build_attributes(),
         },
     )
     return dataset

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
@@ -17,7 +17,6 @@ from crawler2d.studies.campaign import Campaign, Cell, How, Tally, campaign
 from crawler2d.studies.models import Models, read_models
 from crawler2d.studies.tables import found_of
 from crawler2d.sweeps.axes import field_attributes
-from crawler2d.sweeps.tabulate import whole_number
 
 if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from os import PathLike
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
-from crawler2d.errors import ScenarioError
+from crawler2d.common.arrays import whole_number
+from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.row import Row
@@ -23,7 +24,7 @@ from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from crawler2d.sweeps.plan import Planner, World
 from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import Interval
-from crawler2d.sweeps.tabulate import runs_of, whole_number
+from crawler2d.sweeps.tabulate import runs_of
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
@@ -203,15 +204,10 @@ class Campaign:
             for each in cells
         ]
         everyone = [tally for tallies in found for tally in tallies]
-        _raise_first(tally.world.checked for tally in everyone)
+        raise_first(tally.world.checked for tally in everyone)
         while due := [(tally, tally.wants) for tally in everyone if tally.wants]:
             self._simulate(due)
         return found
-
-    def once(self, cells: Sequence[Cell], repeats: int = 1) -> list[list[Tally]]:
-        """Simulate cells a fixed number of times; see `repeat`."""
-        fixed = Until(width=1e-9, least=repeats, most=repeats)
-        return self.repeat(cells, until=fixed)
 
     def _simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
         plans = []
@@ -219,7 +215,7 @@ class Campaign:
             begin = len(tally.rows)
             plans.append(self.planner.runs(tally.world, begin, begin + more))
         checked = [each for plan in plans for each in plan.checked]
-        _raise_first(checked)
+        raise_first(checked)
         batch = self._collector.batch(checked)
         self._report.expect(len(checked))
         self._report(batch.done)
@@ -227,12 +223,6 @@ class Campaign:
         for (tally, _), plan in zip(due, plans, strict=True):
             tally.rows += [next(rows) for _ in plan.checked]
             tally.drawn.append(plan.drawn)
-
-
-def _raise_first(checked: Iterable[object]) -> None:
-    for each in checked:
-        if isinstance(each, ScenarioError):
-            raise each
 
 
 @contextlib.contextmanager

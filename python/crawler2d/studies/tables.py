@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crawler2d._core import build_info
+from crawler2d.runs.labelled import build_attributes
 from crawler2d.sweeps.axes import field_attributes, short_names
 from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
+from crawler2d.sweeps.rates import banded
 
 if TYPE_CHECKING:
     from crawler2d.studies.campaign import Campaign, Tally
@@ -49,9 +50,9 @@ def found_of(
     Returns
     -------
     Found
-        With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of the unknowns),
-        and the columns of `sweep` for each run; `repeat` is as long as the longest cell, and where
-        a cell has fewer runs, its `outcome` is "".
+        With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of the unknowns, with
+        a band over them, as of `rate`), and the columns of `sweep` for each run; `repeat` is
+        as long as the longest cell, and where a cell has fewer runs, its `outcome` is "".
     """
     from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
 
@@ -86,8 +87,9 @@ def found_of(
     rates = dataset_of(by_cell, sizes, coordinates)
     for name, text in _SPOKEN.items():
         rates[name].attrs = {"units": "1", "long_name": text}
+    if unknowns:
+        rates = rates.assign(banded(rates["rate"]))
     until = campaign.until
-    builds = {f"build_{name}": value for name, value in build_info().items()}
     merged = whole.merge(rates)
     return Found(merged.data_vars, merged.coords).assign_attrs(
         figure=figure,
@@ -99,7 +101,7 @@ def found_of(
         interval="sequential",
         settings=campaign.settings,
         runs=sum(len(tally.rows) for tally in flat),
-        **builds,
+        **build_attributes(),
     )
 
 

@@ -17,6 +17,7 @@ from crawler2d.errors import (
 )
 from crawler2d.results.row import Row
 from crawler2d.sweeps.chunk import simulate_chunk
+from crawler2d.sweeps.plan import Checked
 from crawler2d.sweeps.store import Place, Store
 
 __all__ = ["Batch", "Collector", "RowsInterrupted"]
@@ -27,9 +28,6 @@ _CHUNK = 25
 _OUT = 256
 # How often a task is given out before the loss of its worker ends the batch.
 _ATTEMPTS = 5
-
-Checked = _core.Passed | ScenarioError
-"""A scenario that can be run, or the rule that it breaks."""
 
 Take = Callable[[list[tuple[int, dict[str, Any]]]], None]
 

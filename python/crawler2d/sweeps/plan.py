@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.axes import Axis
 
-__all__ = ["Plan", "Planner", "World", "plan_runs"]
+__all__ = ["Checked", "Plan", "Planner", "World", "plan_runs"]
 
 Checked = _core.Passed | ScenarioError
 """A scenario that can be run, or the rule that it breaks."""
@@ -180,9 +180,9 @@ def plan_runs(
     return plans
 
 
-def _varied(cell: Scenario, whole: Checked, drawn: Drawn | None, count: int) -> list[Checked]:
+def _varied(cell: Scenario, whole: Checked, drawn: Drawn, count: int) -> list[Checked]:
     """Set what was drawn in a checked scenario; one that breaks a rule is an error."""
-    if drawn is None or not drawn.values or isinstance(whole, ScenarioError):
+    if not drawn.values or isinstance(whole, ScenarioError):
         return [whole] * count
     if any(excluded(cell, path) for path in drawn.values):
         # The fields that exclude these are taken off first, whatever value it is that comes.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["rate"]
+__all__ = ["banded", "rate", "rates_of"]
 
 _STOPPED = "stopped"
 """Any outcome that is a stop."""
@@ -42,8 +42,8 @@ _SPOKEN = {
     "band_high": "95th percentile of the rates over the unknowns",
 }
 
-_BAND = (0.05, 0.5, 0.95)
-"""[-] Quantiles of a band of rates: lower end, median, upper end."""
+_BAND = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
+"""[-] Quantiles of a band of rates."""
 
 _FEW = 4
 """So few distinct poses, or fewer, of at least `_MANY` runs are worth a warning."""
@@ -157,9 +157,7 @@ def rates_of(
                 _distinct, made, *steps, input_core_dims=core, vectorize=True
             )
         if _SAMPLE in counts.dims:
-            band = variables["rate"].quantile(_BAND, _SAMPLE, skipna=True)
-            for name, part in zip(("band_low", "band_median", "band_high"), _BAND, strict=True):
-                variables[name] = band.sel(quantile=part, drop=True)
+            variables |= banded(variables["rate"])
     for name, variable in variables.items():
         if name in counts.coords:
             rule = "must have no other dimension or coordinate of that name: rename it"
@@ -178,6 +176,14 @@ def rates_of(
             "unknown": runs.attrs.get("unknown", ""),
         },
     )
+
+
+def banded(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
+    """Return the band of rates over the samples of the unknowns, without that dimension."""
+    band = rates.quantile(list(_BAND.values()), _SAMPLE, skipna=True)
+    parts = {name: band.sel(quantile=part, drop=True) for name, part in _BAND.items()}
+    spoken = {name: {"units": "1", "long_name": _SPOKEN[name]} for name in parts}
+    return {name: part.assign_attrs(spoken[name]) for name, part in parts.items()}
 
 
 def _warn_of_few(rates: xarray.Dataset) -> None:

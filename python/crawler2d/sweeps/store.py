@@ -9,7 +9,6 @@ import sqlite3
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from crawler2d import errors
@@ -78,12 +77,7 @@ class Store:
         """Return the store."""
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Close it."""
         self.close()
 
@@ -125,6 +119,20 @@ class Store:
                     row = _row(values)
                     found[row.identity] = row
         return found
+
+    def copy(self, place: Path) -> int:
+        """Add the runs of another store, all or none; returns how many were new."""
+        with _told(self.path, self._connection):
+            self._connection.execute("ATTACH ? AS other", (str(place),))
+            try:
+                added = _copied(self._connection, self.path, place)
+                self._connection.commit()
+            except BaseException:
+                self._connection.rollback()
+                raise
+            finally:
+                self._connection.execute("DETACH other")
+        return added
 
     def _values(self, row: Row) -> tuple[Any, ...]:
         figures = {name: value if value == value else None for name, value in row.metrics.items()}  # noqa: PLR0124 - nan
@@ -177,7 +185,7 @@ def join_stores(into: Place, *others: Place) -> int:
     ------
     StoreError
         If one of the files is no store, `into` is written by another process, or two hold different
-        results of the same run; then nothing is added.
+        results of the same run; then nothing of that other one is added.
 
     Examples
     --------
@@ -197,19 +205,7 @@ def join_stores(into: Place, *others: Place) -> int:
             raise StoreError(f"{place} is not there")
         _connected(place, made=False).close()
     with Store(into) as store:
-        connection, added = store._connection, 0
-        for place in places:
-            with _told(store.path, connection):
-                connection.execute("ATTACH ? AS other", (str(place),))
-                try:
-                    added += _copied(connection, store.path, place)
-                    connection.commit()
-                except BaseException:
-                    connection.rollback()
-                    raise
-                finally:
-                    connection.execute("DETACH other")
-    return added
+        return sum(map(store.copy, places))
 
 
 def _copied(connection: sqlite3.Connection, into: Path, place: Path) -> int:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d._core import build_info
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
 from crawler2d.results.row import Row
+from crawler2d.runs.labelled import build_attributes
 from crawler2d.runs.run import Run
 from crawler2d.sweeps.dataset import dataset_of, row_columns
 from crawler2d.sweeps.store import stored_rows
@@ -77,4 +77,4 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     columns = row_columns(rows, trials=tuple(dict.fromkeys(tried)), with_times=True)
     columns |= {name: (np.array(texts, object), {}) for name, texts in made_by.items()}
     found = dataset_of(columns, {"run": len(rows)}, {"run": np.arange(len(rows))})
-    return found.assign_attrs({f"build_{name}": value for name, value in build_info().items()})
+    return found.assign_attrs(build_attributes())

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from crawler2d._core import Passed, build_info
-from crawler2d.common.arrays import frozen_scalar
+from crawler2d._core import Passed
+from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
-from crawler2d.errors import Crawler2dError, ScenarioError
+from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.row import Row
 from crawler2d.runs.interrupted import BatchInterrupted
+from crawler2d.runs.labelled import build_attributes
 from crawler2d.runs.progress import Progress, reporter
 from crawler2d.runs.recording import yes_or_no
 from crawler2d.runs.run import Run
@@ -30,7 +31,7 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OnError", "runs_of", "tabulate", "whole_number"]
+__all__ = ["OnError", "runs_of", "tabulate"]
 
 OnError = Literal["raise", "record"]
 
@@ -75,7 +76,7 @@ def tabulate(
     plans = plan_runs(scenario, axes, planner, repeats=repeats, like=base)
     checked = [each for plan in plans for each in plan.checked]
     if on_error == "raise":
-        _raise_first(each for each in checked if isinstance(each, ScenarioError))
+        raise_first(checked)
     try:
         with Collector(tried, store=store, executor=executor, threads=count) as collector:
             batch = collector.batch(checked)
@@ -88,7 +89,7 @@ def tabulate(
         if row.error is not None and row.identity:
             row.error.add_note(f"in {plans[index // repeats].place(index % repeats)}")
     if on_error == "raise":
-        _raise_first(row.error for row in rows)
+        raise_first(row.error for row in rows)
     columns = row_columns(rows, trials=tried, with_times=with_times)
     columns |= _drawn(plans, variation, unknowns, repeats)
     kind = np.int64 if seed < 2**63 else np.uint64
@@ -101,9 +102,11 @@ def tabulate(
     dims["repeat"] = repeats
     labels["repeat"] = np.arange(repeats)
     dataset = dataset_of(columns, dims, labels)
-    builds = {f"build_{name}": value for name, value in build_info().items()}
     return dataset.assign_attrs(
-        scenario=scenario.to_json(), vary=variation.text, unknown=unknowns.text, **builds
+        scenario=scenario.to_json(),
+        vary=variation.text,
+        unknown=unknowns.text,
+        **build_attributes(),
     )
 
 
@@ -137,17 +140,3 @@ def _run(row: Row) -> Run:
         "wall_time": row.wall_time,
     }
     return Run(scenario, {} if row.error is not None else result, row.error)
-
-
-def _raise_first(errors: Iterable[Crawler2dError | None]) -> None:
-    for error in errors:
-        if error is not None:
-            raise error
-
-
-def whole_number(value: object, path: str, least: int, most: int) -> int:
-    """Accept a whole number within bounds."""
-    number = frozen_scalar(value, whole=True)
-    if type(number) is not int or not least <= number <= most:
-        raise ScenarioError(path, value, f"must be a whole number from {least} to {most}")
-    return number

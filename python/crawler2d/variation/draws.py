@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -24,12 +25,15 @@ __all__ = ["Drawn", "Variation", "uniform_numbers"]
 _FRICTION = "terrain.friction"
 
 
+@functools.lru_cache(maxsize=256)  # all cells of a sweep share them
 def uniform_numbers(path: str, seed: int, count: int, *, kind: str = "") -> NDArray[np.float64]:
     """Draw numbers from 0 to 1 for a path, shape (count,).
 
     Each depends only on kind, path, seed and its place, not on other paths or the count.
     """
-    return np.random.default_rng((seed, *kind.encode(), *path.encode())).random(count)
+    numbers = np.random.default_rng((seed, *kind.encode(), *path.encode())).random(count)
+    numbers.flags.writeable = False
+    return numbers
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ Range = tuple[Distribution, str]
 _X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
 _TORQUE, _BELLY = "robot.drivetrain.max_torque", "robot.belly[*][1]"
 
-_OF_FILE = "the sum over the links of its file, with sensors; 10 mm for what is mounted or left off"
-_MOTORS = "its file has no limit; half to twice the estimate"
+_OF_FILE = "the sum over the links of its file; 10 mm for what is mounted or left off"
+_MOTORS = "the preset's is an estimate: half to twice"
 
 GENERAL: Mapping[str, Range] = {
     _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
@@ -35,7 +35,7 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
             shifted(-0.02, 0.02),
             "the preset's is an estimate; the arm raised or lowered by 48 mm moves the whole so",
         ),
-        _TORQUE: (scaled(0.5, 2.0), "the preset's is an estimate: half to twice"),
+        _TORQUE: (scaled(0.5, 2.0), _MOTORS),
         _BELLY: (
             shifted(-0.014, 0.010),
             "the preset's is an estimate: 20 to 44 mm above level ground",
