@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -12,20 +11,19 @@ from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import checked_axes
 from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, RED, SKY, VIOLET
 from crawler2d.errors import ScenarioError
+from crawler2d.pictures.labels import populations, readable
+from crawler2d.pictures.outcomes import plot_outcomes
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-__all__ = ["FIGURES", "populations"]
+__all__ = ["FIGURES"]
 
 _COLORS = (BLUE, ORANGE, GREEN, RED, SKY, VIOLET, BLACK)
 _MARKERS = "osD^vPX"
 _APART = 0.06
 """[-] Share of the figure's width that the points of all lines at one place take."""
-
-_SCALES = {"m": (1e3, "mm"), "rad": (180.0 / np.pi, "deg")}
-"""Factor and unit in which people read a quantity."""
 
 
 def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
@@ -42,12 +40,12 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
         _, ax = pyplot.subplots(figsize=(8.0, 5.0), layout="constrained")
     else:
         checked_axes(ax, "ax")
-    factor, unit = _SCALES.get(shown[along].attrs.get("units", ""), (1.0, ""))
+    factor, label = readable(shown[along])
     x = factor * shown[along].to_numpy().astype(float)
     lines = list(_lines(shown, along))
     # Side by side, so that no interval hides another.
     apart = _APART * float(np.ptp(x)) / max(len(lines), 5) if x.size > 1 else 0.0
-    for index, (label, place) in enumerate(lines):
+    for index, (name, place) in enumerate(lines):
         color, marker = _COLORS[index % len(_COLORS)], _MARKERS[index % len(_MARKERS)]
         own = shown.sel(place).to_numpy()
         at = x + apart * (index - 0.5 * (len(lines) - 1))
@@ -55,35 +53,14 @@ def plot_rates(found: xarray.Dataset, ax: Axes | None) -> Axes:
         lower, upper = (found[name].sel(place).to_numpy() for name in (low, high))
         known = np.isfinite(own)  # not every value is tried with every model
         at, own, lower, upper = at[known], own[known], lower[known], upper[known]
-        ax.plot(at, own, color=color, marker=marker, markersize=5.0, label=label, zorder=3)
+        ax.plot(at, own, color=color, marker=marker, markersize=5.0, label=name, zorder=3)
         ax.vlines(at, lower, upper, color=color, alpha=0.5, linewidth=4.0 if banded_too else 1.5)
-    name = str(shown[along].attrs.get("long_name", along))
-    ax.set_xlabel(f"{name} [{unit or shown[along].attrs.get('units', '')}]".replace(" []", ""))
-    ax.set(ylabel=str(rates.attrs.get("long_name", "rate")), ylim=(-0.03, 1.03))
+    ax.set(xlabel=label, ylabel=str(rates.attrs.get("long_name", "rate")), ylim=(-0.03, 1.03))
     ax.grid(alpha=0.3)
     ax.set_title(populations(found.attrs, banded=banded_too), loc="left", fontsize="small")
     if len(ax.get_lines()) > 1:
         ax.legend(fontsize="small", loc="best")
     return ax
-
-
-def populations(attributes: Mapping[str, Any], *, banded: bool) -> str:
-    """Say what rates are rates of, in the words of a figure's title."""
-    varied = _named(attributes.get("vary", attributes.get("varied", "")))
-    text = f"rates over {varied}" if varied else "rates of equal runs"
-    unknown = _named(attributes.get("unknown", ""))
-    if banded:
-        return f"{text};\nmedian and 5 to 95 % over {unknown}"
-    kind = attributes.get("interval", "")
-    level = attributes.get("confidence_level")
-    return f"{text}\n{kind} intervals, {100 * level:.0f} %" if level else text
-
-
-def _named(text: str) -> str:
-    """Name the fields of ``path: distribution; path: distribution``."""
-    paths = [part.partition(":")[0] for part in text.split("; ") if part]
-    names = [re.sub(r"\[[^\]]*\]", "", path.rpartition(".")[2]) for path in paths]
-    return ", ".join(dict.fromkeys(name.replace("_", " ") for name in names))
 
 
 def _along(shown: xarray.DataArray) -> str:
@@ -107,5 +84,6 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "max_slope": plot_rates,
     "max_gap": plot_rates,
     "critical": plot_rates,
+    "success": plot_outcomes,
 }
 """By the attribute `figure` of a data set."""

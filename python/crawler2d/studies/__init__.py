@@ -18,6 +18,7 @@ showed. The attribute `settings` counts the cells that were tried.
 """
 
 from crawler2d.studies.boundary import critical
+from crawler2d.studies.crossing import success
 from crawler2d.studies.obstacles import max_gap, max_obstacle, max_slope
 
-__all__ = ["critical", "max_gap", "max_obstacle", "max_slope"]
+__all__ = ["critical", "max_gap", "max_obstacle", "max_slope", "success"]

@@ -50,8 +50,8 @@ def found_of(
     Returns
     -------
     Found
-        With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of the unknowns, with
-        a band over them, as of `rate`), and the columns of `sweep` for each run; `repeat` is
+        With `rate`, `low`, `high`, `count`, `side` for each cell (and `sample` of unknowns, with a
+        band over them, as of `rate`), and the columns of `sweep` for each run; `repeat` is
         as long as the longest cell, and where a cell has fewer runs, its `outcome` is "".
     """
     from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray

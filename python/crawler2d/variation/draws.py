@@ -71,7 +71,8 @@ class Variation:
 
     distributions: Mapping[str, Distribution]
     gives_way: Collection[str] = ()
-    """Paths whose draws are dropped if they break a rule."""
+    """Paths that are left out where a cell lacks them, and whose draws are dropped if they break a
+    rule."""
     text: str = ""
     """What was given, for the attributes of a table."""
 
@@ -109,9 +110,10 @@ class Variation:
                 raise ScenarioError(name, path, "must have dotted paths as keys")
             place = f"{name}[{path!r}]"
             distribution = read_distribution(each, place)
-            if path in gives_way and _is_set(path, swept):
+            replaces = path in swept and not distribution.is_relative
+            if path in gives_way and (replaces or _is_set(path, swept)):
                 continue
-            if not distribution.is_relative and path in swept:
+            if replaces:
                 rule = (
                     "must not replace the values of `over`; scaled(low, high) and"
                     " shifted(low, high) vary about them"
@@ -152,6 +154,8 @@ class Variation:
         shown: dict[str, NDArray[np.float64]] = {}
         whole: dict[str, bool] = {}
         for path, distribution in self.distributions.items():
+            if path in self.gives_way and not _has(cell, path):
+                continue
             for field in _fields(cell, path):
                 held = read_path(cell, field)
                 nominal = held if own is None else own.get(field, held)
@@ -166,6 +170,15 @@ class Variation:
 def _is_set(path: str, swept: Collection[str]) -> bool:
     """Whether a path of the start is swept, or the start as a whole."""
     return path.startswith("start.") and (path in swept or "start" in swept)
+
+
+def _has(cell: Scenario, path: str) -> bool:
+    try:
+        for field in _fields(cell, path):
+            read_path(cell, field)
+    except ScenarioError:
+        return False
+    return True
 
 
 def _fields(cell: Scenario, path: str) -> list[str]:

@@ -23,8 +23,8 @@ class Ranges(Mapping[str, Distribution]):
     sources : mapping of str to str, optional
         Where each range comes from, by path.
     gives_way : collection of str
-        Paths that are left out where they are swept; a draw that breaks a rule is dropped, and the
-        run keeps its own value.
+        Paths that are left out where they are swept, and where the scenario has none; a draw that
+        breaks a rule is dropped, and the run keeps its own value.
 
     Examples
     --------

@@ -75,7 +75,7 @@ def of_field() -> Ranges:
     Returns
     -------
     Ranges
-        For `vary`, where the terrain has a seed.
+        For `vary`. Grounds without a seed stay as they are.
 
     Examples
     --------
@@ -83,4 +83,5 @@ def of_field() -> Ranges:
     ['terrain.seed']
     """
     sources = {"terrain.seed": "any field of the same measures"}
-    return Ranges({"terrain.seed": uniform_int(0, 2**31 - 1)}, sources)
+    found = {"terrain.seed": uniform_int(0, 2**31 - 1)}
+    return Ranges(found, sources, found)
