@@ -1,5 +1,6 @@
 """A store keeps every run: nothing is simulated twice, nothing is lost."""
 
+import random
 import sqlite3
 import subprocess
 import sys
@@ -171,33 +172,36 @@ import sys
 import crawler2d as c2d
 base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.03), duration=4.0)
 over = {"terrain.height": [0.01 * k for k in range(1, 11)]}
-c2d.sweep(base, over, repeats=150, store=sys.argv[1], progress=False, threads=2)
-print("done")
+repeats = int(sys.argv[2])
+c2d.sweep(base, over, repeats=repeats, store=sys.argv[1], progress=False, threads=2)
 """
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
-def test_a_killed_sweep_goes_on_where_it_was(tmp_path: Path) -> None:
-    path = tmp_path / "a.sqlite"
-    counts = []
-    for delay in (0.05, 0.1, 0.2):
-        process = subprocess.Popen([sys.executable, "-c", SWEEP, str(path)])
+@pytest.mark.parametrize(
+    ("repeats", "kills"), [(150, 3), pytest.param(2000, 30, marks=pytest.mark.soak)]
+)
+def test_a_killed_sweep_goes_on_where_it_was(tmp_path: Path, repeats: int, kills: int) -> None:
+    path, whole = tmp_path / "a.sqlite", tmp_path / "b.sqlite"
+    counts, draw = [], random.Random(1)
+    for _ in range(kills):
+        process = subprocess.Popen([sys.executable, "-c", SWEEP, str(path), str(repeats)])
         while not path.is_file():
             time.sleep(0.01)
         before = _count(path)
         while _count(path) == before and process.poll() is None:
             time.sleep(0.005)
-        time.sleep(delay)
+        time.sleep(draw.uniform(0.0, 1e-3 * repeats))
         process.kill()
         process.wait()
         counts.append(_count(path))
     assert counts == sorted(counts)
-    assert counts[0] > 0
-    subprocess.run([sys.executable, "-c", SWEEP, str(path)], check=True, capture_output=True)
-    whole = tmp_path / "b.sqlite"
-    subprocess.run([sys.executable, "-c", SWEEP, str(whole)], check=True, capture_output=True)
+    assert 0 < counts[0] < counts[-1]
+    for store in (path, whole):
+        subprocess.run([sys.executable, "-c", SWEEP, str(store), str(repeats)], check=True)
     assert _figures(path) == _figures(whole)
-    assert _count(path) == 1500
+    assert _count(path) == 10 * repeats
+    print(f"rows at each kill: {counts}")
 
 
 def _count(path: Path) -> int:
