@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-peers bench-scaling format build fuzz map mutants picture soak tools
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants picture soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -57,6 +57,9 @@ bench: | tools ## benchmarks
 
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)
+
+bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes
+	$(BIN)/python -m benches.peers.maps $(ARGS)
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour
 	$(BIN)/python -m benches.peers $(ARGS)

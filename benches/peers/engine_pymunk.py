@@ -42,7 +42,7 @@ class Pymunk:
 
     def wall_time(self, scene: Scene, setting: Setting, duration: float) -> float:
         """[s] Time a run."""
-        space, _ = _build(scene, setting)
+        space, _ = build(scene, setting)
         step, dt = space.step, setting.time_step
         start = time.perf_counter()
         for _ in range(setting.steps(duration)):
@@ -51,7 +51,7 @@ class Pymunk:
 
     def record(self, scene: Scene, setting: Setting, duration: float, interval: float) -> Motion:
         """Run and sample all poses."""
-        space, bodies = _build(scene, setting)
+        space, bodies = build(scene, setting)
         stride, dt = setting.stride(interval), setting.time_step
         times, poses = [], []
         for step in range(setting.steps(duration) + 1):
@@ -63,7 +63,8 @@ class Pymunk:
         return Motion.of(times, poses)
 
 
-def _build(scene: Scene, setting: Setting) -> tuple[pymunk.Space, list[pymunk.Body]]:
+def build(scene: Scene, setting: Setting) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Build the world of a scene; the chassis is the first body."""
     space = pymunk.Space(threaded=False)
     space.gravity = (0.0, -9.81)
     space.iterations = setting.iterations
