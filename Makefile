@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants picture soak tools
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants paper picture soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -80,6 +80,9 @@ fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other
 map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 	$(BIN)/python -m tests.walls.map
 
+paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; under an hour, Ctrl-C loses nothing
+	$(BIN)/python -m crawler2d paper $(ARGS)
+
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
 	$(BIN)/python docs/readme_picture.py
 
@@ -133,5 +136,5 @@ $(VENV)/.browser: $(VENV)/.dependencies
 # An old core of another kind (abi3 or not) would be preferred silently: it goes first.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
 	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask,sensitivity
 	@touch $@

@@ -25,10 +25,10 @@ def readable(values: xarray.DataArray) -> tuple[float, str]:
     return factor, name if unit in ("", "1") else f"{name} [{unit}]"
 
 
-def populations(attributes: Mapping[str, Any], *, banded: bool) -> str:
+def populations(attributes: Mapping[str, Any], *, banded: bool, what: str = "rates") -> str:
     """Say what rates are rates of, in the words of a figure's title."""
     varied = _named(attributes.get("vary", attributes.get("varied", "")))
-    text = f"rates over {varied}" if varied else "rates of equal runs"
+    text = f"{what} over {varied}" if varied else f"{what} of equal runs"
     unknown = _named(attributes.get("unknown", ""))
     if banded:
         return f"{text};\nmedian and 5 to 95 % over {unknown}"

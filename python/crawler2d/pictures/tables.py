@@ -11,8 +11,12 @@ from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import checked_axes
 from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, RED, SKY, VIOLET
 from crawler2d.errors import ScenarioError
+from crawler2d.pictures.decides import plot_decides
 from crawler2d.pictures.labels import populations, readable
+from crawler2d.pictures.maps import plot_map
+from crawler2d.pictures.measured import plot_measured
 from crawler2d.pictures.outcomes import plot_outcomes
+from crawler2d.pictures.search import plot_search
 
 if TYPE_CHECKING:
     import xarray
@@ -84,6 +88,15 @@ FIGURES: Mapping[str, Callable[..., Any]] = {
     "max_slope": plot_rates,
     "max_gap": plot_rates,
     "critical": plot_rates,
+    "seizure_map": plot_map,
+    "search": plot_search,
+    "what_decides": plot_decides,
     "success": plot_outcomes,
+    "max_speed": plot_measured,
+    "acceleration": plot_measured,
+    "braking_distance": plot_measured,
+    "ride": plot_measured,
+    "odometry": plot_measured,
+    "real_time_factor": plot_measured,
 }
 """By the attribute `figure` of a data set."""

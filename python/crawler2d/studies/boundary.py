@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 
@@ -13,7 +14,15 @@ from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies.campaign import Campaign, Cell, How, Tally, campaign
+from crawler2d.studies.campaign import (
+    Campaign,
+    Cell,
+    Counts,
+    How,
+    Tally,
+    campaign,
+    is_cleared,
+)
 from crawler2d.studies.models import Models, read_models
 from crawler2d.studies.tables import found_of
 from crawler2d.sweeps.axes import field_attributes
@@ -21,7 +30,18 @@ from crawler2d.sweeps.axes import field_attributes
 if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
 
-__all__ = ["critical"]
+__all__ = ["POINTS", "SPOKEN", "Crossing", "Line", "critical"]
+
+POINTS = 7
+"""How many values are tried first."""
+
+SPOKEN = {
+    "bracket_low": "the rate passes one half above this",
+    "bracket_high": "the rate passes one half below this",
+    "rises": "the rate rises there",
+    "monotone": "the rate passes one half no more than once",
+}
+"""The columns of a `Crossing`, in words."""
 
 
 def critical(
@@ -31,7 +51,7 @@ def critical(
     *,
     models: Models | None = None,
     tolerance: float | None = None,
-    points: int = 7,
+    points: int = POINTS,
     **how: Unpack[How],
 ) -> Found:
     """Find where the rate of clearing passes one half along one field, such as a friction.
@@ -100,95 +120,128 @@ def critical(
     name = path.rpartition(".")[2].replace("[", "_").replace("]", "")
     swept = [path, *dict.fromkeys(key for each in fields.values() for key in each)]
     with campaign(scenario, how, swept, threshold=0.5) as study:
-        tried: dict[Any, dict[float, list[Tally]]] = {}
+        lines: list[Line] = []
         for label, own in fields.items():
-            base = scenario.replace(own)
-            line = _Line(study, base, path, (f"model={label}", name))
-            line.add(np.linspace(low, high, count).tolist())
-            line.narrow(width)
-            tried[label] = line.tallies
-        values = sorted({value for tallies in tried.values() for value in tallies})
-        samples = len(next(iter(next(iter(tried.values())).values())))
-        empty = _empty(tried)
-        tallies = [
-            tried[label].get(value, [empty] * samples) for label in fields for value in values
-        ]
+            at = partial(_moved, scenario.replace(own), path)
+            lines.append(Line(study, (f"model={label}", name), at))
+            lines[-1].add(np.linspace(low, high, count).tolist())
+            lines[-1].narrow(width)
+        values = sorted({value for line in lines for value in line.tallies})
+        samples = lines[0].samples
+        # Not every value is tried of every model.
+        some = lines[0].tallies[values[0]][0]
+        empty = [Tally(some.world, some.until, some.counts)] * samples
+        tallies = [line.tallies.get(value, empty) for line in lines for value in values]
         dims = {"model": (list(fields), {}), name: (values, field_attributes([path]))}
         found = found_of(study, "critical", tallies, dims)
-    return _with_brackets(found, tried, samples)
+    return _with_crossings(found, lines)
 
 
-class _Line:
-    """The values that were tried of one model."""
+class Crossing(NamedTuple):
+    """Where a rate passes one half among the values that were tried.
 
-    def __init__(self, study: Campaign, base: Scenario, path: str, names: tuple[str, str]) -> None:
+    Attributes
+    ----------
+    bracket_low, bracket_high : float
+        The first two neighbours between which it does; nan if nowhere.
+    rises : bool
+        Whether it rises there.
+    monotone : bool
+        Whether it passes one half no more than once.
+    """
+
+    bracket_low: float = math.nan
+    bracket_high: float = math.nan
+    rises: bool = False
+    monotone: bool = True
+
+
+class Line:
+    """The values that were tried of one model.
+
+    Parameters
+    ----------
+    study : Campaign
+        What simulates.
+    names : pair of str
+        Model and field, for messages.
+    at : callable
+        The scenario at a value.
+    counts : callable
+        Which runs are successes.
+
+    Attributes
+    ----------
+    tallies : dict of float to list of Tally
+        By value and sample.
+    """
+
+    def __init__(
+        self,
+        study: Campaign,
+        names: tuple[str, str],
+        at: Callable[[float], Scenario],
+        counts: Counts = is_cleared,
+    ) -> None:
         self.tallies: dict[float, list[Tally]] = {}
-        self._study, self._base, self._path, self._names = study, base, path, names
+        self._study, self._names, self._at, self._counts = study, names, at, counts
+
+    @property
+    def samples(self) -> int:
+        """How many samples of the unknowns every value has."""
+        return len(next(iter(self.tallies.values())))
 
     def add(self, values: Sequence[float]) -> None:
         """Try values that have not been tried."""
         new = [value for value in values if value not in self.tallies]
         model, name = self._names
-        cells = [
-            Cell((model, f"{name}={value:g}"), self._base.replace({self._path: value}))
-            for value in new
-        ]
-        self.tallies |= dict(zip(new, self._study.repeat(cells), strict=True))
+        cells = [Cell((model, f"{name}={value:g}"), self._at(value)) for value in new]
+        self.tallies |= dict(zip(new, self._study.repeat(cells, self._counts), strict=True))
 
     def narrow(self, width: float) -> None:
         """Halve the first bracket of every sample until it is no wider than this."""
-        samples = len(next(iter(self.tallies.values())))
         while True:
-            found = [bracket(self.tallies, sample) for sample in range(samples)]
-            wide = {0.5 * (a + b) for a, b in found if b - a > width}
+            found = [self.crossing(sample) for sample in range(self.samples)]
+            wide = {
+                0.5 * (each.bracket_low + each.bracket_high)
+                for each in found
+                if each.bracket_high - each.bracket_low > width
+            }
             if not wide:
                 return
             self.add(sorted(wide))
 
+    def rates(self, sample: int = 0) -> dict[float, float]:
+        """Return the rate at each value, in order."""
+        return {value: self.tallies[value][sample].interval.rate for value in sorted(self.tallies)}
 
-def bracket(tallies: dict[float, list[Tally]], sample: int) -> tuple[float, float]:
-    """Return the first two neighbours between which the rate passes one half; nan if nowhere."""
-    ways = _ways(tallies, sample)
-    for (low, before), (high, after) in pairwise(ways):
-        if before != after:
-            return low, high
-    return math.nan, math.nan
-
-
-def _ways(tallies: dict[float, list[Tally]], sample: int) -> list[tuple[float, bool]]:
-    return [(value, tallies[value][sample].interval.rate >= 0.5) for value in sorted(tallies)]
-
-
-def _empty(tried: dict[Any, dict[float, list[Tally]]]) -> Tally:
-    """Make the tally of a value that a model was not tried at."""
-    some = next(iter(next(iter(tried.values())).values()))[0]
-    return Tally(some.world, some.until, some.counts)
+    def crossing(self, sample: int = 0) -> Crossing:
+        """Find where the rate passes one half."""
+        ways = [(value, rate >= 0.5) for value, rate in self.rates(sample).items()]
+        passes = [
+            (low, high, after) for (low, before), (high, after) in pairwise(ways) if before != after
+        ]
+        return Crossing(*passes[0], monotone=len(passes) == 1) if passes else Crossing()
 
 
-def _with_brackets(found: Found, tried: dict[Any, dict[float, list[Tally]]], samples: int) -> Found:
-    columns: dict[str, list[list[float | bool]]] = {
-        name: [] for name in ("bracket_low", "bracket_high", "rises", "monotone")
-    }
-    for tallies in tried.values():
-        rows = []
-        for sample in range(samples):
-            ways = [way for _, way in _ways(tallies, sample)]
-            changes = sum(one != other for one, other in pairwise(ways))
-            low, high = bracket(tallies, sample)
-            rises = changes > 0 and not ways[0]
-            rows.append((low, high, rises, changes <= 1))
-        for column, values in zip(columns.values(), zip(*rows, strict=True), strict=True):
-            column.append(list(values))
+def _moved(base: Scenario, path: str, value: float) -> Scenario:
+    return base.replace({path: value})
+
+
+def _with_crossings(found: Found, lines: Sequence[Line]) -> Found:
+    crossings = [[line.crossing(sample) for sample in range(line.samples)] for line in lines]
     dims = ("model", "sample") if "sample" in found["rate"].dims else ("model",)
-    spoken = {
-        "bracket_low": "the rate passes one half above this",
-        "bracket_high": "the rate passes one half below this",
-        "rises": "the rate rises there",
-        "monotone": "the rate passes one half no more than once",
+    shape = [found.sizes[dim] for dim in dims]
+    columns: Mapping[str, Any] = {
+        name: np.array([[getattr(each, name) for each in row] for row in crossings])
+        for name in Crossing._fields
     }
-    arrays = {name: np.array(values) for name, values in columns.items()}
-    shaped = {name: a if len(dims) == 2 else a[:, 0] for name, a in arrays.items()}
-    return found.assign({n: (dims, a, {"long_name": spoken[n]}) for n, a in shaped.items()})
+    return found.assign(
+        {
+            name: (dims, values.reshape(shape), {"long_name": SPOKEN[name]})
+            for name, values in columns.items()
+        }
+    )
 
 
 def _pair(between: object) -> tuple[object, object]:

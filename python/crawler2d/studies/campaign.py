@@ -20,6 +20,7 @@ from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.progress import Progress, Reporter, reporter
 from crawler2d.runs.threads import thread_count
 from crawler2d.runs.trials import Trials, trial_names
+from crawler2d.studies.multiplied import multiplied
 from crawler2d.sweeps.collect import Collector, RowsInterrupted
 from crawler2d.sweeps.plan import Planner, World
 from crawler2d.sweeps.sequential import Until, sequential
@@ -30,14 +31,22 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Campaign", "Cell", "Counts", "How", "Tally", "campaign", "is_cleared"]
+__all__ = [
+    "Campaign",
+    "Cell",
+    "Counts",
+    "How",
+    "Sampling",
+    "Tally",
+    "campaign",
+    "counting",
+    "is_cleared",
+]
 
 
-class How(TypedDict, total=False):
+class Sampling(TypedDict, total=False):
     """How a study is made: keywords that every function of `crawler2d.studies` takes.
 
-    until : Until
-        When a cell has been simulated often enough.
     vary, unknown : mapping of str to distribution
         What differs from run to run, and what is not known: see `sweep`.
     samples : int
@@ -56,7 +65,6 @@ class How(TypedDict, total=False):
         See `simulate_many`; the number of all runs grows as cells want more.
     """
 
-    until: Until
     vary: Mapping[str, Any] | None
     unknown: Mapping[str, Any] | None
     samples: int
@@ -66,6 +74,16 @@ class How(TypedDict, total=False):
     executor: Executor | None
     threads: int | None
     progress: bool | Progress | None
+
+
+class How(Sampling, total=False):
+    """The keywords of a study of rates.
+
+    until : Until
+        When a cell has been simulated often enough.
+    """
+
+    until: Until
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +96,13 @@ class Cell:
         Such as "height=0.1", for messages.
     scenario : Scenario
         Without draws.
+    factors : mapping of str to float
+        [-] By path: what the scenario's own value has been multiplied with, and draws are to be.
     """
 
     names: tuple[str, ...]
     scenario: Scenario
+    factors: Mapping[str, float] = field(default_factory=dict)
 
 
 Counts = Callable[[Row], bool]
@@ -91,6 +112,22 @@ Counts = Callable[[Row], bool]
 def is_cleared(row: Row) -> bool:
     """Whether the whole robot passed the goal."""
     return row.outcome == Outcome.CLEARED
+
+
+def counting(outcome: str) -> Counts:
+    """Count the runs with an outcome, or "stopped" for any stop, as `rate` does.
+
+    Raises
+    ------
+    ScenarioError
+        If there is no such outcome.
+    """
+    names = [*map(str, Outcome), "stopped"]
+    if outcome not in names:
+        raise ScenarioError("outcome", outcome, f"must be one of {', '.join(names)}")
+    stops = {str(each) for each in Outcome if each.is_stop}
+    counted = stops if outcome == "stopped" else {outcome}
+    return lambda row: row.outcome in counted
 
 
 @dataclass(slots=True)
@@ -109,6 +146,8 @@ class Tally:
         One a repeat.
     drawn : list of mapping of str to ndarray
         What was drawn for each batch of repeats, by path.
+    planner : Planner, optional
+        Draws its repeats; None takes the study's.
     """
 
     world: World
@@ -116,6 +155,7 @@ class Tally:
     counts: Counts = is_cleared
     rows: list[Row] = field(default_factory=list)
     drawn: list[Mapping[str, NDArray[np.float64]]] = field(default_factory=list)
+    planner: Planner | None = None
 
     @property
     def made(self) -> list[Row]:
@@ -199,21 +239,30 @@ class Campaign:
         """
         self.settings += len(cells)
         rule = self.until if until is None else until
-        found = [
-            [Tally(world, rule, counts) for world in self.planner.worlds(each.scenario, each.names)]
-            for each in cells
-        ]
+        found = []
+        for each in cells:
+            planner = multiplied(self.planner, each.factors)
+            worlds = planner.worlds(each.scenario, each.names)
+            found.append([Tally(world, rule, counts, planner=planner) for world in worlds])
         everyone = [tally for tallies in found for tally in tallies]
         raise_first(tally.world.checked for tally in everyone)
         while due := [(tally, tally.wants) for tally in everyone if tally.wants]:
-            self._simulate(due)
+            self.simulate(due)
         return found
 
-    def _simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
+    def simulate(self, due: Sequence[tuple[Tally, int]]) -> None:
+        """Simulate so many more runs of each tally.
+
+        Raises
+        ------
+        ScenarioError
+            If a draw breaks a rule.
+        """
         plans = []
         for tally, more in due:
             begin = len(tally.rows)
-            plans.append(self.planner.runs(tally.world, begin, begin + more))
+            planner = tally.planner or self.planner
+            plans.append(planner.runs(tally.world, begin, begin + more))
         checked = [each for plan in plans for each in plan.checked]
         raise_first(checked)
         batch = self._collector.batch(checked)
@@ -227,7 +276,12 @@ class Campaign:
 
 @contextlib.contextmanager
 def campaign(
-    base: Scenario, how: How, swept: Sequence[str] = (), *, threshold: float | None = None
+    base: Scenario,
+    how: How | Sampling,
+    swept: Sequence[str] = (),
+    *,
+    threshold: float | None = None,
+    repeats: int | None = None,
 ) -> Iterator[Campaign]:
     """Open what a study needs: its store, its progress bar, its draws.
 
@@ -241,6 +295,8 @@ def campaign(
         Paths that the study sets itself.
     threshold : float, optional
         [-] Where a rate decides, unless `until` is given.
+    repeats : int, optional
+        Runs of every cell, of a study that measures: then there is no `until`.
 
     Raises
     ------
@@ -249,18 +305,23 @@ def campaign(
     BatchInterrupted
         On Ctrl-C; a store keeps what was finished.
     """
-    for name in how:
-        if name not in How.__annotations__:
-            rule = f"must be one of {', '.join(How.__annotations__)}"
-            raise ScenarioError(name, how[name], rule)  # type: ignore[literal-required]
+    known = (How if repeats is None else Sampling).__annotations__
+    for name, value in how.items():
+        if name not in known:
+            raise ScenarioError(name, value, f"must be one of {', '.join(known)}")
     if not isinstance(base, Scenario):
         raise ScenarioError("scenario", base, "must be a Scenario")
     base.validate()
-    how = {"until": Until(threshold=threshold), **how}
+    if repeats is None:
+        rule = Until(threshold=threshold)
+    else:
+        count = whole_number(repeats, "repeats", 1, 10**6)
+        rule = Until(least=count, most=count)
+    given: How = {"until": rule, **how}
     unknowns = Variation.of(base, how.get("unknown") or {}, swept, "unknown")
     variation = Variation.of(base, how.get("vary"), [*swept, *unknowns.distributions])
-    if not isinstance(how["until"], Until):
-        raise ScenarioError("until", how["until"], "must be an Until")
+    if not isinstance(given["until"], Until):
+        raise ScenarioError("until", given["until"], "must be an Until")
     seed = whole_number(how.get("seed", 0), "seed", 0, 2**64 - 1)
     samples = whole_number(how.get("samples", 20), "samples", 1, 10**5)
     planner = Planner(variation, unknowns, seed, samples)
@@ -275,7 +336,7 @@ def campaign(
             ) as collector,
             reporter(how.get("progress", True), 0) as report,
         ):
-            yield Campaign(base, how, planner, collector, report)
+            yield Campaign(base, given, planner, collector, report)
     except RowsInterrupted as interrupt:
         kept = "" if store is None else str(store)
         raise BatchInterrupted(runs_of(interrupt.rows), kept) from None

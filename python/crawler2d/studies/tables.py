@@ -1,9 +1,10 @@
-"""The runs of a study as a data set: rates by cell, and every run behind them."""
+"""The runs of a study as a data set: rates or measures by cell, and every run behind them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,10 +15,16 @@ from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
 from crawler2d.sweeps.rates import banded
 
 if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
     from crawler2d.studies.campaign import Campaign, Tally
     from crawler2d.sweeps.found import Found
 
-__all__ = ["found_of"]
+__all__ = ["Dims", "Measure", "found_of", "measured_of", "summary"]
+
+Dims = Mapping[str, tuple[Sequence[Any], Mapping[str, str]]]
+"""Labels and attributes of each dimension of the cells of a study."""
 
 _SPOKEN = {
     "rate": "rate",
@@ -32,7 +39,7 @@ def found_of(
     campaign: Campaign,
     figure: str,
     tallies: Sequence[Sequence[Tally]],
-    dims: Mapping[str, tuple[Sequence[Any], Mapping[str, str]]],
+    dims: Dims,
 ) -> Found:
     """Arrange what a study found.
 
@@ -57,22 +64,9 @@ def found_of(
     from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
 
     flat = [tally for each in tallies for tally in each]
-    longest = max((len(tally.rows) for tally in flat), default=0)
-    rows = [row for t in flat for row in (*t.rows, *[None] * (longest - len(t.rows)))]
-    columns = row_columns(rows, trials=campaign.trials, with_times=True)
-    columns |= _drawn(campaign, flat, longest)
-    sizes = {name: len(labels) for name, (labels, _) in dims.items()}
-    coordinates: dict[str, Any] = {
-        name: (name, np.array(labels), dict(attributes))
-        for name, (labels, attributes) in dims.items()
-    }
+    sizes, coordinates = _frame(campaign, dims)
+    whole = _runs(campaign, flat, sizes, coordinates)
     unknowns = campaign.planner.unknowns.distributions
-    if unknowns:
-        sizes["sample"] = campaign.planner.samples
-        coordinates["sample"] = np.arange(campaign.planner.samples)
-    whole = dataset_of(
-        columns, {**sizes, "repeat": longest}, {**coordinates, "repeat": np.arange(longest)}
-    )
     intervals = [tally.interval for tally in flat]
     by_cell: dict[str, Column] = {
         "rate": (np.array([each.rate for each in intervals]), {}),
@@ -81,9 +75,7 @@ def found_of(
         "count": (np.array([len(tally.made) for tally in flat]), {}),
         "side": (np.array([tally.side for tally in flat]), {}),
     }
-    for path, name in short_names(list(unknowns)).items():
-        values = np.array([tally.world.sampled.get(path, math.nan) for tally in flat])
-        by_cell[f"unknown_{name}"] = (values, field_attributes([path]))
+    by_cell |= _sampled(campaign, flat)
     rates = dataset_of(by_cell, sizes, coordinates)
     for name, text in _SPOKEN.items():
         rates[name].attrs = {"units": "1", "long_name": text}
@@ -92,17 +84,163 @@ def found_of(
     until = campaign.until
     merged = whole.merge(rates)
     return Found(merged.data_vars, merged.coords).assign_attrs(
-        figure=figure,
-        scenario=campaign.base.to_json(),
-        vary=campaign.planner.variation.text,
-        unknown=campaign.planner.unknowns.text,
+        **_told(campaign, figure, flat),
         until=str(until),
         confidence_level=until.confidence,
         interval="sequential",
-        settings=campaign.settings,
-        runs=sum(len(tally.rows) for tally in flat),
-        **build_attributes(),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measure:
+    """What was measured in every repeat of every cell and sample.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Those of the cells.
+    values : ndarray, shape (..., samples, repeats)
+        nan where there is no figure.
+    units, long_name : str
+        Unit, and what it is in words.
+    """
+
+    dims: tuple[str, ...]
+    values: NDArray[np.float64]
+    units: str
+    long_name: str
+
+
+def measured_of(
+    campaign: Campaign,
+    figure: str,
+    tallies: Sequence[Sequence[Tally]],
+    dims: Dims,
+    measures: Mapping[str, Measure],
+) -> Found:
+    """Arrange what a study measured, each cell a fixed number of times.
+
+    Parameters
+    ----------
+    campaign, figure, tallies, dims
+        See `found_of`.
+    measures : mapping of str to Measure
+        By name, which no column of `sweep` has; the first is the one that `Found.plot` draws.
+
+    Returns
+    -------
+    Found
+        The columns of `sweep` for each run; and of each measure, say `speed`: `speed_each` of every
+        repeat, their median `speed` and their bounds `speed_low` and `speed_high`, the lowest and
+        the highest, all three nan if a repeat has no figure; with unknowns, a band of the medians
+        over the samples, nan if a sample has none: `speed_band_low`, `speed_band_median` and
+        `speed_band_high`.
+    """
+    from crawler2d.sweeps.found import Found  # noqa: PLC0415 - needs xarray
+
+    flat = [tally for each in tallies for tally in each]
+    sizes, coordinates = _frame(campaign, dims)
+    found = _runs(campaign, flat, sizes, coordinates)
+    found = found.merge(dataset_of(_sampled(campaign, flat), sizes, coordinates))
+    for name, measure in measures.items():
+        found = found.assign(summary(name, _each(measure, found)))
+    return Found(found.data_vars, found.coords).assign_attrs(
+        **_told(campaign, figure, flat), repeats=campaign.until.most, measure=next(iter(measures))
+    )
+
+
+def summary(name: str, each: xarray.DataArray) -> dict[str, xarray.DataArray]:
+    """Sum up a measure over its dimension `repeat`, and over `sample` if it has that.
+
+    Parameters
+    ----------
+    name : str
+        Of the measure.
+    each : DataArray
+        Of every repeat, with `units` and `long_name`.
+
+    Returns
+    -------
+    dict of str to DataArray
+        See `measured_of`.
+    """
+    parts = {
+        f"{name}_each": (each, "of each repeat"),
+        name: (each.median("repeat", skipna=False), "median over the repeats"),
+        f"{name}_low": (each.min("repeat", skipna=False), "lowest of the repeats"),
+        f"{name}_high": (each.max("repeat", skipna=False), "highest of the repeats"),
+    }
+    if "sample" in each.dims:
+        known = parts[name][0].notnull().all("sample")
+        for part, values in banded(parts[name][0]).items():
+            text = str(values.attrs["long_name"]).replace("rates", "medians")
+            parts[f"{name}_{part}"] = (values.where(known), text)
+    told = {"units": each.attrs["units"], "long_name": each.attrs["long_name"]}
+    return {
+        key: values.assign_attrs(
+            told if key == name else told | {"long_name": f"{told['long_name']}, {text}"}
+        )
+        for key, (values, text) in parts.items()
+    }
+
+
+def _each(measure: Measure, runs: xarray.Dataset) -> xarray.DataArray:
+    """Give the values of a measure the dimensions that they have among the runs."""
+    names = [*measure.dims, *(dim for dim in ("sample", "repeat") if dim in runs.sizes)]
+    others = {dim: 0 for dim in runs["outcome"].dims if dim not in names}
+    like = runs["outcome"].isel(others, drop=True).transpose(*names)
+    each = like.copy(data=measure.values.reshape(like.shape))
+    return each.assign_attrs(units=measure.units, long_name=measure.long_name)
+
+
+def _frame(campaign: Campaign, dims: Dims) -> tuple[dict[str, int], dict[str, Any]]:
+    """Return sizes and coordinates of the cells, and of the samples if there are unknowns."""
+    sizes = {name: len(labels) for name, (labels, _) in dims.items()}
+    coordinates: dict[str, Any] = {
+        name: (name, np.array(labels), dict(attributes))
+        for name, (labels, attributes) in dims.items()
+    }
+    if campaign.planner.unknowns.distributions:
+        sizes["sample"] = campaign.planner.samples
+        coordinates["sample"] = np.arange(campaign.planner.samples)
+    return sizes, coordinates
+
+
+def _runs(
+    campaign: Campaign,
+    flat: Sequence[Tally],
+    sizes: Mapping[str, int],
+    coordinates: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Arrange every run; `repeat` is as long as the longest cell."""
+    longest = max((len(tally.rows) for tally in flat), default=0)
+    rows = [row for t in flat for row in (*t.rows, *[None] * (longest - len(t.rows)))]
+    columns = row_columns(rows, trials=campaign.trials, with_times=True)
+    columns |= _drawn(campaign, flat, longest)
+    return dataset_of(
+        columns, {**sizes, "repeat": longest}, {**coordinates, "repeat": np.arange(longest)}
+    )
+
+
+def _sampled(campaign: Campaign, flat: Sequence[Tally]) -> dict[str, Column]:
+    columns: dict[str, Column] = {}
+    for path, name in short_names(list(campaign.planner.unknowns.distributions)).items():
+        values = np.array([tally.world.sampled.get(path, math.nan) for tally in flat])
+        columns[f"unknown_{name}"] = (values, field_attributes([path]))
+    return columns
+
+
+def _told(campaign: Campaign, figure: str, flat: Sequence[Tally]) -> dict[str, Any]:
+    """Say what was done, as attributes."""
+    return {
+        "figure": figure,
+        "scenario": campaign.base.to_json(),
+        "vary": campaign.planner.variation.text,
+        "unknown": campaign.planner.unknowns.text,
+        "settings": campaign.settings,
+        "runs": sum(len(tally.rows) for tally in flat),
+        **build_attributes(),
+    }
 
 
 def _drawn(campaign: Campaign, flat: Sequence[Tally], longest: int) -> dict[str, Column]:

@@ -1,0 +1,170 @@
+"""A rate over two fields: a grid that is made finer where the rate passes one half."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+
+from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.paths import is_whole, read_path
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.studies.campaign import Cell, How, Tally, campaign, counting
+from crawler2d.studies.models import Models, read_models
+from crawler2d.studies.refined import Grid
+from crawler2d.studies.tables import found_of
+from crawler2d.sweeps.axes import field_attributes, short_names
+
+if TYPE_CHECKING:
+    from crawler2d.sweeps.found import Found
+
+__all__ = ["seizure_map"]
+
+
+def seizure_map(
+    scenario: Scenario,
+    x: tuple[str, Sequence[float]],
+    y: tuple[str, Sequence[float]],
+    *,
+    outcome: str = "seized",
+    models: Models | None = None,
+    refine: int = 1,
+    **how: Unpack[How],
+) -> Found:
+    """Map how often an outcome occurs over two fields, such as height and friction.
+
+    Every cell of the grid is simulated; then the grid is halved, and of the new cells only those
+    are simulated whose neighbours do not all lie, for certain, on one side of one half.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all runs share.
+    x, y : pair of str and sequence of float
+        Path of a number and at least two values of it, ascending, in units of the field.
+    outcome : str
+        Name of an `Outcome`, or "stopped" for any stop.
+    models : mapping of str to track or fields, optional
+        As for `compare`; None takes the scenario's own robot.
+    refine : int
+        How often the grid is halved, 0 to 6.
+    **how
+        See `crawler2d.studies`. Each cell is simulated until its rate is known to lie on one side
+        of one half, or within 0.2, unless `until` says otherwise.
+
+    Returns
+    -------
+    Found
+        Dimensions `model`, y, x (by the last part of their paths), `sample` if there are unknowns,
+        and `repeat`; the columns of `sweep`, `rate` and its interval; and for each cell:
+
+        - `unsure`: whether the interval, or with unknowns the band, holds one half;
+        - `around`: where a cell was not simulated (`count` is 0), the mean of the rates next to
+          it, which all lie on one side of one half; nan elsewhere.
+
+        With unknowns, the median of a cell's band says on which side it lies. `plot` draws one
+        model: ``found.sel(model="belt").plot()``.
+
+    Raises
+    ------
+    ScenarioError
+        If a path is no number of the scenario, or an argument breaks a rule.
+
+    Examples
+    --------
+    A belt slips on a slope whose tangent exceeds the friction:
+
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.ramp(0.3))
+    >>> found = c2d.studies.seizure_map(
+    ...     base,
+    ...     ("terrain.friction", [0.2, 0.6]),
+    ...     ("terrain.angle", [0.3, 0.5]),
+    ...     outcome="slipping",
+    ...     refine=0,
+    ...     progress=False,
+    ... )
+    >>> found["rate"].sel(angle=0.5).values.tolist()
+    [[1.0, 0.0]]
+    """
+    counts = counting(outcome)
+    halvings = whole_number(refine, "refine", 0, 6)
+    (path_x, coarse_x), (path_y, coarse_y) = _axis(scenario, x, "x"), _axis(scenario, y, "y")
+    if path_x == path_y:
+        raise ScenarioError("y", path_y, "must be another field than x")
+    names = short_names([path_x, path_y])
+    fields = read_models(scenario, models)
+    swept = [path_x, path_y, *dict.fromkeys(key for each in fields.values() for key in each)]
+    values_x, values_y = _halved(coarse_x, halvings), _halved(coarse_y, halvings)
+    with campaign(scenario, how, swept, threshold=0.5) as study:
+        bases = {label: scenario.replace(own) for label, own in fields.items()}
+
+        def simulate(places: Sequence[tuple[int, ...]]) -> list[list[Tally]]:
+            cells = []
+            for model, j, i in places:
+                label, at = list(bases)[model], {path_x: values_x[i], path_y: values_y[j]}
+                text = [f"{names[path]}={value:g}" for path, value in at.items()]
+                cells.append(Cell((f"model={label}", *text), bases[label].replace(at)))
+            return study.repeat(cells, counts)
+
+        grid = Grid((len(fields), len(values_y), len(values_x)), simulate)
+        for level in range(halvings + 1):
+            grid.refine(2 ** (halvings - level), whole=level == 0)
+        dims: dict[str, Any] = {
+            "model": (list(fields), {}),
+            names[path_y]: (values_y, field_attributes([path_y])),
+            names[path_x]: (values_x, field_attributes([path_x])),
+        }
+        with warnings.catch_warnings():  # a cell that was not simulated has no band
+            warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
+            found = found_of(study, "seizure_map", grid.tallies, dims)
+    return _with_sides(found, grid, tuple(dims), outcome)
+
+
+def _with_sides(found: Found, grid: Grid, dims: tuple[str, ...], outcome: str) -> Found:
+    banded = "band_low" in found
+    low, high = ("band_low", "band_high") if banded else ("low", "high")
+    tried = grid.tried
+    unsure = ((found[low] <= 0.5) & (found[high] >= 0.5)).transpose(*dims).to_numpy() & tried
+    kind = "band" if banded else "interval"
+    columns: Mapping[str, Any] = {
+        "unsure": (dims, unsure, {"long_name": f"the {kind} holds one half"}),
+        "around": (
+            dims,
+            np.where(tried, np.nan, grid.rates),
+            {"units": "1", "long_name": "mean rate of the cells around one that was not simulated"},
+        ),
+    }
+    found = found.assign(columns).assign_attrs(outcome=outcome)
+    found["rate"].attrs["long_name"] = f"rate of {outcome}"
+    return found
+
+
+def _axis(scenario: Scenario, given: object, place: str) -> tuple[str, list[float]]:
+    """Read the path and the values of an axis."""
+    if not (isinstance(given, (tuple, list)) and len(given) == 2 and isinstance(given[0], str)):
+        raise ScenarioError(place, given, "must be a pair of a path and its values")
+    path, listed = given
+    if type(read_path(scenario, path)) not in (int, float) or is_whole(scenario, path):
+        rule = "must be the path of a number that is no whole number"
+        raise ScenarioError(f"{place}[0]", path, rule)
+    if not isinstance(listed, (Sequence, np.ndarray)) or isinstance(listed, str):
+        raise ScenarioError(f"{place}[1]", listed, "must be at least two numbers, ascending")
+    values = [real_number(value, f"{place}[1][{k}]") for k, value in enumerate(listed)]
+    if len(values) < 2 or not (np.diff(values) > 0.0).all():
+        raise ScenarioError(f"{place}[1]", values, "must be at least two numbers, ascending")
+    return path, values
+
+
+def _halved(values: Sequence[float], times: int) -> list[float]:
+    """Put the middle between any two neighbours, again and again."""
+    found = np.array(values)
+    for _ in range(times):
+        finer = np.empty(2 * found.size - 1)
+        finer[::2], finer[1::2] = found, 0.5 * (found[:-1] + found[1:])
+        found = finer
+    numbers: list[float] = found.tolist()
+    return numbers

@@ -1,0 +1,235 @@
+"""How a model rides on the ground of a scenario, and how far its odometry is off."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.row import Row
+from crawler2d.studies.campaign import Cell, Sampling, Tally, campaign
+from crawler2d.studies.limits import FRICTION, UNCHANGED, Change
+from crawler2d.studies.models import Models, read_models
+from crawler2d.studies.tables import Dims, Measure, measured_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from crawler2d.sweeps.found import Found
+
+__all__ = ["odometry", "ride"]
+
+_STANDS = 1e-3
+"""[m] A robot that has moved less has no odometry to be judged."""
+
+
+def ride(
+    scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
+) -> Found:
+    """Measure how each model rides on the scenario's ground: how its chassis shakes and rocks.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Each run is one of it, from the start to its end, with the standstill of a stop; `ended` and
+        `speed` tell what was ridden.
+    models : mapping of str to track or fields, optional
+        As for `compare`; None takes the scenario's own robot.
+    repeats : int
+        Runs of every model, 1 to 1,000,000.
+    **how
+        See `crawler2d.studies`.
+
+    Returns
+    -------
+    Found
+        Dimensions `model`, `sample` if there are unknowns, and `repeat`:
+
+        - `vibration` [m/s^2]: vertical acceleration of the chassis frame, averaged over 10 ms, root
+          mean square;
+        - `rocking` [rad/s]: rate of change of the chassis angle, root mean square;
+        - `swing` [rad]: from the smallest to the greatest chassis angle;
+        - `speed` [m/s]: way along the chassis by the time that the run took;
+        - `ended`: how most runs ended;
+        - and the columns of `sweep`.
+
+        The first four are medians over the repeats; each has its bounds, `vibration_low` and
+        `vibration_high`, the lowest and the highest repeat, and `vibration_each`; with unknowns,
+        also the band of the medians over the samples, `vibration_band_low`, `..._median` and
+        `..._high`. `found.plot(of="swing")` draws another one than the vibration.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument breaks a rule.
+
+    Examples
+    --------
+    Grousers shake the chassis where a smooth belt does not:
+
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
+    >>> models = {"belt": c2d.BeltTrack(), "gears": c2d.LineOfWheels(4, wheel=c2d.GearWheel())}
+    >>> found = c2d.studies.ride(base, models=models, repeats=2, progress=False)
+    >>> smooth, rough = found["vibration"].values
+    >>> bool(smooth < 0.02), bool(rough > 1.0)
+    (True, True)
+    """
+    measures: Mapping[str, tuple[str, str, Callable[[Row], float]]] = {
+        "vibration": (
+            "m/s^2",
+            "vertical acceleration, root mean square",
+            lambda row: row.metrics["vertical_acceleration"],
+        ),
+        "rocking": (
+            "rad/s",
+            "rate of the chassis angle, root mean square",
+            lambda row: row.metrics["angular_velocity"],
+        ),
+        "swing": (
+            "rad",
+            "swing of the chassis angle",
+            lambda row: row.metrics["max_angle"] - row.metrics["min_angle"],
+        ),
+        "speed": (
+            "m/s",
+            "mean speed",
+            lambda row: row.metrics["path_length"] / row.metrics["time"],
+        ),
+    }
+    with campaign(scenario, how, repeats=repeats) as study:
+        fields = read_models(scenario, models)
+        cells = [Cell((f"model={label}",), scenario.replace(own)) for label, own in fields.items()]
+        tallies = study.repeat(cells)
+        found = measured_of(
+            study,
+            "ride",
+            tallies,
+            {"model": (list(fields), {})},
+            {
+                name: Measure(("model",), _figures(tallies, value), unit, text)
+                for name, (unit, text, value) in measures.items()
+            },
+        )
+    ends = np.array([_ended(tally) for each in tallies for tally in each])
+    dims = tuple(dim for dim in found["vibration"].dims)
+    told = {"long_name": "how most runs ended"}
+    return found.assign(ended=(dims, ends.reshape(found["vibration"].shape), told))
+
+
+def odometry(
+    scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
+) -> Found:
+    """Measure how far the way that a track has turned differs from the way that the robot made.
+
+    Odometry with the circumscribed radius reads how far the surface of the track has run. On level
+    ground it reads too much where the track slides, and where it rolls on less than that radius, as
+    a gear wheel does between its tips. Which of the two it is, is found by doing: the same runs
+    with the friction doubled; what remains of the error there is not sliding. On uneven ground the
+    two ways differ even without either.
+
+    Parameters
+    ----------
+    scenario, models, repeats, **how
+        See `ride`.
+
+    Returns
+    -------
+    Found
+        Dimensions `model`, `change` (unchanged, and the friction doubled), `sample` if there are
+        unknowns, and `repeat`:
+
+        - `odometry_error` [-]: the way that odometry reads over the way that was made, less 1;
+        - `slip` [-]: the mean slip ratio, 1 less the way that was made over the one that was read;
+        - `rolling_radius` [m]: the radius with which odometry would read the way that was made; nan
+          unless all wheels of the chassis have the same radius;
+        - `odometry_error_with` [-]: the error unchanged, and with the friction doubled;
+        - `ended`: how most runs of each change ended;
+        - and the columns of `sweep`.
+
+        The first four are medians over the repeats, with bounds and bands as in `ride`; they are
+        nan where a repeat has not moved.
+
+    Examples
+    --------
+    Round wheels roll on their radius, gear wheels on less than that of their tips:
+
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
+    >>> models = {"round": c2d.LineOfWheels(4), "gears": c2d.LineOfWheels(4, wheel=c2d.GearWheel())}
+    >>> found = c2d.studies.odometry(base, models=models, repeats=2, progress=False)
+    >>> found["rolling_radius"].sel(model="round").round(4).item()
+    0.064
+    >>> 0.055 < found["rolling_radius"].sel(model="gears").item() < 0.064
+    True
+    """
+    changes: tuple[Change, ...] = (UNCHANGED, FRICTION)
+    with campaign(scenario, how, repeats=repeats) as study:
+        fields = read_models(scenario, models)
+        cells = [
+            Cell(
+                (f"model={label}", f"change={change.label}"),
+                change.of(scenario.replace(own)),
+                change.factors,
+            )
+            for label, own in fields.items()
+            for change in changes
+        ]
+        tallies = study.repeat(cells)
+        shape = (len(fields), len(changes), -1, study.until.most)
+        ratios = _figures(tallies, _ratio).reshape(shape)  # of the way made to the way read
+        radii = _figures(tallies[:: len(changes)], _radius).reshape(ratios[:, 0].shape)
+        dims: Dims = {
+            "model": (list(fields), {}),
+            "change": ([each.label for each in changes], {"long_name": "what is doubled"}),
+        }
+        text = "error of odometry"
+        one, both = ("model",), ("model", "change")
+        measures = {
+            "odometry_error": Measure(one, 1.0 / ratios[:, 0] - 1.0, "1", text),
+            "slip": Measure(one, 1.0 - ratios[:, 0], "1", "mean slip ratio"),
+            "rolling_radius": Measure(one, radii * ratios[:, 0], "m", "effective rolling radius"),
+            "odometry_error_with": Measure(
+                both, 1.0 / ratios - 1.0, "1", f"{text} with each change"
+            ),
+        }
+        found = measured_of(study, "odometry", tallies, dims, measures)
+    ends = np.array([_ended(tally) for each in tallies for tally in each])
+    like = found["odometry_error_with"]
+    told = {"long_name": "how most runs ended"}
+    return found.assign(ended=(like.dims, ends.reshape(like.shape), told))
+
+
+def _figures(tallies: list[list[Tally]], value: Callable[[Row], float]) -> NDArray[np.float64]:
+    """Return a figure of every run, shape (cells, samples, repeats); nan without a result."""
+    return np.array(
+        [
+            [
+                [math.nan if row.error is not None else value(row) for row in tally.rows]
+                for tally in each
+            ]
+            for each in tallies
+        ]
+    )
+
+
+def _ended(tally: Tally) -> str:
+    return Counter(row.outcome for row in tally.rows).most_common(1)[0][0]
+
+
+def _ratio(row: Row) -> float:
+    """[-] The way that was made, by the way that the track has run."""
+    made, run = row.metrics["path_length"], row.metrics["track_distance"]
+    return made / run if min(abs(made), abs(run)) > _STANDS else math.nan
+
+
+def _radius(row: Row) -> float:
+    """[m] The circumscribed radius of the wheels of the chassis; nan if there is no single one."""
+    wheels = Scenario.from_json(row.scenario).robot.wheels()
+    on_chassis = wheels["carrier"] == "chassis"
+    radii = set(wheels["radius"][on_chassis].tolist())
+    return radii.pop() if len(radii) == 1 else math.nan

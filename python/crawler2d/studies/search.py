@@ -1,0 +1,243 @@
+"""The cheapest candidate that gets over a set of grounds: found by halving, confirmed afresh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+
+from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.extras import extra
+from crawler2d.errors import ScenarioError, raise_first
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.studies.campaign import Campaign, Sampling, Tally, campaign
+from crawler2d.studies.halving import Candidate, Fresh, halve, ranked
+from crawler2d.studies.judged import Confirmation, judged
+from crawler2d.studies.models import Models
+from crawler2d.sweeps.compare import variants
+from crawler2d.sweeps.labels import Label, labelled
+from crawler2d.variation.draws import Variation
+from crawler2d.variation.variability import of_contact, of_field, of_start
+
+if TYPE_CHECKING:
+    from crawler2d.sweeps.found import Found
+
+__all__ = ["search"]
+
+_ELSEWHERE = 2**64
+"""Seeds of users lie below this, so none draws what a seed above it does."""
+
+Objective = Callable[[Scenario], float]
+
+
+def search(
+    scenario: Scenario,
+    space: Models,
+    objective: Objective | None = None,
+    *,
+    terrains: Mapping[Any, Terrain] | Sequence[Terrain] | None = None,
+    at_least: float = 0.95,
+    first: int = 20,
+    confirm: int = 1000,
+    **how: Unpack[Sampling],
+) -> Found:
+    """Find the cheapest candidate that clears every terrain, such as the one with fewest wheels.
+
+    In the search every run has a draw of its own of what varies *and* of what is not known: a fresh
+    robot on a fresh floor. All candidates are simulated a few times, the better half twice as
+    often, and so on down to two. What wins so has also been lucky; so winner and runner-up are
+    simulated once more, with draws that nothing in the search has had, and only those runs say how
+    often they succeed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all runs share.
+    space : mapping of str to track or fields, or sequence of tracks
+        The candidates, as the models of `compare`. One that breaks a rule, such as wheels that do
+        not fit, is left out.
+    objective : callable, optional
+        What is to be small among the candidates that reach the goal: takes a `Scenario` and returns
+        a number. None counts the wheels of one side, which every candidate must then have.
+    terrains : mapping of str to terrain, or sequence of terrains, optional
+        All of them must be cleared: a candidate is as good as its lowest rate over them. None takes
+        the scenario's own.
+    at_least : float
+        [-] The goal: the rate of clearing that is wanted on every terrain, above 0, at most 1.
+    first : int
+        Runs of every candidate on each terrain in the first round, 1 to 1,000,000. A good candidate
+        that is unlucky in them may be left behind: with more runs, fewer are.
+    confirm : int
+        Fresh runs of winner and runner-up on each terrain, 1 to 1,000,000. With unknowns, as many
+        again are spread over `samples` of them, for the band.
+    **how
+        See `crawler2d.studies`; there is no `until`. Unless `vary` is given, every run on a random
+        step field has a field of its own, too.
+
+    Returns
+    -------
+    Found
+        Dimensions `candidate` and `terrain`. Of the search:
+
+        - `rate`, `low`, `high`, `count`: with intervals that hold however often one looks; the
+          rates of those that came far are too high, because they were chosen for them;
+        - `cost` and `round` of each candidate: how many rounds it has been through;
+        - `ending`: how most runs that did not clear ended.
+
+        Of the confirmation, nan for all but winner and runner-up:
+
+        - `confirmed_rate`, `confirmed_low`, `confirmed_high`, `confirmed_count`: `confirm` fresh
+          runs, looked at once, with Wilson's interval;
+        - `confirmed`: whether the rate reaches the goal on every terrain;
+        - with unknowns `band_low`, `band_median`, `band_high`: the rates of single robots, of which
+          each is one sample of the unknowns.
+
+        The attributes `winner` and `runner_up` name what the search chose: of those that reached
+        the goal the cheapest, else the one with the highest rate. `verdict` says it in words, with
+        the confirmed rates. If these fall short, the choice stands and the verdict says so: trying
+        one after another until one is confirmed would be luck again. `settings` counts candidates
+        times terrains, `refused` those that were left out, `refusals` says why.
+
+    Raises
+    ------
+    ScenarioError
+        If an argument breaks a rule, or all candidates do.
+
+    References
+    ----------
+    Karnin, Z., Koren, T., Somekh, O. (2013). Almost optimal exploration in multi-armed bandits.
+    Proceedings of the 30th International Conference on Machine Learning. Their halving; here what
+    certainly fails drops at once, and what was left behind may return.
+
+    Examples
+    --------
+    Every combination of two lists is one candidate:
+
+    >>> from itertools import product
+    >>> import crawler2d as c2d
+    >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05))
+    >>> space = {
+    ...     f"{n} of {1e3 * r:.0f} mm": c2d.LineOfWheels(n, wheel_radius=r)
+    ...     for n, r in product((2, 3), (0.06, 0.064))
+    ... }
+    >>> found = c2d.studies.search(base, space, first=5, confirm=20, progress=False)
+    >>> found.attrs["winner"], found["confirmed"].sel(candidate="3 of 60 mm").item()
+    ('3 of 60 mm', True)
+    """
+    extra("xarray", "analysis")  # fail before the runs if it is missing
+    goal = real_number(at_least, "at_least")
+    if not 0.0 < goal <= 1.0:
+        raise ScenarioError("at_least", goal, "must be above 0, at most 1")
+    if objective is not None and not callable(objective):
+        raise ScenarioError("objective", objective, "must be a callable that takes a Scenario")
+    fresh = whole_number(confirm, "confirm", 1, 10**6)
+    if not isinstance(scenario, Scenario):
+        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    grounds = _grounds(scenario, terrains)
+    fields = _fields(space)
+    swept = ["terrain", *dict.fromkeys(key for each in fields.values() for key in each)]
+    if any(hasattr(ground, "seed") for ground in grounds.values()):
+        how = {"vary": of_start() | of_contact() | of_field(), **how}
+    with campaign(scenario, how, swept, repeats=whole_number(first, "first", 1, 10**6)) as study:
+        candidates, refusals = _candidates(study, fields, grounds, objective)
+        study.settings += len(candidates) * len(grounds)
+        rounds = halve(study, candidates, goal, study.until.least)
+        confirmed = _confirmed(study, ranked(candidates, goal)[:2], fresh)
+        cost = "wheels a side" if objective is None else getattr(objective, "__name__", "cost")
+        return judged(study, candidates, list(grounds), confirmed, goal).assign_attrs(
+            objective=cost,
+            first=study.until.least,
+            rounds=rounds,
+            confirm=fresh,
+            refused=len(refusals),
+            refusals="; ".join(refusals),
+        )
+
+
+def _fields(space: object) -> dict[Label, Mapping[str, Any]]:
+    """Return what each candidate replaces, by path."""
+    try:
+        return variants(space)
+    except ScenarioError as error:
+        path = f"space{error.path.removeprefix('models')}"
+        raise ScenarioError(path, error.value, error.rule) from None
+
+
+def _grounds(scenario: Scenario, terrains: object) -> dict[Label, Terrain]:
+    """Return the terrains by label."""
+    if terrains is None:
+        return {scenario.terrain.kind: scenario.terrain}
+    found = labelled(terrains, "terrains")
+    for label, ground in found.items():
+        if not isinstance(ground, Terrain):
+            raise ScenarioError(f"terrains[{label!r}]", ground, "must be a terrain")
+    return found
+
+
+def _candidates(
+    study: Campaign,
+    fields: Mapping[Label, Mapping[str, Any]],
+    grounds: Mapping[Label, Any],
+    objective: Objective | None,
+) -> tuple[list[Candidate], list[str]]:
+    """Make the candidates, and say why others are left out."""
+    own = study.planner
+    nominal = replace(own, unknowns=Variation({}))
+    planner = Fresh(own.variation, own.unknowns, own.seed)
+    candidates, refusals, errors = [], [], []
+    for label, each in fields.items():
+        worlds = []
+        for name, ground in grounds.items():
+            cell = study.base.replace({"terrain": ground, **each})
+            worlds += nominal.worlds(cell, (f"candidate={label}", f"terrain={name}"))
+        broken = [world.checked for world in worlds if isinstance(world.checked, ScenarioError)]
+        if broken:
+            errors += broken
+            refusals.append(str(broken[0]))
+            continue
+        tallies = [Tally(world, study.until, planner=planner) for world in worlds]
+        candidates.append(Candidate(label, _cost(worlds[0].cell, label, objective), tallies))
+    if not candidates:
+        raise_first(errors)
+    return candidates, refusals
+
+
+def _cost(scenario: Scenario, label: Label, objective: Objective | None) -> float:
+    if objective is not None:
+        cost = real_number(objective(scenario), f"objective of {label}")
+        if not np.isfinite(cost):
+            raise ScenarioError(f"objective of {label}", cost, "must be finite")
+        return cost
+    wheels = int(np.count_nonzero(scenario.robot.wheels()["side"] == "left"))
+    if wheels == 0:
+        rule = f"must be given, because {label} has no wheels to count"
+        raise ScenarioError("objective", None, rule)
+    return float(wheels)
+
+
+def _confirmed(study: Campaign, chosen: Sequence[Candidate], fresh: int) -> list[Confirmation]:
+    """Simulate what was chosen with draws that the search has not had."""
+    own = study.planner
+    planner = Fresh(own.variation, own.unknowns, own.seed + _ELSEWHERE)
+    by_robot = replace(own, seed=own.seed + 2 * _ELSEWHERE)
+    found = []
+    for candidate in chosen:
+        worlds = [tally.world for tally in candidate.tallies]
+        pooled = [Tally(world, study.until, planner=planner) for world in worlds]
+        robots = [
+            [
+                Tally(each, study.until, planner=by_robot)
+                for each in by_robot.worlds(world.cell, world.labels)
+            ]
+            for world in (worlds if own.unknowns.distributions else [])
+        ]
+        found.append(Confirmation(candidate, pooled, robots))
+    single = [tally for each in found for robots in each.robots for tally in robots]
+    raise_first(tally.world.checked for tally in single)
+    due = [(tally, fresh) for each in found for tally in each.pooled]
+    repeats = max(fresh // own.samples, 1)
+    study.simulate([*due, *((tally, repeats) for tally in single)])
+    return found

@@ -1,0 +1,248 @@
+"""Runs on a plane without end, made longer until they show a steady speed, or rest."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Flat, Points, Ramp
+from crawler2d.results.outcome import Outcome
+from crawler2d.results.row import Row
+from crawler2d.studies.campaign import Campaign, Cell, Tally
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Course", "Halt", "RunUp", "drive", "on_plane"]
+
+_LENGTH = 1e4
+"""[m] Of the plane to either side."""
+_LONG = 1e4
+"""[s] A run is never long enough past its goal to have cleared it."""
+_ROUNDS = 4
+"""A course is driven so often at most, each time for twice as long."""
+_PITCHES = 20.0
+"""[-] Grouser pitches in a window: the speed of gear wheels swings with every pitch."""
+_STEADY = 0.03
+"""[-] The mean speeds of two windows that differ by less are one: those of gear wheels do by 0.01,
+those of a robot that keeps accelerating by 0.18, for a window is a fourth of the time before."""
+_SPEED = 1e-3
+"""[m/s] A difference below this is none."""
+_REST = 1e-4
+"""[m] A robot at rest moves less."""
+
+
+def on_plane(scenario: Scenario, speed: float | None) -> Scenario:
+    """Put a robot on its ground without end, at rest, and command a speed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        On level ground or a ramp; of a ramp, its slope is taken, and the robot stands on it.
+    speed : float, optional
+        [m/s] Above 0; None takes the drivetrain's `max_speed`.
+
+    Raises
+    ------
+    ScenarioError
+        If the ground is another.
+    """
+    terrain = scenario.terrain
+    if not isinstance(terrain, (Flat, Ramp)):
+        rule = "must be level ground or a ramp: on other ground no speed is steady"
+        raise ScenarioError("terrain", terrain, rule)
+    angle = terrain.angle if isinstance(terrain, Ramp) else 0.0
+    rise = _LENGTH * math.tan(angle)
+    ends = ((-_LENGTH, -rise), (_LENGTH, rise))
+    fields = {
+        "terrain": Points(ends, goal=0.0, friction=terrain.friction),
+        "start.angle": angle,
+        "drive.speed": scenario.robot.drivetrain.max_speed if speed is None else speed,
+        "drive.schedule": None,
+        "goal": 0.0,
+        "criteria.clear_time": _LONG,
+    }
+    return scenario.replace(fields)
+
+
+class Course(ABC):
+    """Runs of one cell that differ in how long they last.
+
+    Attributes
+    ----------
+    tallies : list of list of Tally
+        By duration and sample.
+    """
+
+    def __init__(self, names: tuple[str, ...], factors: Mapping[str, float]) -> None:
+        self.tallies: list[list[Tally]] = []
+        self._names, self._factors = names, factors
+
+    @property
+    @abstractmethod
+    def scenario(self) -> Scenario:
+        """What is simulated, for any duration."""
+
+    @property
+    @abstractmethod
+    def times(self) -> list[float]:
+        """[s] The durations."""
+
+    @property
+    @abstractmethod
+    def is_settled(self) -> NDArray[np.bool_]:
+        """Whether they are long enough, shape (samples, repeats); where a run ended, they are."""
+
+    @abstractmethod
+    def lengthen(self) -> None:
+        """Double the time."""
+
+    @property
+    def cells(self) -> list[Cell]:
+        """One for every duration."""
+        return [
+            Cell(
+                (*self._names, f"duration={time:g}"),
+                self.scenario.replace({"duration": time}),
+                self._factors,
+            )
+            for time in self.times
+        ]
+
+    @property
+    def ways(self) -> NDArray[np.float64]:
+        """[m] How far the robot has moved along its axis, shape (durations, samples, repeats)."""
+        return np.array(
+            [[[_way(row) for row in tally.rows] for tally in own] for own in self.tallies]
+        )
+
+    @property
+    def ended(self) -> list[str]:
+        """How most of the longest runs ended, by sample; "not settled" if one was too short."""
+        settled = np.all(self.is_settled, axis=-1).tolist()
+        ends = [Counter(row.outcome for row in tally.rows) for tally in self.tallies[-1]]
+        return [
+            end.most_common(1)[0][0] if enough else "not settled"
+            for end, enough in zip(ends, settled, strict=True)
+        ]
+
+
+class RunUp(Course):
+    """From rest to a steady speed, and twice a window further."""
+
+    def __init__(
+        self, names: tuple[str, ...], scenario: Scenario, factors: Mapping[str, float]
+    ) -> None:
+        super().__init__(names, factors)
+        self._scenario = scenario
+        speed, drivetrain = scenario.drive.speed, scenario.robot.drivetrain
+        self.time = _looks(1.25 * speed / drivetrain.max_acceleration + 0.5)
+        self._least = _PITCHES * scenario.robot.outline.grouser_pitch / speed
+
+    @property
+    def scenario(self) -> Scenario:
+        """What is simulated, for any duration."""
+        return self._scenario
+
+    @property
+    def window(self) -> float:
+        """[s] Over which a speed is a mean."""
+        return _looks(max(0.25 * self.time, self._least))
+
+    @property
+    def times(self) -> list[float]:
+        """[s] The durations."""
+        return [self.time + k * self.window for k in range(3)]
+
+    @property
+    def is_settled(self) -> NDArray[np.bool_]:
+        """Whether the speed is steady."""
+        first, second = np.diff(self.ways, axis=0) / self.window
+        allowed = np.maximum(_STEADY * np.abs(second), _SPEED)
+        return np.asarray(np.isnan(first + second) | (np.abs(second - first) <= allowed))
+
+    @property
+    def speed(self) -> NDArray[np.float64]:
+        """[m/s] Steady speed, shape (samples, repeats); nan if there is none."""
+        ways = self.ways
+        speed = (ways[2] - ways[0]) / (2.0 * self.window)
+        return np.where(self.is_settled, speed, np.nan)
+
+    def lengthen(self) -> None:
+        """Double the time."""
+        self.time *= 2.0
+
+
+class Halt(Course):
+    """From a steady speed to rest: the command to stop comes when the run-up is over."""
+
+    def __init__(self, before: RunUp) -> None:
+        super().__init__(before._names, before._factors)
+        self.before = before
+        drivetrain = before.scenario.robot.drivetrain
+        self._time = _looks(1.25 * before.scenario.drive.speed / drivetrain.max_deceleration + 0.5)
+
+    @property
+    def scenario(self) -> Scenario:
+        """What is simulated, for any duration."""
+        return self.before.scenario.replace({"drive.schedule": [(self.before.time, 0.0)]})
+
+    @property
+    def times(self) -> list[float]:
+        """[s] The durations."""
+        stop = self.before.time
+        return [stop + self._time, stop + _looks(1.25 * self._time)]
+
+    @property
+    def is_settled(self) -> NDArray[np.bool_]:
+        """Whether the robot is at rest."""
+        ways = self.ways
+        moved = np.abs(ways[1] - ways[0])
+        return np.asarray(np.isnan(moved) | (moved <= _REST))
+
+    @property
+    def distance(self) -> NDArray[np.float64]:
+        """[m] From the command to rest, shape (samples, repeats); nan if it does not come to it."""
+        distance = self.ways[1] - self.before.ways[0]
+        return np.where(self.is_settled & np.isfinite(self.before.speed), distance, np.nan)
+
+    def lengthen(self) -> None:
+        """Double the time."""
+        self._time *= 2.0
+
+
+def drive(study: Campaign, courses: Sequence[Course]) -> None:
+    """Simulate courses; those that do not settle are made longer, up to eight times as long."""
+    due = list(courses)
+    if not due:
+        return
+    for more in reversed(range(_ROUNDS)):
+        tallies = iter(study.repeat([cell for course in due for cell in course.cells]))
+        for course in due:
+            course.tallies = [next(tallies) for _ in course.times]
+        due = [course for course in due if not course.is_settled.all()]
+        if not due or not more:
+            return
+        for course in due:
+            course.lengthen()
+
+
+def _looks(time: float) -> float:
+    """[s] Round up to 10 ms, at which the core looks at a run in any case."""
+    return math.ceil(100.0 * time) / 100.0
+
+
+def _way(row: Row) -> float:
+    """[m] How far a run has come, also where it ended early because nothing moved any more."""
+    if row.error is not None:
+        return math.nan
+    outcome = Outcome(row.outcome)
+    is_whole = outcome == Outcome.TIMED_OUT or outcome.is_stop
+    return row.metrics["path_length"] if is_whole else math.nan
