@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants paper picture soak tools
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks paper picture soak tools
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -79,6 +79,9 @@ fuzz: $(VENV)/.built ## 200,000 drawn scenarios read, 10,000 run, minutes; other
 
 map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 	$(BIN)/python -m tests.walls.map
+
+notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their outputs, some minutes
+	$(BIN)/python -m tests.reports.notebooks $(ARGS)
 
 paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; under an hour, Ctrl-C loses nothing
 	$(BIN)/python -m crawler2d paper $(ARGS)
