@@ -15,7 +15,7 @@ from crawler2d.presets import terrains
 from crawler2d.presets.robots import engineer
 from crawler2d.reports.columns import aligned
 from crawler2d.reports.models import StudyModel, study_models
-from crawler2d.reports.paper import TABLE_3
+from crawler2d.reports.paper.published import TABLE_3
 from crawler2d.sweeps.rates import rates_of
 from crawler2d.sweeps.sweep import sweep
 

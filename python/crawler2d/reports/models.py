@@ -17,7 +17,7 @@ from crawler2d.parameters.track import (
     SegmentalTrack,
     Track,
 )
-from crawler2d.reports.paper import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
+from crawler2d.reports.paper.published import CWA_GEAR, CWA_ROUND, LWA_GEAR, LWA_ROUND
 
 __all__ = ["StudyModel", "gear_pairs", "study_models"]
 

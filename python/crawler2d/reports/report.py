@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from crawler2d._core import build_info
-from crawler2d.reports import paper
 from crawler2d.reports.columns import aligned, in_mm, mm
+from crawler2d.reports.paper import published
 
 if TYPE_CHECKING:
     from crawler2d.reports.models import StudyModel
@@ -175,10 +175,10 @@ def beside_the_paper(models: Mapping[str, StudyModel], climbs: Sequence[Climb]) 
     """Write the paper's Tables 2 and 3, with our models below the rows of their kind."""
     success = [
         (row.obstacle, *(f"{100 * share:.0f}" for share in (row.cwa, row.lwa, row.gear)))
-        for row in paper.TABLE_2
+        for row in published.TABLE_2
     ]
     rows: list[tuple[str, ...]] = []
-    for theirs in paper.TABLE_3:
+    for theirs in published.TABLE_3:
         rows.append(
             (
                 theirs.model,
