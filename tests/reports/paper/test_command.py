@@ -1,6 +1,7 @@
 """The command: what it writes, what it keeps, what it says."""
 
 import csv
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -51,6 +52,7 @@ def test_tables_and_pictures_come_out(tmp_path: Path, capsys: pytest.CaptureFixt
     assert set(text.splitlines()) <= set(printed.splitlines())
     assert "min of processor time" in printed
     assert "A quick run" in text
+    assert re.search(r"Tried in all: \d+ runs in \d+ cells", text)
     sections = [line for line in text.splitlines() if line.startswith("## ")]
     assert sections == [
         f"## {name}"

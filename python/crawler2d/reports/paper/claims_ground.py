@@ -218,7 +218,7 @@ def _driven(
 ) -> Found:
     drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
     base = Scenario(engineer(), next(iter(grounds.values())), drive=drive)
-    return success(base, terrains=grounds, models=models, **work.how(repeats))
+    return work.counted(success(base, terrains=grounds, models=models, **work.how(repeats)))
 
 
 def _count(found: Found, model: str, ground: str) -> tuple[str, int, int]:

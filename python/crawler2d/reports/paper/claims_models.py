@@ -188,7 +188,8 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
         for name in (*_PAIRS, *_PAIRS.values(), "belt with grousers")
     }
     base = Scenario(bare, terrains.flat(), drive=Drive(speed=TABLE_1.max_speed))
-    found = ride(base, models=models, repeats=work.design.driving_repeats, **work.sampling)
+    how, repeats = work.sampling, work.design.driving_repeats
+    found = work.counted(ride(base, models=models, repeats=repeats, **how))
     shakes = {name: found["vibration"].sel(model=name).item() for name in models}
     rough = tuple(
         Check(
@@ -221,7 +222,8 @@ def odometry_of_gears(work: Work) -> Claim:
     known, bare = layouts(), engineer(flippers=None)
     models = {name: {"robot": known[name].on(bare)} for pair in _PAIRS.items() for name in pair}
     base = Scenario(bare, terrains.flat(), drive=Drive(speed=TABLE_1.max_speed))
-    found = odometry(base, models=models, repeats=work.design.driving_repeats, **work.sampling)
+    how, repeats = work.sampling, work.design.driving_repeats
+    found = work.counted(odometry(base, models=models, repeats=repeats, **how))
     errors = {name: found["odometry_error"].sel(model=name).item() for name in models}
     return Claim(
         section="3",

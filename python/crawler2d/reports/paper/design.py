@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from crawler2d.studies.campaign import How, Sampling
 from crawler2d.sweeps.sequential import Until
+
+if TYPE_CHECKING:
+    from crawler2d.sweeps.found import Found
 
 __all__ = ["FULL", "QUICK", "Design", "Work"]
 
@@ -79,6 +84,8 @@ class Work:
     """See `simulate_many`."""
     progress: bool = True
     """Whether to show a bar for each part."""
+    tried: Counter[str] = field(default_factory=Counter)
+    """How many "settings" the studies have tried, and with how many "runs"."""
 
     @property
     def sampling(self) -> Sampling:
@@ -94,3 +101,8 @@ class Work:
         """Return the keywords of a study of rates whose cells all have the same number of runs."""
         until = Until(width=_NO_WIDTH, least=repeats, most=repeats)
         return {**self.sampling, "until": until}
+
+    def counted(self, found: Found) -> Found:
+        """Count what a study has tried, and return it; what two studies share counts twice."""
+        self.tried.update({name: found.attrs[name] for name in ("settings", "runs")})
+        return found

@@ -106,7 +106,7 @@ def _cross(setting: Setting, names: Collection[str], work: Work) -> Found:
     )
     models = {name: {"robot": setting.on(known[name].on(base.robot))} for name in names}
     how = work.how(work.design.field_repeats)
-    return success(base, terrains=grounds, models=models, **how)
+    return work.counted(success(base, terrains=grounds, models=models, **how))
 
 
 def cells(setting: Setting, found: Found) -> list[FieldCell]:

@@ -83,8 +83,11 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
             cells.append(" / ".join(_percent(row.rate) for row in own))
         table.append((model, known[model].source, *cells))
     counts = sorted({row.count for row in rows})
+    widest = max((max(row.rate - row.low, row.high - row.rate) for row in rows), default=0.0)
     note = (
         f"Runs that cleared [%], of {' or '.join(map(str, counts))} a cell: {', '.join(obstacles)}."
+        f" Wilson's 95 % intervals, in `paper_table_2.csv`, reach at most {_percent(widest)} points"
+        " either way."
     )
     return f"{note}\n\n{markdown_table(('layout', 'from', *settings), table)}"
 

@@ -68,6 +68,8 @@ class Pages:
         Those that have been made, by name.
     fields : list of pair of Setting and Found
         The runs of Table 2, so far.
+    blocks : dict of str to Found
+        Those over the parallelepiped of Table 3, by setting.
     """
 
     out: Path
@@ -75,6 +77,7 @@ class Pages:
     into: Path | None = None
     sections: dict[str, str] = field(default_factory=dict)
     fields: list[tuple[Setting, Found]] = field(default_factory=list)
+    blocks: dict[str, Found] = field(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -114,9 +117,12 @@ class Pages:
         design = self.work.design
         build = ", ".join(f"{name} {value}" for name, value in build_info().items())
         quick = "**A quick run, to see what comes out: few repeats.** " * (design == QUICK)
+        tried = self.work.tried
         return (
             f"{quick}Build: {build}. Seed {self.work.seed}; {design.field_repeats} runs a cell of"
             f" Table 2, {design.height_repeats} a height, {design.claim_repeats} a cell of a claim."
+            f" Tried in all: {tried['runs']} runs in {tried['settings']} cells of layout, motors,"
+            " friction and ground; a cell that two questions share counts twice."
         )
 
 
@@ -166,7 +172,7 @@ def _fields(work: Work, pages: Pages, names: Sequence[str]) -> Made:
 
 def _tables_1_and_3(work: Work, pages: Pages) -> Made:
     driven, factors, slopes = driving(work), computing(work), steepest_slopes(work)
-    heights, _ = highest_obstacles(work)
+    heights, pages.blocks = highest_obstacles(work)
     pages.rows("driving", driven)
     pages.rows("computing", factors)
     pages.rows("slopes", slopes)
@@ -187,8 +193,9 @@ def _claims(work: Work, _pages: Pages) -> Made:
 
 
 def _figures(work: Work, pages: Pages) -> Made:
-    _, tables = highest_obstacles(work)
-    stuck = stuck_runs(tables)
+    if not pages.blocks:
+        _, pages.blocks = highest_obstacles(work)
+    stuck = stuck_runs(pages.blocks)
     write_stuck(stuck, pages.out / _REPLAYS)
     pages.picture("layouts", plot_layouts)
     pages.picture("stuck", partial(plot_stuck, stuck))

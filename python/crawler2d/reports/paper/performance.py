@@ -129,10 +129,11 @@ def driving(work: Work) -> list[Driving]:
     base, models = _scenario(PRESET, terrains.flat(friction=PRESET.friction)), _models(PRESET)
     repeats, command = work.design.driving_repeats, TABLE_1.max_speed
     print("Table 3, driving", flush=True)
-    full = max_speed(base, models=models, repeats=repeats, **work.sampling)
-    slow = max_speed(base, models=models, speed=command, repeats=repeats, **work.sampling)
-    up = acceleration(base, models=models, speed=command, repeats=repeats, **work.sampling)
-    down = braking_distance(base, models=models, speed=command, repeats=repeats, **work.sampling)
+    how, count = work.sampling, work.counted
+    full = count(max_speed(base, models=models, repeats=repeats, **how))
+    slow = count(max_speed(base, models=models, speed=command, repeats=repeats, **how))
+    up = count(acceleration(base, models=models, speed=command, repeats=repeats, **how))
+    down = count(braking_distance(base, models=models, speed=command, repeats=repeats, **how))
 
     def of(found: Found, name: str, model: str) -> Any:
         return found[name].sel(model=model).item()
@@ -162,11 +163,13 @@ def highest_obstacles(work: Work) -> tuple[list[Height], dict[str, Found]]:
     for setting in SETTINGS:
         print(f"Table 3, highest obstacle, {setting.name}", flush=True)
         block = terrains.barrier(heights[0], _THICKNESS, friction=setting.friction)
-        found = max_obstacle(
-            _scenario(setting, block),
-            models=_models(setting),
-            heights=heights,
-            **work.how(repeats),
+        found = work.counted(
+            max_obstacle(
+                _scenario(setting, block),
+                models=_models(setting),
+                heights=heights,
+                **work.how(repeats),
+            )
         )
         tables[setting.name] = found
         for row, model in BESIDE_TABLE_3.items():
@@ -204,12 +207,9 @@ def steepest_slopes(work: Work) -> list[Slope]:
         )
         known = layouts()
         models = {name: {"robot": known[name].on(base.robot)} for name in BESIDE_TABLE_3.values()}
-        found = max_slope(
-            base,
-            models=models,
-            angles=work.design.angles,
-            **work.how(work.design.slope_repeats),
-        )
+        how = work.how(work.design.slope_repeats)
+        angles = work.design.angles
+        found = work.counted(max_slope(base, models=models, angles=angles, **how))
         for row, model in BESIDE_TABLE_3.items():
             own = found.sel(model=model)
             rows.append(
