@@ -195,13 +195,17 @@ class _Sorting:
             return joint
         if joint.is_locked:
             return above
+        return self.refuse(joint, self.reason(joint))
+
+    def reason(self, joint: Joint) -> str:
+        """Return the rule that a joint breaks that carries wheels and is no flipper's."""
         if joint.kind == "slide" or joint.stiffness > 0.0:
-            self.refuse(joint, "must carry no wheels: a side view holds no suspension")
-        if joint.kind == "hinge" and is_parallel(joint.axis, self.view.left):
-            self.refuse(joint, "must carry no wheels on both sides of it: it would be a rocker")
-        if joint.kind == "hinge":
-            self.refuse(joint, "must carry no wheels: a side view holds no steering")
-        self.refuse(joint, "must be fixed or turn about an axis, to carry wheels")
+            return "must carry no wheels: a side view holds no suspension"
+        if joint.kind != "hinge":
+            return "must be fixed or turn about an axis, to carry wheels"
+        if is_parallel(joint.axis, self.view.left):
+            return "must carry no wheels on both sides of it: a side view holds no rocker"
+        return "must carry no wheels: a side view holds no steering"
 
     def refuse(self, joint: Joint, rule: str) -> NoReturn:
         raise ScenarioError(f"{joint.at}: joint[{joint.name}]", joint.kind, rule)
@@ -245,7 +249,9 @@ class _Sorting:
     def wheel(self, joint: Joint) -> Runner:
         shapes = self.wheels[joint.child]
         if not is_parallel(joint.axis, self.view.left):
-            self.refuse(joint, "must turn about the axis of the other wheels: it would steer")
+            self.refuse(
+                joint, "must turn about the axis of the other wheels: a side view holds no steering"
+            )
         radii = [radius_about(shape, joint.place, joint.axis) or 0.0 for _, shape in shapes]
         largest = int(np.argmax(radii))
         x, y, _ = self.view.of(joint.place)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -105,6 +105,7 @@ def read_robot(
     model: str | None = None,
     mesh: MeshRule = "refuse",
     missing: Literal["refuse", "leave_out"] = "refuse",
+    tracks: Collection[str] = (),
     ground_friction: float | None = None,
     tolerance: float = _TOLERANCE,
     trusted: bool = False,
@@ -135,6 +136,8 @@ def read_robot(
         What to do with collision meshes: "hull" takes the hull of an .stl or .obj file.
     missing : {"refuse", "leave_out"}
         What to do with includes of packages that are not there, and with joints of missing links.
+    tracks : collection of str
+        Links whose surface something outside the file moves, as a controller in Isaac does.
     ground_friction : float, optional
         [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, in Isaac
         0.5.
@@ -212,7 +215,7 @@ def read_robot(
         packages={name: Path(folder) for name, folder in (packages or {}).items()},
         arguments=arguments or {},
     )
-    tree = found.tree
+    tree = replace(found.tree, tracks=_known(tracks, found.tree))
     engine = engine or ("mujoco" if tree.format == "MJCF" else "gz")
     if ground_friction is None:
         ground_friction = ENGINES[engine].usual
@@ -236,6 +239,14 @@ def read_robot(
         tree=tree,
         text=found.text,
     )
+
+
+def _known(tracks: Collection[str], tree: Tree) -> tuple[str, ...]:
+    links = tree.by_name
+    for name in tracks:
+        if not isinstance(name, str) or name not in links:
+            raise ScenarioError("tracks", name, "must be links of the model")
+    return tuple(tracks)
 
 
 def _between(value: float, path: str, least: float, most: float) -> float:

@@ -85,8 +85,9 @@ def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tu
 
 
 def moved_links(tree: Tree) -> dict[str, Where]:
-    """Return the links whose surface a plugin moves, and the lines that say so."""
-    return dict(_named(tree))
+    """Return the links whose surface is moved, and the lines that say so."""
+    links = tree.by_name
+    return dict(_named(tree)) | {name: links[name].at for name in tree.tracks}
 
 
 def _named(tree: Tree) -> Iterator[tuple[str, Where]]:

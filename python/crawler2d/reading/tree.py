@@ -219,6 +219,8 @@ class Tree:
         In their order.
     driven : mapping of str to Where
         The joints that the file gives a motor, and where.
+    tracks : tuple of str
+        Links whose surface something outside the file moves.
     at : Where
         Line of the model.
     """
@@ -230,6 +232,7 @@ class Tree:
     joints: Mapping[str, Joint]
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
+    tracks: tuple[str, ...] = ()
     at: Where
 
     @property
@@ -257,17 +260,9 @@ def checked(
     ScenarioError
         If names repeat, a link is missing, has two parents, hangs on nothing or on itself.
     """
-    if not names:
-        raise ScenarioError(str(at), "no link", "must have a link")
-    if max(len(names), len(joints)) > _MOST_LINKS:
-        raise ScenarioError(str(at), len(names), f"must have at most {_MOST_LINKS} links")
-    seen: set[str] = set()
-    for name, where in names:
-        if len(name) > _LONGEST_NAME:
-            raise ScenarioError(str(where), name, f"must have at most {_LONGEST_NAME} letters")
-        if name in seen:
-            raise ScenarioError(str(where), name, "must be a name that no other link has")
-        seen.add(name)
+    seen = _links_of(names, at)
+    if len(joints) > _MOST_LINKS:
+        raise ScenarioError(str(at), len(joints), f"must have at most {_MOST_LINKS} joints")
     named: set[str] = set()
     children: dict[str, list[str]] = {name: [] for name, _ in names}
     parent_of: dict[str, str] = {}
@@ -295,3 +290,19 @@ def checked(
             str(at), min(seen - set(order)), "must hang on the root, not on itself in a circle"
         )
     return order
+
+
+def _links_of(names: list[tuple[str, Where]], at: Where) -> set[str]:
+    """Return the names of the links, if there are some, not too many, and no two alike."""
+    if not names:
+        raise ScenarioError(str(at), "no link", "must have a link")
+    if len(names) > _MOST_LINKS:
+        raise ScenarioError(str(at), len(names), f"must have at most {_MOST_LINKS} links")
+    seen: set[str] = set()
+    for name, where in names:
+        if len(name) > _LONGEST_NAME:
+            raise ScenarioError(str(where), name, f"must have at most {_LONGEST_NAME} letters")
+        if name in seen:
+            raise ScenarioError(str(where), name, "must be a name that no other link has")
+        seen.add(name)
+    return seen

@@ -24,6 +24,7 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
 
 def _expanded(
     module: Any,
+    *,
     path: str,
     file: str,
     packages: dict[str, str],
