@@ -41,8 +41,7 @@ def go_through(folder: Path, count: int, originals: dict[str, bytes], tries: int
             account.counts["read"] += 1
             assert reading.robot.wheels() is not None
         except c2d.ScenarioError as error:
-            account.counts["refused"] += 1
-            assert error.path
+            account.counts["refused" if error.path else "refused without a path"] += 1
         except Exception as error:
             account.fault(type(error).__name__, f"{case}: {error}")
         seconds = time.perf_counter() - start
@@ -57,6 +56,7 @@ def go_through(folder: Path, count: int, originals: dict[str, bytes], tries: int
 def check(account: Account) -> None:
     print(account)
     assert not account.faults, str(account)
+    assert not account.counts["refused without a path"]
     assert account.counts["read"] > 0
     assert account.counts["refused"] > 0
 

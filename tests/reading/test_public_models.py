@@ -168,7 +168,7 @@ def test_every_figure_has_a_source(name: str) -> None:
 @pytest.mark.parametrize(
     ("reading", "figure", "line", "holds"),
     [
-        (ABSOLEM, "robot.outline.axle_distance", 1273, "0.25 0.1835 0.01855"),
+        (ABSOLEM, "robot.outline.axle_distance", 1273, "0.25 0.1985 0.01855"),
         (ABSOLEM, "robot.outline.front_radius", 1291, "<radius>0.089"),
         (ABSOLEM, "robot.flippers.torque_limit", 967, "<effort>20"),
         (ABSOLEM, "robot.flippers.rate_limit", 968, "<velocity>0.785398"),

@@ -8,6 +8,8 @@ import pytest
 import crawler2d as c2d
 from tests.reading.carts import SIDES, WHEELS, collision, link, pair, read, urdf, wheel
 
+LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
+
 
 def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: str) -> None:
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
@@ -43,17 +45,17 @@ def test_a_wheel_in_the_middle_is_refused(tmp_path: Path) -> None:
 
 
 def test_wheels_on_slides_are_refused_as_suspension(tmp_path: Path) -> None:
-    kind = 'type="prismatic"><axis xyz="0 0 1"/><limit lower="-0.1" upper="0.1" effort="1" velocity="1"/>'
+    kind = 'type="prismatic"><axis xyz="0 0 1"/>' + LIMIT
     refused(tmp_path, on_links(kind), "a side view holds no suspension")
 
 
 def test_wheels_on_a_steered_joint_are_refused(tmp_path: Path) -> None:
-    kind = 'type="revolute"><axis xyz="0 0 1"/><limit lower="-0.5" upper="0.5" effort="1" velocity="1"/>'
+    kind = 'type="revolute"><axis xyz="0 0 1"/>' + LIMIT
     refused(tmp_path, on_links(kind), "a side view holds no steering")
 
 
 def test_wheels_on_a_rocker_are_refused(tmp_path: Path) -> None:
-    kind = 'type="revolute"><axis xyz="0 1 0"/><limit lower="-0.5" upper="0.5" effort="1" velocity="1"/>'
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
     arms = "".join(link(f"{side}_arm", kind, f"0 {sign * 0.1} 0") for side, sign in SIDES)
     wheels = "".join(
         wheel(f"{side}_{x}", f"{x} {sign * 0.05} 0", parent=f"{side}_arm")
@@ -69,7 +71,7 @@ def test_wheels_on_a_floating_joint_are_refused(tmp_path: Path) -> None:
 
 def test_a_toed_wheel_is_refused(tmp_path: Path) -> None:
     text = urdf(WHEELS, pair("mid", 0.0, rpy="0 0 0.2"))
-    refused(tmp_path, text, "must turn about the other wheels' axis")
+    refused(tmp_path, text, "must turn about the axis of the other wheels")
 
 
 def test_a_sprung_flipper_is_refused_as_suspension(tmp_path: Path) -> None:
@@ -145,9 +147,7 @@ def test_a_single_pair_of_wheels_is_refused(tmp_path: Path) -> None:
 
 
 def flippers(x: float = 0.2, tip: str = "0.2 0 0", radius: str = "0.05", shape: str = "") -> str:
-    kind = (
-        'type="revolute"><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="1"/>'
-    )
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
     arms = "".join(
         link(f"{side}_arm{x}", kind, f"{x} {sign * 0.25} 0").replace("</link>", f"{shape}</link>")
         for side, sign in SIDES
@@ -162,7 +162,8 @@ def test_a_flipper_with_a_wheel_at_its_tip_alone_keeps_it_there(tmp_path: Path) 
     robot = read(tmp_path, urdf(WHEELS, flippers())).robot
     assert robot.flippers is not None
     assert (robot.flippers.length, robot.flippers.torque_limit) == (0.2, 9.0)
-    assert robot.flippers.track == c2d.HybridWheels(((0.1, 0.0, 0.05),))
+    assert isinstance(robot.flippers.track, c2d.HybridWheels)
+    assert robot.flippers.track.placements[0] == pytest.approx((0.1, 0.0, 0.05))
 
 
 def test_a_flipper_that_pivots_off_the_end_axle_is_refused(tmp_path: Path) -> None:
@@ -179,8 +180,8 @@ def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: 
     refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within a wheel of its flipper")
 
 
-TRACKED = """<sdf version="1.7"><model name="tank"><link name="hull"><inertial><mass>20</mass></inertial>
-</link>{links}{plugins}</model></sdf>"""
+TRACKED = """<sdf version="1.7"><model name="tank">
+<link name="hull"><inertial><mass>20</mass></inertial></link>{links}{plugins}</model></sdf>"""
 
 
 def tracked(drums: tuple[tuple[float, float, float], ...]) -> str:
@@ -196,7 +197,7 @@ def tracked(drums: tuple[tuple[float, float, float], ...]) -> str:
         for side, sign in SIDES
     )
     plugins = "".join(
-        f'<plugin name="gz::sim::systems::TrackController" filename="x"><link>{side}</link></plugin>'
+        f'<plugin name="TrackController" filename="x"><link>{side}</link></plugin>'
         for side, _ in SIDES
     )
     return TRACKED.format(links=links, plugins=plugins)
@@ -236,5 +237,5 @@ def test_an_argument_that_is_none_of_its_values_is_refused(
     tmp_path: Path, argument: str, value: object
 ) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
-        read(tmp_path, urdf(WHEELS), **{argument: value})
+        read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
     assert caught.value.path == argument

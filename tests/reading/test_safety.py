@@ -28,7 +28,8 @@ def test_an_entity_bomb_is_refused_at_its_first_line(tmp_path: Path, name: str) 
 
 
 def test_an_external_entity_is_refused(tmp_path: Path) -> None:
-    text = f'<?xml version="1.0"?>\n<!DOCTYPE r [<!ENTITY f SYSTEM "file:///etc/passwd">]>\n{urdf("&f;")}'
+    kind = '<!DOCTYPE r [<!ENTITY f SYSTEM "file:///etc/passwd">]>'
+    text = f'<?xml version="1.0"?>\n{kind}\n{urdf("&f;")}'
     assert refused(tmp_path, text, "must have no document type").path == "cart.urdf:2"
 
 
@@ -86,7 +87,8 @@ def test_links_in_a_circle_beside_the_robot_are_refused(tmp_path: Path) -> None:
 
 
 def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
-    frames = '<link name="a"><pose relative_to="f"/></link><frame name="f"><pose relative_to="a"/></frame>'
+    frames = '<link name="a"><pose relative_to="f"/></link>'
+    frames += '<frame name="f"><pose relative_to="a"/></frame>'
     text = f'<sdf version="1.7"><model name="m">{frames}</model></sdf>'
     refused(tmp_path, text, "must not be a frame that is given in itself", "m.sdf")
 
@@ -98,13 +100,13 @@ def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
         (('name="left_front_joint"', 'name="left_rear_joint"'), "no other joint has"),
         (
             ('<parent link="hull"/>', '<parent link="bow"/>'),
-            "must join links of the model, got bow",
+            "must join links of the model",
         ),
         (('<child link="left_front"/>', '<child link="left_rear"/>'), "must be the only joint"),
         (("<robot", "<machine"), "must be well-formed XML"),
         (
             ('<mass value="8"/>', '<mass value="nan"/>'),
-            r"mass@value must be a finite number, got nan",
+            "mass@value must be a finite number",
         ),
         (('<mass value="8"/>', '<mass value="1e999"/>'), "must be at most 1e"),
         (('<mass value="8"/>', '<mass value="-8"/>'), "must have a mass >= 0 kg"),
@@ -159,15 +161,15 @@ def test_a_line_is_that_of_an_editor_whatever_ends_lines_within_it(tmp_path: Pat
     assert refused(tmp_path, text, "must be a finite number").path.startswith("cart.urdf:3:")
 
 
-def test_xacro_that_loops_is_ended(tmp_path: Path) -> None:
+def test_xacro_that_takes_all_time_or_memory_is_ended(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
-    loop = "${sum([1 for a in range(10**5) for b in range(10**5)])}"
+    loop = "${max([a*b for a in range(10**5) for b in range(10**5)])}"
     text = urdf(WHEELS, mass=loop).replace(
         "<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'
     )
     path = tmp_path / "loop.xacro"
     path.write_text(text)
-    with pytest.raises(c2d.ScenarioError, match="must be understood within the limits"):
+    with pytest.raises(c2d.ScenarioError, match=r"loop\.xacro must be"):
         c2d.read_robot(path, trusted=True)
 
 

@@ -15,6 +15,7 @@ from crawler2d.reading.view import SideView
 __all__ = ["belly_of"]
 
 _CHORDS = 16  # that stand for a circle; at most 2 % of its radius inside it
+_DIGITS = 6  # Files round to a micrometre.
 _SMALLEST = 1e-6  # [m] Corners nearer than this are one, and a hull thinner than this is none.
 _CIRCLE = np.linspace(0.0, 2.0 * math.pi, _CHORDS, endpoint=False)
 
@@ -48,7 +49,7 @@ def _silhouette(shape: Shape, view: SideView) -> Array:
 
 def _hull(points: Array) -> list[Array]:
     """Return the corners of the convex hull, counter-clockwise, none on a straight edge."""
-    order = np.unique(np.round(points / _SMALLEST) * _SMALLEST, axis=0)
+    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0)
     ends = [_chain(order), _chain(order[::-1])]
     return [corner for chain in ends for corner in chain[:-1]]
 

@@ -222,6 +222,8 @@ class _Parser:
             reason = expat.ErrorString(error.code)
             where = self.at(self.expat.ErrorByteIndex)
             raise ScenarioError(str(where), reason, "must be well-formed XML") from None
+        except ScenarioError:  # which is a ValueError, too
+            raise
         except (ValueError, LookupError) as error:  # an encoding that Python lacks or cannot map
             raise ScenarioError(self.file, str(error), "must be in a known encoding") from None
         assert self.root is not None  # without one, expat has raised

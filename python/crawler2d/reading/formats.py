@@ -17,6 +17,8 @@ from crawler2d.reading.xacro import expanded
 
 __all__ = ["Found", "tree_of"]
 
+_MOST_SHAPES = 3000  # collisions; the public models have at most 67
+
 
 @dataclass(slots=True)
 class Found:
@@ -74,6 +76,9 @@ def tree_of(
         tree = read_mjcf(root, path, model, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
+    count = sum(len(link.shapes) for link in tree.links)
+    if count > _MOST_SHAPES:
+        raise ScenarioError(str(tree.at), count, f"must have at most {_MOST_SHAPES} shapes")
     missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]
     return Found(tree, data.decode("utf-8", errors="replace"), missing)
 

@@ -165,32 +165,31 @@ def read_robot(
 
     Examples
     --------
+    >>> import pathlib, tempfile
     >>> import crawler2d as c2d
-    >>> wheel = '''
-    ...   <link name="{side}_{end}">
-    ...     <inertial><mass value="1"/><inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0"
-    ...       izz="0.002"/></inertial>
-    ...     <collision><origin rpy="1.5707963267948966 0 0"/>
-    ...       <geometry><cylinder radius="0.08" length="0.05"/></geometry></collision>
-    ...   </link>
-    ...   <joint name="{side}_{end}_joint" type="continuous">
-    ...     <parent link="hull"/><child link="{side}_{end}"/>
-    ...     <origin xyz="{x} {y} 0"/><axis xyz="0 1 0"/><limit effort="5" velocity="10"/>
-    ...   </joint>'''
-    >>> hull = '''<link name="hull"><inertial><mass value="8"/><inertia ixx="0.1" ixy="0" ixz="0"
-    ...   iyy="0.2" iyz="0" izz="0.2"/></inertial></link>'''
-    >>> wheels = [
-    ...     wheel.format(side=side, end=end, x=x, y=y)
-    ...     for side, y in (("left", 0.15), ("right", -0.15))
-    ...     for end, x in (("front", 0.2), ("rear", -0.2))
-    ... ]
-    >>> with open("cart.urdf", "w") as file:
-    ...     _ = file.write(f"<robot name='cart'>{hull}{''.join(wheels)}</robot>")
-    >>> reading = c2d.read_robot("cart.urdf")
+    >>> body = '''
+    ... <link name="{name}">
+    ...   <inertial><mass value="{mass}"/>
+    ...     <inertia ixx="0.1" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="0.1"/></inertial>
+    ...   <collision><origin rpy="1.5707963267948966 0 0"/><geometry>{shape}</geometry></collision>
+    ... </link>'''
+    >>> joint = '''
+    ... <joint name="{name}_joint" type="continuous">
+    ...   <parent link="hull"/><child link="{name}"/><origin xyz="{x} {y} 0"/><axis xyz="0 1 0"/>
+    ...   <limit effort="5" velocity="10"/>
+    ... </joint>'''
+    >>> box, disc = '<box size="0.4 0.05 0.2"/>', '<cylinder radius="0.08" length="0.05"/>'
+    >>> text = "<robot name='cart'>" + body.format(name="hull", mass=8, inertia=0.2, shape=box)
+    >>> for name, x, y in (("a", 0.2, 0.2), ("b", -0.2, 0.2), ("c", 0.2, -0.2), ("d", -0.2, -0.2)):
+    ...     text += body.format(name=name, mass=1, inertia=0.003, shape=disc)
+    ...     text += joint.format(name=name, x=x, y=y)
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "cart.urdf"
+    >>> _ = path.write_text(text + "</robot>")
+    >>> reading = c2d.read_robot(path)
     >>> reading.robot.mass, reading.robot.outline.axle_distance, reading.friction
     (12.0, 0.4, 1.0)
     >>> print(reading.sources["robot.outline.front_radius"])
-    cart.urdf:5, 23
+    cart.urdf:10, 28
     >>> run = c2d.simulate(reading.robot, c2d.terrains.step(0.03, friction=reading.friction))
     >>> str(run.outcome)
     'cleared'

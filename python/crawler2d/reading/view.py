@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.poses import Array
-from crawler2d.reading.rounds import below, is_moved, is_parallel, moved_links, wheel_of
+from crawler2d.reading.rounds import PARALLEL, below, is_moved, is_parallel, moved_links, wheel_of
 from crawler2d.reading.tree import Tree
 
 __all__ = ["SideView", "side_view"]
@@ -108,9 +109,11 @@ def _lateral(tree: Tree) -> Array:
             " or tracks that a plugin moves"
         )
         raise ScenarioError(str(tree.at), "none", rule)
-    # Of each axis its outer product, which has no sign: the largest of their mean is the direction.
-    mean = sum((np.outer(axis, axis) for axis in axes), np.zeros((3, 3))) / len(axes)
-    lateral: Array = np.linalg.eigh(mean)[1][:, -1]
+    rows = np.array(axes)
+    alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)
+    most = rows[alike[alike.sum(axis=0).argmax()]]
+    # Of each axis its outer product, which has no sign: the mean of those has their direction.
+    lateral: Array = np.linalg.eigh(most.T @ most)[1][:, -1]
     for axis in np.eye(3):
         if np.linalg.norm(np.cross(lateral, axis)) <= _SNAP:
             lateral = axis
