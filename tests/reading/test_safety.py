@@ -38,7 +38,7 @@ def test_100_megabytes_are_refused_unread(tmp_path: Path) -> None:
     with path.open("wb") as file:
         file.truncate(100_000_000)
     start = time.perf_counter()
-    with pytest.raises(c2d.ScenarioError, match="must have at most 8000000 bytes"):
+    with pytest.raises(c2d.ScenarioError, match="must have at most 4000000 bytes"):
         c2d.read_robot(path)
     assert time.perf_counter() - start < 0.5
 
@@ -48,12 +48,21 @@ def test_deep_nesting_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_million_elements_are_refused(tmp_path: Path) -> None:
-    refused(tmp_path, f"<robot>{'<a/>' * 1_000_000}</robot>", "must have at most 100000 elements")
+    refused(tmp_path, f"<robot>{'<a/>' * 1_000_000}</robot>", "must have at most 50000 elements")
 
 
 def test_ten_thousand_links_are_refused(tmp_path: Path) -> None:
     many = "".join(f'<link name="l{n}"/>' for n in range(10_000))
     refused(tmp_path, f"<robot>{many}</robot>", "must have at most 1000 links")
+
+
+@pytest.mark.parametrize("name", ["many.urdf", "many.sdf"])
+def test_ten_thousand_shapes_are_refused(tmp_path: Path, name: str) -> None:
+    many = "<collision/>" * 10_000
+    text = f'<robot><link name="a">{many}</link></robot>'
+    if name == "many.sdf":
+        text = f'<sdf version="1.7"><model name="m"><link name="a">{many}</link></model></sdf>'
+    refused(tmp_path, text, "must have at most 3000 collision shapes", name)
 
 
 def chain(count: int, last: str) -> str:

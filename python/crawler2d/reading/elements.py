@@ -18,10 +18,10 @@ from crawler2d.errors import ScenarioError
 
 __all__ = ["LARGEST_FILE", "Element", "Where", "parsed", "real"]
 
-LARGEST_FILE = 8_000_000
+LARGEST_FILE = 4_000_000
 """[bytes] Of one model file. The largest of the public models has 150 kB."""
 
-_MOST_ELEMENTS = 100_000
+_MOST_ELEMENTS = 50_000
 _DEEPEST = 60
 # [m, kg, ...] No robot has a larger figure; an effort or a limit of an angle that is, is none.
 _LARGEST = 1e6
@@ -104,6 +104,14 @@ class Element:
     def all(self, tag: str) -> Iterator[Element]:
         """Yield the children of a name."""
         return (child for child in self.children if child.tag == tag)
+
+    def within(self) -> Iterator[Element]:
+        """Yield itself and everything in it, in the order of the file."""
+        waiting = [self]
+        while waiting:
+            element = waiting.pop()
+            yield element
+            waiting.extend(reversed(element.children))
 
     def only(self, path: str) -> Element | None:
         """Return the one child at a path; None if there is none. Two are refused."""

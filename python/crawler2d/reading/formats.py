@@ -65,6 +65,10 @@ def tree_of(
         name = f"{name} (expanded)"
         missing += [(include, "an include whose package is missing") for include in includes]
     root = parsed(data, name)
+    shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
+    if len(shapes) > _MOST_SHAPES:
+        rule = f"must have at most {_MOST_SHAPES} collision shapes"
+        shapes[_MOST_SHAPES].refuse(len(shapes), rule)
     meshes = Meshes(rule=mesh, folder=path.resolve().parent, packages=packages)
     if root.tag == "sdf":
         tree = read_sdf(root, model, meshes)
@@ -76,9 +80,6 @@ def tree_of(
         tree = read_mjcf(root, path, model, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
-    count = sum(len(link.shapes) for link in tree.links)
-    if count > _MOST_SHAPES:
-        raise ScenarioError(str(tree.at), count, f"must have at most {_MOST_SHAPES} shapes")
     missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]
     return Found(tree, data.decode("utf-8", errors="replace"), missing)
 

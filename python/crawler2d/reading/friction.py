@@ -39,7 +39,8 @@ class Rule:
 
 
 ENGINES: dict[str, Rule] = {
-    # Gazebo Classic's ODEPhysics and DART's ContactConstraint: the smaller. SDFormat: mu is 1.
+    # The smaller: ODEPhysics::Collide of Gazebo Classic, DefaultContactSurfaceHandler of DART, which
+    # gz-sim runs. In SDFormat, mu is 1.
     "gz": Rule(of_two=min, word="min", usual=1.0),
     # MuJoCo's documentation, Computation, Contact parameters: the larger, element by element,
     # unless one geom has the higher priority. The default of geom/friction is 1.

@@ -58,13 +58,10 @@ def read_mjcf(root: Element, path: Path, model: str | None, meshes: Meshes) -> T
 
 def _refuse_includes(root: Element) -> None:
     """Refuse files in several parts, whose lines would be those of any of them."""
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
+    for element in root.within():
         if element.tag == "include":
             rule = "must hold the robot itself: read the included file"
             element.refuse(element.attributes.get("file", ""), rule)
-        waiting.extend(element.children)
 
 
 def _finite(value: Any) -> bool:

@@ -84,12 +84,9 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
 
 def _refuse_macros(root: Element) -> None:
     """Refuse what xacro would have to expand, wherever it stands."""
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
+    for element in root.within():
         if element.tag.startswith("xacro:"):
             element.refuse(element.tag, "must be expanded: a file with xacro is named *.xacro")
-        waiting.extend(element.children)
 
 
 def _origin(element: Element) -> Pose:
