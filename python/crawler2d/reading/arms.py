@@ -12,7 +12,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
 from crawler2d.reading.belts import belt_ends
 from crawler2d.reading.elements import Where
-from crawler2d.reading.gear import Arm, Runner, corners_of
+from crawler2d.reading.parts import Arm, Runner, corners_of
 from crawler2d.reading.poses import Array
 from crawler2d.reading.sides import Pair, paired
 from crawler2d.reading.tracks import Base, wheels_of

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crawler2d.reading.gear import corners_of
+from crawler2d.reading.parts import corners_of
 from crawler2d.reading.poses import Array
 from crawler2d.reading.tracks import Base
 from crawler2d.reading.tree import Link, Shape

@@ -6,18 +6,16 @@ from collections.abc import Callable
 
 from crawler2d.parameters.robot import Drivetrain
 from crawler2d.parameters.track import LineOfWheels, Track
-from crawler2d.reading.arms import AtEnd
 from crawler2d.reading.elements import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.tree import Tree
 
-__all__ = ["drivetrain_of", "limits_of_arms", "no_torque"]
+__all__ = ["drivetrain_of"]
 
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
-_RATE = 1.0  # [rad/s] that of MARV's flippers
-_FASTEST = 100.0  # [rad/s] and [m/s] Larger figures are meant as no limit.
-_WEIGHT, _MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
+FASTEST = 100.0  # [rad/s] and [m/s] Larger figures are meant as no limit.
+WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
 
 Note = Callable[[str, str], None]
 
@@ -60,7 +58,7 @@ def drivetrain_of(
         sharing = "wheel" if isinstance(track, LineOfWheels) and len(set(efforts)) == 1 else "track"
         note("robot.drivetrain.torque_sharing", lines([w.joint.at for w in wheels if w.joint]))
     else:
-        note("robot.drivetrain.max_torque", no_torque("the tracks"))
+        note("robot.drivetrain.max_torque", estimate("that of Robot.simple: the file has no limit"))
         note("robot.drivetrain.torque_sharing", estimate("one speed, as motors without limit hold"))
     return Drivetrain(
         max_speed=speed,
@@ -86,39 +84,8 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
                     found.append((float(text), where))
                 except ValueError:
                     continue
-    found = [(speed, where) for speed, where in found if 0.0 < speed <= _FASTEST]
+    found = [(speed, where) for speed, where in found if 0.0 < speed <= FASTEST]
     if not found:
         return _SPEED, estimate("that of Robot.simple: the file has no limit")
     speed = min(speed for speed, _ in found)
     return speed, lines([where for each, where in found if each == speed])
-
-
-def no_torque(what: str) -> str:
-    """Say that a torque is an estimate."""
-    return estimate(f"that of Robot.simple: the file has no limit for {what}")
-
-
-def limits_of_arms(ends: list[AtEnd], *, mass: float, note: Note) -> tuple[float, float]:
-    """Return rate [rad/s] and torque [N m] of one flipper."""
-    joints = [arm.joint for end in ends for arm in end.pair.arms]
-    shares = [2.0 if len(end.pair.arms) == 1 else 1.0 for end in ends for _ in end.pair.arms]
-    length = max(end.length for end in ends)
-    rate, torque = _RATE, _MARGIN * 0.5 * mass * _WEIGHT * length / 2.0
-    rates = [
-        joint.velocity
-        for joint in joints
-        if joint.velocity and joint.velocity <= _FASTEST and not joint.is_locked
-    ]
-    if len(rates) == len(joints):
-        rate = min(rates)
-        note("robot.flippers.rate_limit", lines([joint.velocity_at for joint in joints]))
-    else:
-        note("robot.flippers.rate_limit", estimate("that of MARV: the file has no limit"))
-    efforts = [joint.effort for joint in joints if joint.effort and not joint.is_locked]
-    if len(efforts) == len(joints):
-        torque = min(effort / share for effort, share in zip(efforts, shares, strict=True))
-        note("robot.flippers.torque_limit", lines([joint.effort_at for joint in joints]))
-    else:
-        rule = "1.6 times what lifts half of the robot with both tips: the file has no limit"
-        note("robot.flippers.torque_limit", estimate(rule))
-    return rate, torque

@@ -9,7 +9,7 @@ from typing import Literal
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.elements import Where
-from crawler2d.reading.gear import Runner
+from crawler2d.reading.parts import Runner
 from crawler2d.reading.view import SideView
 
 __all__ = ["ENGINES", "Engine", "combined"]
@@ -39,8 +39,8 @@ class Rule:
 
 
 ENGINES: dict[str, Rule] = {
-    # The smaller: ODEPhysics::Collide of Gazebo Classic, DefaultContactSurfaceHandler of DART, which
-    # gz-sim runs. In SDFormat, mu is 1.
+    # The smaller: ODEPhysics::Collide of Gazebo Classic, DefaultContactSurfaceHandler of DART,
+    # which gz-sim runs. In SDFormat, mu is 1.
     "gz": Rule(of_two=min, word="min", usual=1.0),
     # MuJoCo's documentation, Computation, Contact parameters: the larger, element by element,
     # unless one geom has the higher priority. The default of geom/friction is 1.

@@ -12,8 +12,9 @@ from crawler2d.errors import ScenarioError
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element, Where
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.order import checked
 from crawler2d.reading.poses import Pose, from_quaternion, unit
-from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree, checked
+from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
 
 __all__ = ["read_mjcf"]
 

@@ -224,15 +224,15 @@ def read_robot(
     )
     robot.wheels()  # the core checks every rule of a robot
     left_out = [("left out", what, f"is {kind}") for what, kind in found.left_out]
-    doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.doubts]]
+    doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.told.doubts]]
     for doubt in doubts:
         warnings.warn(doubt, stacklevel=2)
     return Reading(
         robot=robot,
         friction=friction,
-        sources=Sources(work.sources),
+        sources=Sources(work.told.sources),
         wheels=_table(work),
-        notes=tuple(work.notes),
+        notes=tuple(work.told.notes),
         doubts=tuple(str(doubt) for doubt in doubts),
         engine=engine,
         tree=tree,
@@ -256,7 +256,7 @@ def _between(value: float, path: str, least: float, most: float) -> float:
 
 
 def _table(work: Assembly) -> Table:
-    rows = work.rows
+    rows = work.told.rows
     columns: dict[str, Any] = {
         "side": ["left" if runner.z > work.middle else "right" for _, runner in rows],
         "carrier": [carrier for carrier, _ in rows],

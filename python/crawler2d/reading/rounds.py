@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -16,7 +15,6 @@ __all__ = [
     "below",
     "is_moved",
     "is_parallel",
-    "moved_links",
     "radius_about",
     "wheel_of",
 ]
@@ -82,26 +80,6 @@ def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tu
     if any(radius_about(shape, joint.place, joint.axis) is None for _, shape in shapes):
         return []
     return shapes
-
-
-def moved_links(tree: Tree) -> dict[str, Where]:
-    """Return the links whose surface is moved, and the lines that say so."""
-    links = tree.by_name
-    return dict(_named(tree)) | {name: links[name].at for name in tree.tracks}
-
-
-def _named(tree: Tree) -> Iterator[tuple[str, Where]]:
-    known = {link.name for link in tree.links}
-    for plugin in tree.plugins:
-        if "track" in f"{plugin.name} {plugin.filename}".lower():
-            for path, text, where in plugin.settings:
-                if path.rpartition("/")[2] in _TRACKS and text in known:
-                    yield text, where
-
-
-# Gazebo's TrackController has link; its TrackedVehicle left_track/link and right_track/link; the
-# plugins of Gazebo classic name the links of tracks and flippers like this.
-_TRACKS = {"link", "left_track", "right_track", "left_flipper", "right_flipper"}
 
 
 def is_moved(link: Link, shape: Shape, moved: dict[str, Where]) -> bool:

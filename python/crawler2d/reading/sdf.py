@@ -9,16 +9,17 @@ from crawler2d.errors import ScenarioError
 from crawler2d.reading.elements import Element, Where, real
 from crawler2d.reading.frames import MODEL, Frames
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.order import checked
+from crawler2d.reading.plugins import driven_by, plugin_of
 from crawler2d.reading.poses import Pose, unit
 from crawler2d.reading.shapes import inertia, shape_of
-from crawler2d.reading.tree import Friction, Joint, Link, Plugin, Shape, Tree, checked
+from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
 
-__all__ = ["plugin_of", "read_sdf"]
+__all__ = ["read_sdf"]
 
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "fixed": "fixed"}
 # What SDF takes where a file says nothing: a link of 1 kg, a friction of 1.
 _USUAL_MASS = _USUAL_FRICTION = 1.0
-_DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
 
 
 def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
@@ -117,7 +118,7 @@ class _Model:
                 for (name, parent, child, _), joint in zip(ends, self.joints, strict=True)
             },
             plugins=plugins,
-            driven=_driven(plugins),
+            driven=driven_by(plugins),
             at=self.model.where,
         )
 
@@ -267,26 +268,3 @@ def _coefficient(ode: Element, name: str) -> tuple[float, Where]:
     if value < 0.0:
         found.refuse(value, "must be >= 0")
     return value, found.where
-
-
-def plugin_of(plugin: Element) -> Plugin:
-    """Flatten the settings of a plugin."""
-    settings: list[tuple[str, str, Where]] = []
-    waiting = [(child, child.tag) for child in reversed(plugin.children)]
-    while waiting:
-        element, path = waiting.pop()
-        settings.append((path, element.text, element.where))
-        if path.count("/") < _DEEPEST_SETTING:
-            waiting.extend((child, f"{path}/{child.tag}") for child in reversed(element.children))
-    name, filename = (plugin.attributes.get(key, "") for key in ("name", "filename"))
-    return Plugin(name=name, filename=filename, settings=tuple(settings), at=plugin.where)
-
-
-def _driven(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
-    """Return the joints that a differential drive turns, and the lines that say so."""
-    return {
-        joint: where
-        for plugin in plugins
-        if "diff" in f"{plugin.name} {plugin.filename}".lower()
-        for joint, where in plugin.values("left_joint", "right_joint", "leftJoint", "rightJoint")
-    }

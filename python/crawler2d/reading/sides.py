@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.elements import Where
-from crawler2d.reading.gear import Runner
+from crawler2d.reading.parts import Runner
 
 __all__ = ["Pair", "middle_of", "paired"]
 
