@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ from tests.reading.carts import SIDES, WHEELS, collision, link, pair, read, urdf
 LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
 
 
-def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: str) -> None:
+def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name, **how)
     assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
@@ -239,3 +240,105 @@ def test_an_argument_that_is_none_of_its_values_is_refused(
     with pytest.raises(c2d.ScenarioError) as caught:
         read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
     assert caught.value.path == argument
+
+
+def test_a_flipper_without_a_partner_is_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers().replace("0.2 -0.25 0", "0.19 -0.25 0"))
+    refused(tmp_path, text, "must have a partner on the other side")
+
+
+def test_flippers_that_differ_in_mass_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers()).replace('<mass value="0.5"/>', '<mass value="0.8"/>', 1)
+    refused(tmp_path, text, "must have flippers whose masses differ by at most 1%")
+
+
+def test_two_pairs_of_flippers_at_one_end_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers(), flippers(x=0.201))
+    refused(tmp_path, text, "must be the only flippers at its end")
+
+
+def test_a_flipper_on_a_flipper_is_refused(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    hands = "".join(
+        link(f"{side}_hand", kind, "0.2 0 0", parent=f"{side}_arm0.2") for side, _ in SIDES
+    )
+    tips = "".join(wheel(f"{side}_end", "0.1 0 0", parent=f"{side}_hand") for side, _ in SIDES)
+    refused(tmp_path, urdf(WHEELS, flippers(), hands, tips), "on another moving part")
+
+
+def test_flippers_at_one_end_without_wheels_on_the_chassis_are_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(flippers()), "must have wheels on the chassis, or flippers at both ends")
+
+
+def test_unevenly_spaced_wheels_on_flippers_at_both_ends_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers(), flippers(x=-0.2, tip="-0.2 0 0"))
+    refused(tmp_path, text, "must be alike at both ends and have evenly spaced wheels")
+
+
+def test_one_joint_may_turn_both_flippers_and_each_has_half_its_torque(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    both = link("arms", kind, "0.2 0 0") + "".join(
+        wheel(f"{side}_tip", f"0.2 {sign * 0.25} 0", parent="arms") for side, sign in SIDES
+    )
+    arms = read(tmp_path, urdf(WHEELS, both)).robot.flippers
+    assert arms is not None
+    assert (arms.torque_limit, arms.mass) == (4.5, 1.25)
+
+
+def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
+    drum = collision('<cylinder radius="0.1" length="0.1"/>', '<origin rpy="1.57079632679 0 0"/>')
+    belts = "".join(
+        link(f"{side}_belt", 'type="fixed">', f"0 {sign * 0.3} 0").replace(
+            "</link>", f"{drum}</link>"
+        )
+        for side, sign in SIDES
+    )
+    text = urdf(WHEELS, belts)
+    refused(tmp_path, text, "must have one kind on the chassis", tracks=["left_belt", "right_belt"])
+
+
+def test_a_track_of_one_drum_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, tracked(((0.0, 0.0, 0.1),)), "must have a drum at either end", "tank.sdf")
+
+
+def test_a_moved_box_beyond_the_belt_is_refused(tmp_path: Path) -> None:
+    box = "<collision name='b'><geometry><box><size>0.3 0.1 0.3</size></box></geometry></collision>"
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    text = re.sub(r"</link>(\s*<joint)", rf"{box}</link>\1", text)
+    refused(tmp_path, text, "must lie within the belt round the end drums", "tank.sdf")
+
+
+@pytest.mark.parametrize(
+    ("part", "rule"),
+    [
+        ('<model name="arm"/>', "must hold its parts itself"),
+        ("<include><uri>model://arm</uri></include>", "must hold its parts itself"),
+        (
+            '<joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint>',
+            "must not fix the robot to the world",
+        ),
+        (
+            '<link name="b"><inertial auto="true"/></link>'
+            '<joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>',
+            "must state mass and inertia",
+        ),
+    ],
+)
+def test_what_an_sdf_model_does_not_hold_itself_is_refused(
+    tmp_path: Path, part: str, rule: str
+) -> None:
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1))).replace("</model>", f"{part}</model>")
+    refused(tmp_path, text, rule, "tank.sdf")
+
+
+def test_a_body_with_two_joints_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (Path(__file__).parent / "files" / "cart.xml").read_text()
+    joint = '<joint name="left_rear_joint" axis="0 1 0"/>'
+    text = text.replace(joint, joint + '<joint name="toe" axis="0 0 1"/>')
+    refused(tmp_path, text, "must have at most one joint", "cart.xml")
+
+
+def test_a_robot_without_mass_is_refused(tmp_path: Path) -> None:
+    text = re.sub(r'<mass value="[^"]*"', '<mass value="0"', urdf(WHEELS))
+    refused(tmp_path, text, "must have links with a mass > 0 kg")
