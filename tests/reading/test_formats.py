@@ -261,3 +261,16 @@ def test_a_reading_says_what_it_is() -> None:
     assert SDF.in_words.startswith("cart: 3 round wheels in a line; flippers: 2 round wheels")
     assert "left front flipper: x 0.5000 m" in repr(SDF)
     assert "robot.mass" in SDF._repr_html_()
+
+
+def test_a_mesh_in_mjcf_is_read_as_its_hull(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    corners = " ".join(f"{x} {y} {z}" for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (0, 0.1))
+    mesh = f'<asset><mesh name="hull" vertex="{corners}"/></asset>'
+    text = (FILES / "cart.xml").read_text().replace("<worldbody>", f"{mesh}<worldbody>")
+    box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
+    text = text.replace(box, '<geom type="mesh" mesh="hull"/>')
+    with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:13: geom.* must be no mesh"):
+        read(tmp_path, text, "cart.xml")
+    belly = read(tmp_path, text, "cart.xml", mesh="hull").robot.belly
+    assert belly == ((-0.2, 0.0), (0.2, 0.0), (0.2, 0.1), (-0.2, 0.1))

@@ -109,7 +109,10 @@ def _lateral(tree: Tree) -> Array:
             "must have wheels, which are round collision shapes on joints that turn without limit,"
             " or tracks that a plugin moves"
         )
-        raise ScenarioError(str(tree.at), "none", rule)
+        kinds = [shape.kind for link in tree.links for shape in link.shapes]
+        count = sum(kind in ("cylinder", "capsule", "sphere") for kind in kinds)
+        got = f"{count} round shapes, none of them such" if count else "no round shape"
+        raise ScenarioError(str(tree.at), got, rule)
     rows = np.array(axes)
     alike = np.abs(rows @ rows.T) >= math.cos(PARALLEL)
     most = rows[alike[alike.sum(axis=0).argmax()]]
