@@ -10,9 +10,10 @@ import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
+from crawler2d.reading.belly import silhouette
 from crawler2d.reading.belts import belt_ends
 from crawler2d.reading.elements import Where
-from crawler2d.reading.parts import Arm, Runner, corners_of
+from crawler2d.reading.parts import Arm, Runner
 from crawler2d.reading.poses import Array
 from crawler2d.reading.sides import Pair, paired
 from crawler2d.reading.tracks import Base, wheels_of
@@ -154,27 +155,15 @@ def _pair(
 def _refuse_bare(arm: Arm, runners: list[Runner], view: SideView, tolerance: float) -> None:
     """Refuse shapes of an arm that could touch the ground and do not move."""
     for _, shape in arm.shapes:
-        points = _points(
-            shape.kind, shape.radius, shape.length, corners_of(shape), shape.pose.place
-        )
-        flat, size = view.of(points[0])[:, :2], points[1]
+        flat = silhouette(shape, view)
         hidden = any(
-            np.hypot(flat[:, 0] - r.x, flat[:, 1] - r.y).max() + size <= r.radius + tolerance
+            np.hypot(flat[:, 0] - r.x, flat[:, 1] - r.y).max() <= r.radius + tolerance
             for r in runners
         )
         if not hidden:
             path = f"{shape.at}: collision[{shape.name}]"
             rule = "must lie within a wheel of its flipper: arms touch with wheels or belts only"
             raise ScenarioError(path, shape.kind, rule)
-
-
-def _points(
-    kind: str, radius: float, length: float, corners: Array, place: Array
-) -> tuple[Array, float]:
-    """[m] Return points and a size round each that hold a shape, whichever way it is turned."""
-    if kind in ("box", "hull"):
-        return corners, 0.0
-    return place[None, :], math.hypot(radius, 0.5 * length) if kind != "sphere" else radius
 
 
 def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> AtEnd:

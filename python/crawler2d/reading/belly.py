@@ -12,7 +12,7 @@ from crawler2d.reading.tracks import Base
 from crawler2d.reading.tree import Link, Shape
 from crawler2d.reading.view import SideView
 
-__all__ = ["belly_of"]
+__all__ = ["belly_of", "silhouette"]
 
 _CHORDS = 16  # that stand for a circle; at most 2 % of its radius inside it
 _DIGITS = 6  # Files round to a micrometre.
@@ -26,14 +26,14 @@ def belly_of(shapes: list[tuple[Link, Shape]], view: SideView, base: Base) -> Co
     """Return the belly in the chassis frame, counter-clockwise; None if there is none."""
     if not shapes:
         return None
-    flat = [base.of(_silhouette(shape, view)) for _, shape in shapes]
+    flat = [base.of(silhouette(shape, view)) for _, shape in shapes]
     corners = _hull(np.concatenate(flat))
     if len(corners) < 3:
         return None
     return tuple((float(x), float(y)) for x, y in corners)
 
 
-def _silhouette(shape: Shape, view: SideView) -> Array:
+def silhouette(shape: Shape, view: SideView) -> Array:
     """[m] Return points of the side view whose hull is the shape's, rounds as chords."""
     if shape.kind in ("box", "hull"):
         return view.of(corners_of(shape))[:, :2]
