@@ -6,12 +6,14 @@ import sys
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import crawler2d as c2d
 from tests.fuzz.account import SEED, Account, cases
 from tests.fuzz.model_files import CARTS, ORIGINALS, mutated
+from tests.robots.robot_files import FOLDER
 
 LONGEST = 2.0  # [s] of processor time for one file
 MOST = 500  # [MB] for all, one after the other
@@ -27,7 +29,7 @@ def computed() -> float:
     return time.process_time() + used.ru_utime + used.ru_stime
 
 
-def go_through(folder: Path, count: int, originals: dict[str, bytes]) -> Account:
+def go_through(folder: Path, count: int, originals: dict[str, bytes], **how: Any) -> Account:
     """Read that many mutated files."""
     account = Account("model files")
     names = sorted(originals)
@@ -43,7 +45,8 @@ def go_through(folder: Path, count: int, originals: dict[str, bytes]) -> Account
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", c2d.ScenarioWarning)
-                reading = c2d.read_robot(path, mesh=draw.choice(("leave_out", "hull")))
+                mesh = draw.choice(("leave_out", "hull"))
+                reading = c2d.read_robot(path, **{"mesh": mesh, **how})
             account.counts["read"] += 1
             assert reading.robot.wheels() is not None
         except c2d.ScenarioError as error:
@@ -80,4 +83,11 @@ def test_20000_mutated_model_files_are_read_or_refused(tmp_path: Path) -> None:
 def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     originals = {"cart.xml": (CARTS / "cart.xml").read_bytes()}
-    check(go_through(tmp_path, cases("MJCF", 20), originals))
+    check(go_through(tmp_path, cases("CHILDREN", 20), originals))
+
+
+def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    originals = {"eng.xacro": (FOLDER / "eng.xacro").read_bytes()}
+    how = {"trusted": True, "missing": "leave_out", "mesh": "leave_out"}
+    check(go_through(tmp_path, cases("CHILDREN", 20), originals, **how))
