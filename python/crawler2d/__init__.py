@@ -12,6 +12,7 @@ Units are SI, angles radians, x forward, y up.
 
 from crawler2d import studies
 from crawler2d._core import build_info
+from crawler2d.audits.audit import Audit, audit
 from crawler2d.common.bodies import BodyKind, Lane
 from crawler2d.errors import (
     Crawler2dError,
@@ -60,6 +61,7 @@ from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
 __all__ = [
+    "Audit",
     "BatchInterrupted",
     "BeltTrack",
     "BodyKind",
@@ -99,6 +101,7 @@ __all__ = [
     "StoreError",
     "TrackOutline",
     "Until",
+    "audit",
     "build_info",
     "compare",
     "join_stores",
