@@ -35,8 +35,9 @@ from crawler2d.runs.progress import Progress
 
 __all__ = ["Audit", "audit"]
 
-SAMPLES, REPEATS = 50, 2
-"""Of the unknowns, and of each in every cell."""
+SAMPLES, REPEATS = 80, 2
+"""Of the unknowns, and runs of each: of 80 robots that never seize at most 4.6 % do, of 80 of which
+8 do so at least 5.2 %."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

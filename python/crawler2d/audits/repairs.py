@@ -30,7 +30,6 @@ LEVEL = "level ground"
 
 _CLEARS = 0.95
 _SEIZES = 0.05
-_FRESH = 2**63  # added to the seed for draws that nothing before has had
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,13 +133,7 @@ def repaired(
     models = {OWN: robot, **{each.what: each.robot for each in chosen}}
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     level = Flat(length=5.0 * robot.outline.axle_distance)
-    table = runs.table(
-        models,
-        {**grounds, LEVEL: level},
-        seed=(runs.seed + _FRESH) % 2**64,
-        # A sample counts once, whatever the number of its runs; without unknowns a run counts.
-        repeats=1 if runs.unknown else None,
-    )
+    table = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
     found = [_judged(table, each, list(grounds), seizing) for each in chosen]
     order = sorted(found, key=lambda each: (not each.confirmed, each.change))
     before = {name: shares(table, OWN, name)[1] for name in grounds}

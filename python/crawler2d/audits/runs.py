@@ -33,6 +33,7 @@ TRIED = ("torque x 2", "friction x 2")
 _GRAVITY = 9.81
 _FROUDE = 0.2
 _LENGTHS = 15.0
+_FRESH = 2**63  # added to a seed
 
 
 def scenario_of(
@@ -85,11 +86,21 @@ class Runs:
         robots: Mapping[str, Robot],
         grounds: Mapping[str, Terrain],
         *,
-        seed: int | None = None,
-        repeats: int | None = None,
+        is_confirming: bool = False,
     ) -> xarray.Dataset:
-        """Simulate every robot on every ground: by `model`, `terrain`, `sample`, `repeat`."""
+        """Simulate every robot on every ground: by `model`, `terrain`, `sample`, `repeat`.
+
+        A confirmation takes half of the samples, once each, and draws that nothing else has had.
+        """
+        samples, repeats, seed = self.samples, self.repeats, self.seed
+        if is_confirming:
+            samples, seed = -(-samples // 2), (seed + _FRESH) % 2**64
+            repeats = 1 if self.unknown else repeats
         drive = self.scenario.drive
+        for robot in robots.values():
+            for ground in grounds.values():
+                # A broken rule is an error here; a run that only its draws break is recorded.
+                self.scenario.replace({"robot": raised(robot, drive), "terrain": ground}).validate()
         models: dict[Label, Mapping[str, Any]] = {
             name: {"robot": raised(robot, drive)} for name, robot in robots.items()
         }
@@ -99,18 +110,18 @@ class Runs:
         table = tabulate(
             self.scenario,
             [Axis("model", ("robot",), models), Axis("terrain", ("terrain",), terrains)],
-            repeats=self.repeats if repeats is None else repeats,
-            seed=self.seed if seed is None else seed,
+            repeats=repeats,
+            seed=seed,
             vary=self.vary,
             unknown=self.unknown,
-            samples=self.samples,
+            samples=samples,
             trials=TRIED,
             store=self.store,
             executor=self.executor,
             wall_time=True,
             threads=self.threads,
             progress=self.progress,
-            on_error="raise",
+            on_error="record",
         )
         if "sample" in table.dims:
             return table

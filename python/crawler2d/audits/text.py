@@ -7,7 +7,10 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from crawler2d.audits.verdicts import SEIZES
+from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform
 from crawler2d.variation.ranges import Ranges
 
@@ -84,6 +87,10 @@ def _verdicts(audit: Audited) -> Iterator[str]:
     )
     yield f"Verdicts: {many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
     yield from _wrapped(f"belt: {audit.belt.reason}")
+    ends = audit.table["outcome"].values
+    lost = int(np.isin(ends, NO_RESULT).sum())
+    if lost:
+        yield from _wrapped(f"{lost} of {ends.size} runs have no result: see `error` in the table")
     rows = [("obstacle", "clears", "seizes", "belt clears", "most often", "verdict")]
     rows += [
         (
@@ -108,7 +115,8 @@ _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set
 
 def _jams(jammed: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """Say where it is jammed, and what frees it: one row for each obstacle."""
-    rows = [("obstacle", "between wheels", "runs", "friction", "freed there by")]
+    head = ("obstacle", "between wheels", "runs", "friction", "freed there by")
+    rows: list[tuple[str, ...]] = [head]
     for each in jammed:
         low, high = each.friction
         at = "" if math.isnan(low) else f"{low:.2f}-{high:.2f}"
