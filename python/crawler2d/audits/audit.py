@@ -192,7 +192,9 @@ def audit(
         table = runs.table({OWN: own, BELT: belt.robot}, grounds)
         verdicts = verdicts_of(table, list(grounds))
         is_seizing = any(each.word == "seizes" for each in verdicts)
-        found = repaired(own, belt, grounds, verdicts, runs) if repair and is_seizing else None
+        found = None
+        if repair and is_seizing:
+            found = repaired(own, belt, grounds=grounds, verdicts=verdicts, table=table, runs=runs)
     return Audit(
         robot=own,
         reading=read,

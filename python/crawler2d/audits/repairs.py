@@ -11,6 +11,7 @@ import numpy as np
 from crawler2d.audits.beside import Belt
 from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
 from crawler2d.audits.runs import Runs, raised
+from crawler2d.audits.screen import screened
 from crawler2d.audits.share import Share
 from crawler2d.audits.verdicts import OWN, Verdict, shares
 from crawler2d.parameters.robot import Robot
@@ -77,7 +78,7 @@ class Repaired(NamedTuple):
     repairs : tuple of Repair
         The best of each kind, those that are confirmed first, the least changed first.
     tried : int
-        Candidates that were simulated.
+        Candidates that were simulated; of a kind of which none passed there is no repair.
     before : mapping of str to Share
         How often the robot as it is seizes in the same fresh runs, by obstacle.
     table : xarray.Dataset
@@ -94,13 +95,16 @@ class Repaired(NamedTuple):
 def repaired(
     robot: Robot,
     belt: Belt,
+    *,
     grounds: Mapping[str, Terrain],
     verdicts: Sequence[Verdict],
+    table: xarray.Dataset,
     runs: Runs,
 ) -> Repaired:
     """Search for changes that end the seizures of a robot.
 
-    Of round wheels and of gear wheels the least changed is searched for that clears 95 % of its
+    Candidates first drive the runs in which the robot seized; see `screened`. Of those that pass,
+    round wheels and gear wheels apart, the least changed is searched for that clears 95 % of its
     runs on the four obstacles that seize most; see `crawler2d.studies.search`. Then these, the belt
     and the robot as it is drive over all obstacles with draws that nothing before has had.
 
@@ -114,6 +118,8 @@ def repaired(
         All obstacles.
     verdicts : sequence of Verdict
         What was found on them.
+    table : xarray.Dataset
+        The runs behind these.
     runs : Runs
         How runs are made.
     """
@@ -121,9 +127,10 @@ def repaired(
     worst = sorted(seizing, key=lambda each: -each.seized.rate)[:_GROUNDS]
     carriers = {"chassis" if each.carrier == "chassis" else "flippers" for each in seizing}
     every = candidates_of(robot, carriers)
+    passed = screened(every, table, worst[0].obstacle, runs.threads)
     chosen = []
     for kind in ("wheels", "gears"):
-        space = [each for each in every if each.kind == kind]
+        space = [each for each in passed if each.kind == kind]
         if space:
             chosen.append(_searched(space, {v.obstacle: grounds[v.obstacle] for v in worst}, runs))
     if belt.robot != robot:
@@ -133,11 +140,11 @@ def repaired(
     models = {OWN: robot, **{each.what: each.robot for each in chosen}}
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     level = Flat(length=5.0 * robot.outline.axle_distance)
-    table = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
-    found = [_judged(table, each, list(grounds), seizing) for each in chosen]
+    fresh = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
+    found = [_judged(fresh, each, list(grounds), seizing) for each in chosen]
     order = sorted(found, key=lambda each: (not each.confirmed, each.change))
-    before = {name: shares(table, OWN, name)[1] for name in grounds}
-    return Repaired(tuple(order), len(every) + (belt.robot != robot), before, table)
+    before = {name: shares(fresh, OWN, name)[1] for name in grounds}
+    return Repaired(tuple(order), len(every) + (belt.robot != robot), before, fresh)
 
 
 def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -> Candidate:
