@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 from typing import Any
 
 import numpy as np
@@ -224,7 +225,7 @@ def test_the_belt_follows_the_outlines_where_these_are_the_models_own() -> None:
     assert belt.flippers.track == c2d.BeltTrack()
 
 
-@pytest.mark.parametrize("track", [c2d.HybridWheels([(-0.18, 0, 0.06), (0.18, 0, 0.06)])])
+@pytest.mark.parametrize("track", [c2d.HybridWheels(((-0.18, 0, 0.06), (0.18, 0, 0.06)))])
 def test_round_placed_wheels_it_is_closed(track: c2d.HybridWheels) -> None:
     belt = belt_of(SEIZING.with_track(track))
     assert belt.robot.track == c2d.ClosedTrack(track)
@@ -262,7 +263,7 @@ def test_arms_that_take_the_robots_track_keep_their_wheels() -> None:
 
 
 def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
-    placed = c2d.HybridWheels([(-0.18, 0, 0.064), (-0.06, 0, 0.064), (0.18, 0, 0.064)])
+    placed = c2d.HybridWheels(((-0.18, 0, 0.064), (-0.06, 0, 0.064), (0.18, 0, 0.064)))
     (first, *_) = candidates_of(SEIZING.with_track(placed), ["chassis"])
     assert first.what == "chassis: one wheel more, between wheels 1 and 2"
     assert first.robot.track.placements[2] == pytest.approx((0.06, 0.0, 0.064))  # type: ignore[union-attr]
@@ -346,7 +347,7 @@ def test_the_command_writes_json(capsys: Any) -> None:
     "arguments",
     [
         ["missing.sdf"],
-        [str(FILES / "cart.urdf"), "--samples", "-1"],
+        [str(FILES / "cart.urdf"), "--samples", "0"],
         [__file__],
         ["x", "--package", "a"],
     ],
@@ -378,6 +379,8 @@ def test_the_command_ends_at_ctrl_c(capsys: Any, monkeypatch: Any) -> None:
     status, _, err = run(capsys, "any.sdf")
     assert status == 130
     assert "runs.sqlite keeps them" in err
+    monkeypatch.setattr(command, "audit", Mock(side_effect=KeyboardInterrupt))
+    assert run(capsys, "any.sdf")[::2] == (130, "interrupted\n")
 
 
 def test_reading_an_audited_file_is_quiet() -> None:

@@ -135,7 +135,8 @@ def test_the_interval_holds_the_rate_when_samples_differ_in_part() -> None:
 def test_runs_without_a_result_are_not_counted() -> None:
     made = np.array([[True, False], [False, False], [True, True]])
     share = share_of(np.array([[True, True], [True, True], [False, False]]), made)
-    assert (share.runs, share.samples, share.rate) == (3, 2, pytest.approx(1 / 3))
+    assert (share.runs, share.samples) == (3, 2)
+    assert share.rate == pytest.approx(1 / 3)
 
 
 def test_the_rule_asks_in_the_order_of_its_words() -> None:

@@ -17,7 +17,6 @@ from crawler2d.audits.plain import plain_of
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
 from crawler2d.reading.meshes import MeshRule
-from crawler2d.runs.interrupted import BatchInterrupted
 
 __all__ = ["add_arguments", "run"]
 
@@ -56,16 +55,16 @@ def run(options: argparse.Namespace) -> int:
     try:
         found = audit(
             options.file,
-            samples=options.samples or (_QUICK if options.quick else SAMPLES),
-            repeats=options.repeats or (1 if options.quick else REPEATS),
+            samples=_given(options.samples, _QUICK if options.quick else SAMPLES),
+            repeats=_given(options.repeats, 1 if options.quick else REPEATS),
             seed=options.seed,
             repair=not (options.quick or options.no_repairs),
             store=options.store,
             threads=options.threads,
             **_reading(options),
         )
-    except BatchInterrupted as interrupt:
-        print(interrupt, file=sys.stderr)
+    except KeyboardInterrupt as interrupt:
+        print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
         print(f"audit: {error}", file=sys.stderr)
@@ -75,6 +74,10 @@ def run(options: argparse.Namespace) -> int:
     else:
         print(found.in_words)
     return 1 if found.seizes else 0
+
+
+def _given(number: int | None, usual: int) -> int:
+    return usual if number is None else number
 
 
 def _reading(options: argparse.Namespace) -> dict[str, Any]:
