@@ -4,8 +4,8 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from unittest.mock import Mock
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -333,7 +333,7 @@ def test_the_command_prints_the_short_form(capsys: Any) -> None:
     status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
     assert status in (0, 1)
     assert out.startswith("cart: 3 round wheels in a line")
-    assert "Verdicts: 2 robots on floors, 1 runs each" in out
+    assert "Verdicts: 2 robots on floors, 1 run each" in out
 
 
 def test_the_command_writes_json(capsys: Any) -> None:

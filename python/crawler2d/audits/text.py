@@ -82,9 +82,8 @@ def _pockets(audit: Audited) -> Iterator[str]:
 
 def _verdicts(audit: Audited) -> Iterator[str]:
     samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
-    many = (
-        f"{samples} robots on floors, {repeats} runs each" if audit.unknown else f"{samples} runs"
-    )
+    each = "1 run" if repeats == 1 else f"{repeats} runs"
+    many = f"{samples} robots on floors, {each} each" if audit.unknown else f"{samples} runs"
     yield f"Verdicts: {many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
     yield from _wrapped(f"belt: {audit.belt.reason}")
     ends = audit.table["outcome"].values

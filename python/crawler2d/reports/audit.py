@@ -20,7 +20,7 @@ from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
 
-_QUICK = 20
+_QUICK = 40
 """Samples of a quick audit, each once."""
 
 
