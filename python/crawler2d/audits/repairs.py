@@ -78,7 +78,9 @@ class Repaired(NamedTuple):
     repairs : tuple of Repair
         The best of each kind, those that are confirmed first, the least changed first.
     tried : int
-        Candidates that were simulated; of a kind of which none passed there is no repair.
+        Candidates that were simulated.
+    hopeless : tuple of str
+        Kinds of which no candidate passed the screen.
     before : mapping of str to Share
         How often the robot as it is seizes in the same fresh runs, by obstacle.
     table : xarray.Dataset
@@ -88,6 +90,7 @@ class Repaired(NamedTuple):
 
     repairs: tuple[Repair, ...]
     tried: int
+    hopeless: tuple[str, ...]
     before: Mapping[str, Share]
     table: xarray.Dataset
 
@@ -128,10 +131,12 @@ def repaired(
     carriers = {"chassis" if each.carrier == "chassis" else "flippers" for each in seizing}
     every = candidates_of(robot, carriers)
     passed = screened(every, table, worst[0].obstacle, runs.threads)
-    chosen = []
+    chosen, hopeless = [], []
     for kind in ("wheels", "gears"):
         space = [each for each in passed if each.kind == kind]
-        if space:
+        if not space and any(each.kind == kind for each in every):
+            hopeless.append(kind)
+        elif space:
             chosen.append(_searched(space, {v.obstacle: grounds[v.obstacle] for v in worst}, runs))
     if belt.robot != robot:
         what = f"belts moved by a track plugin ({belt.reason})"
@@ -144,7 +149,13 @@ def repaired(
     found = [_judged(fresh, each, list(grounds), seizing) for each in chosen]
     order = sorted(found, key=lambda each: (not each.confirmed, each.change))
     before = {name: shares(fresh, OWN, name)[1] for name in grounds}
-    return Repaired(tuple(order), len(every) + (belt.robot != robot), before, fresh)
+    return Repaired(
+        repairs=tuple(order),
+        tried=len(every) + (belt.robot != robot),
+        hopeless=tuple(hopeless),
+        before=before,
+        table=fresh,
+    )
 
 
 def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -> Candidate:

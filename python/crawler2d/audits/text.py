@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.audits.names import names_of
 from crawler2d.audits.verdicts import SEIZES
 from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform
@@ -107,6 +108,7 @@ def _verdicts(audit: Audited) -> Iterator[str]:
     if jammed:
         yield "  where most of its seizures are, and how many a change frees there:"
         yield from _columns(_jams(jammed))
+        yield from _names(audit, jammed)
 
 
 _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
@@ -127,6 +129,17 @@ def _jams(jammed: Sequence[Verdict]) -> list[tuple[str, ...]]:
         place = f"{each.where} of the {each.carrier}"
         rows.append((each.obstacle, place, "/".join(map(str, each.there)), at, ", ".join(freed)))
     return rows
+
+
+def _names(audit: Audited, jammed: Sequence[Verdict]) -> Iterator[str]:
+    """Say what the file calls the wheels between which it is jammed."""
+    if audit.reading is None:
+        return
+    names = names_of(audit.robot, audit.reading)
+    bodies = {int(body) for each in jammed for body in each.where.split("-")}
+    called = [f"{body} is {names[body]}" for body in sorted(bodies) if body in names]
+    if called:
+        yield from _wrapped(f"on the left, wheel {', '.join(called)}")
 
 
 def _repairs(audit: Audited) -> Iterator[str]:
@@ -158,6 +171,8 @@ def _repairs(audit: Audited) -> Iterator[str]:
         yield f"Repairs: none of {audit.repaired.tried} candidates was confirmed in fresh runs"
     for each in audit.repairs:
         yield from _wrapped(_repair(each, seizing))
+    for kind in audit.repaired.hopeless:
+        yield f"  {kind}: no candidate cleared most of three runs in which it seized"
 
 
 def _repair(repair: Repair, seizing: Sequence[str]) -> str:
