@@ -41,6 +41,7 @@ from crawler2d.parameters.track import (
     SegmentalTrack,
 )
 from crawler2d.presets import robots, terrains, unknowns
+from crawler2d.reading.reading import Reading, read_robot
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -81,6 +82,7 @@ __all__ = [
     "LineOfWheels",
     "Mechanism",
     "Outcome",
+    "Reading",
     "Robot",
     "RoundWheel",
     "Run",
@@ -103,6 +105,7 @@ __all__ = [
     "newcombe",
     "newcombe_paired",
     "rate",
+    "read_robot",
     "robots",
     "scaled",
     "sequential",

@@ -1,0 +1,237 @@
+"""Flippers: what turns about the end axles, on both sides and at one end or both."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
+from crawler2d.reading.belly import silhouette
+from crawler2d.reading.belts import belt_ends
+from crawler2d.reading.elements import Where
+from crawler2d.reading.parts import Arm, Runner
+from crawler2d.reading.poses import Array
+from crawler2d.reading.sides import Pair, paired
+from crawler2d.reading.tracks import Base, wheels_of
+from crawler2d.reading.view import SideView
+
+__all__ = ["ArmPair", "AtEnd", "arm_pairs", "at_end", "refuse_unlike"]
+
+_NEAR = 0.05
+"""[-] How far a pivot may be from the end axle, as a share of the axle distance."""
+
+_ALIKE = 0.01
+"""[-] By how much the masses of two arms may differ, as a share: scales and cables."""
+
+_SAME_ANGLE = 1e-3
+"""[rad] By how much the angles of two arms may differ: files round them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ArmPair:
+    """The left and the right flipper at one end.
+
+    Parameters
+    ----------
+    arms : tuple of Arm
+        Two, or one whose joint turns both.
+    pivot : ndarray, shape (2,)
+        [m] In the side view.
+    pairs : tuple of Pair
+        Wheels or drums, from the pivot to the tip.
+    is_belt : bool
+        Whether a plugin moves a belt round them.
+    mass : float
+        [kg] Of one flipper.
+    """
+
+    arms: tuple[Arm, ...]
+    pivot: Array
+    pairs: tuple[Pair, ...]
+    is_belt: bool
+    mass: float
+
+    @property
+    def at(self) -> Where:
+        """Line of its joint."""
+        return self.arms[0].joint.at
+
+    def refuse(self, value: object, rule: str) -> NoReturn:
+        """Raise the error that this pair breaks a rule."""
+        raise ScenarioError(f"{self.at}: joint[{self.arms[0].joint.name}]", value, rule)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class AtEnd:
+    """A pair of flippers as a robot has them, at the front or at the rear.
+
+    Parameters
+    ----------
+    pair : ArmPair
+        What it was made from.
+    length, root_radius, tip_radius, angle : float
+        [m] and [rad] As in `Flippers`.
+    off : float
+        [m] Distance of its pivot from the end axle.
+    track : Track
+        Model of its track.
+    has_root : bool
+        Whether a wheel or drum is at the pivot; without one, its radius is that of the tip.
+    """
+
+    pair: ArmPair
+    length: float
+    root_radius: float
+    tip_radius: float
+    angle: float
+    off: float
+    track: Track
+    has_root: bool
+
+
+def arm_pairs(
+    arms: list[Arm], view: SideView, *, middle: float, tolerance: float, at: Where
+) -> list[ArmPair]:
+    """Pair the flippers, and what each carries.
+
+    Raises
+    ------
+    ScenarioError
+        If a flipper has no partner, has wheels and drums, differs in mass from its partner, or has
+        shapes that neither turn nor are moved and reach out of its wheels.
+    """
+    pairs = []
+    waiting = list(arms)
+    while waiting:
+        arm = waiting.pop(0)
+        together: tuple[Arm, ...] = (arm,)
+        if len({runner.z > middle for runner in arm.runners}) == 1:  # it has one side only
+            partner = _partner(arm, waiting, tolerance)
+            waiting.remove(partner)
+            together = (arm, partner)
+        pairs.append(_pair(together, view, middle=middle, tolerance=tolerance, at=at))
+    return pairs
+
+
+def _partner(arm: Arm, others: list[Arm], tolerance: float) -> Arm:
+    for other in others:
+        if np.abs(other.pivot[:2] - arm.pivot[:2]).max() <= tolerance:
+            return other
+    path = f"{arm.joint.at}: joint[{arm.joint.name}]"
+    value = f"a pivot at x = {arm.pivot[0]:.4g} m, y = {arm.pivot[1]:.4g} m"
+    rule = f"must have a partner on the other side, within {1e3 * tolerance:g} mm"
+    raise ScenarioError(path, value, rule)
+
+
+def _pair(
+    arms: tuple[Arm, ...], view: SideView, *, middle: float, tolerance: float, at: Where
+) -> ArmPair:
+    runners = [runner for arm in arms for runner in arm.runners]
+    found = paired(runners, middle=middle, tolerance=tolerance, at=at)
+    pivot = np.mean([arm.pivot[:2] for arm in arms], axis=0)
+    found.sort(key=lambda pair: math.hypot(pair.x - pivot[0], pair.y - pivot[1]))
+    masses = [sum(link.mass for link in arm.links) for arm in arms]
+    pair = ArmPair(
+        arms=arms,
+        pivot=pivot,
+        pairs=tuple(found),
+        is_belt=runners[0].joint is None,
+        mass=sum(masses) / 2.0,
+    )
+    if len({runner.joint is None for runner in runners}) > 1:
+        pair.refuse("wheels and drums", "must have either wheels or a moved belt")
+    if max(masses) - min(masses) > _ALIKE * max(masses):
+        value = " and ".join(f"{mass:.4g} kg" for mass in masses)
+        pair.refuse(value, f"must have flippers whose masses differ by at most {_ALIKE:.0%}")
+    for arm in arms:
+        _refuse_bare(arm, runners, view, tolerance)
+    return pair
+
+
+def _refuse_bare(arm: Arm, runners: list[Runner], view: SideView, tolerance: float) -> None:
+    """Refuse shapes of an arm that could touch the ground and do not move."""
+    for _, shape in arm.shapes:
+        flat = silhouette(shape, view)
+        hidden = any(
+            np.hypot(flat[:, 0] - r.x, flat[:, 1] - r.y).max() <= r.radius + tolerance
+            for r in runners
+        )
+        if not hidden:
+            path = f"{shape.at}: collision[{shape.name}]"
+            rule = "must lie within a wheel of its flipper: arms touch with wheels or belts only"
+            raise ScenarioError(path, shape.kind, rule)
+
+
+def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> AtEnd:
+    """Describe a pair of flippers as a robot has them.
+
+    Raises
+    ------
+    ScenarioError
+        If it pivots far from the end axle, or its belt does not run round the pivot.
+    """
+    sign = 1.0 if is_front else -1.0
+    off = math.hypot(*(pair.pivot - (base.front if is_front else base.rear)))
+    if off > _NEAR * base.length:
+        rule = f"must pivot within {_NEAR:.0%} of the axle distance from an end axle"
+        pair.refuse(f"{1e3 * off:.4g} mm from it", rule)
+    root, tip = pair.pairs[0], pair.pairs[-1]
+    places = base.of(np.array([[p.x, p.y] for p in pair.pairs]))
+    pivot = base.of(pair.pivot[None, :])[0]
+    from_pivot = np.hypot(*(places - pivot).T)
+    has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= tolerance)
+    if pair.is_belt:
+        bars = [bar for arm in pair.arms for bar in arm.bars]
+        ends = belt_ends(list(pair.pairs), bars, at=pair.at)
+        if not has_root or {root, tip} != set(ends):
+            pair.refuse("a belt beside the pivot", "must have a belt from the pivot to the tip")
+    out = places[-1] - (places[0] if has_root else pivot)
+    return AtEnd(
+        pair=pair,
+        length=math.hypot(*out),
+        root_radius=root.radius if has_root else tip.radius,
+        tip_radius=tip.radius,
+        angle=math.atan2(out[1], sign * out[0]),
+        off=off,
+        track=BeltTrack() if pair.is_belt else _wheels(pair, is_front=is_front, has_root=has_root),
+        has_root=has_root,
+    )
+
+
+def _wheels(pair: ArmPair, *, is_front: bool, has_root: bool) -> LineOfWheels | HybridWheels:
+    """Return the wheels of an arm in its frame, which is midway along it, x forward."""
+    tip = np.array([pair.pairs[-1].x, pair.pairs[-1].y])
+    pivot = np.array([pair.pairs[0].x, pair.pairs[0].y]) if has_root else pair.pivot
+    order = list(pair.pairs if is_front else reversed(pair.pairs))
+    frame = Base(pivot, tip) if is_front else Base(tip, pivot)
+    return wheels_of(order, frame, is_whole=has_root)
+
+
+def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
+    """Refuse flippers at both ends that differ: a robot has one kind.
+
+    Raises
+    ------
+    ScenarioError
+        If they differ.
+    """
+    for name, allowed in (
+        ("length", tolerance),
+        ("root_radius", tolerance),
+        ("tip_radius", tolerance),
+        ("angle", _SAME_ANGLE),
+    ):
+        pair = getattr(front, name), getattr(rear, name)
+        if abs(pair[0] - pair[1]) > allowed:
+            rule = f"must be alike at both ends, within {allowed:g}"
+            rear.pair.refuse(f"{name} {pair[1]:.6g} and {pair[0]:.6g}", rule)
+    if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
+        value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
+        rear.pair.refuse(value, f"must be alike at both ends, within {_ALIKE:.0%}")
+    if front.track != rear.track or isinstance(front.track, HybridWheels):
+        rule = "must be alike at both ends and have evenly spaced wheels, or a belt"
+        rear.pair.refuse(f"{rear.track!r} and {front.track!r}", rule)

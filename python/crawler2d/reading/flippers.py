@@ -1,0 +1,100 @@
+"""The flippers of a robot, with the sources of their figures."""
+
+from __future__ import annotations
+
+import math
+
+from crawler2d.parameters.flippers import Flippers
+from crawler2d.reading.arms import ArmPair, AtEnd, at_end, refuse_unlike
+from crawler2d.reading.drive import FASTEST, MARGIN, WEIGHT, Note
+from crawler2d.reading.sources import estimate, lines
+from crawler2d.reading.telling import Telling, place_of
+from crawler2d.reading.tracks import Base
+
+__all__ = ["arms_at", "flippers_of"]
+
+_RATE = 1.0  # [rad/s] that of MARV's flippers
+
+
+def arms_at(told: Telling, arms: list[ArmPair], base: Base, tolerance: float) -> dict[str, AtEnd]:
+    """Return the flippers by end, the front first."""
+    found: dict[str, AtEnd] = {}
+    for pair in arms:
+        to_front, to_rear = (math.hypot(*(pair.pivot - end)) for end in (base.front, base.rear))
+        end = "front" if to_front < to_rear else "rear"
+        if end in found:
+            pair.refuse(f"two pairs at the {end}", "must be the only flippers at its end")
+        found[end] = at_end(pair, base, is_front=end == "front", tolerance=tolerance)
+        if found[end].off > tolerance:
+            reason = f"pivots {1e3 * found[end].off:.3g} mm off the end axle, here on it"
+            told.doubts.append((f"joint[{pair.arms[0].joint.name}]", end, reason))
+        locked = [arm.joint.name for arm in pair.arms if arm.joint.is_locked]
+        if locked:
+            told.notes.append(f"{', '.join(locked)}: locked in the file, here flippers that turn")
+    if len(found) == 2:
+        refuse_unlike(found["front"], found["rear"], tolerance)
+    return {end: found[end] for end in ("front", "rear") if end in found}
+
+
+def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flippers | None:
+    """Return the flippers with the sources of their figures."""
+    if not by_end:
+        told.note("robot.flippers", f"{told.at}: none")
+        return None
+    ends = list(by_end.values())
+    first, pairs = ends[0], [end.pair for end in ends]
+    shown = [r for pair in pairs for each in (pair.pairs[0], pair.pairs[-1]) for r in each.both]
+    joints = [arm.joint.at for pair in pairs for arm in pair.arms]
+    told.note("robot.flippers.length", lines([place_of(r) for r in shown]))
+    for name, index in (("root_radius", 0), ("tip_radius", -1)):
+        sizes = [r.shape.size_at for pair in pairs for r in pair.pairs[index].both]
+        told.note(f"robot.flippers.{name}", lines(sizes))
+    if not first.has_root:
+        rule = "that of the tip: no wheel is at the pivot"
+        told.note("robot.flippers.root_radius", estimate(rule))
+    of_arms = [link for pair in pairs for arm in pair.arms for link in arm.links]
+    told.note("robot.flippers.mass", lines([link.mass_at for link in of_arms], "sum"))
+    told.note("robot.flippers.ends", lines(joints))
+    told.note(
+        "robot.flippers.angle", lines([arm.links[0].pose_at for p in pairs for arm in p.arms])
+    )
+    radii = [r.shape.size_at for pair in pairs for each in pair.pairs for r in each.both]
+    told.note("robot.flippers.track", lines(radii, "radii"))
+    rate, torque = _limits(ends, mass=mass, note=told.note)
+    return Flippers(
+        length=first.length,
+        root_radius=first.root_radius,
+        tip_radius=first.tip_radius,
+        mass=first.pair.mass,
+        ends="both" if len(ends) == 2 else ("front" if "front" in by_end else "rear"),
+        angle=first.angle,
+        rate_limit=rate,
+        torque_limit=torque,
+        track=first.track,
+    )
+
+
+def _limits(ends: list[AtEnd], *, mass: float, note: Note) -> tuple[float, float]:
+    """Return rate [rad/s] and torque [N m] of one flipper."""
+    joints = [arm.joint for end in ends for arm in end.pair.arms]
+    shares = [2.0 if len(end.pair.arms) == 1 else 1.0 for end in ends for _ in end.pair.arms]
+    length = max(end.length for end in ends)
+    rate, torque = _RATE, MARGIN * 0.5 * mass * WEIGHT * length / 2.0
+    rates = [
+        joint.velocity
+        for joint in joints
+        if joint.velocity and joint.velocity <= FASTEST and not joint.is_locked
+    ]
+    if len(rates) == len(joints):
+        rate = min(rates)
+        note("robot.flippers.rate_limit", lines([joint.velocity_at for joint in joints]))
+    else:
+        note("robot.flippers.rate_limit", estimate("that of MARV: the file has no limit"))
+    efforts = [joint.effort for joint in joints if joint.effort and not joint.is_locked]
+    if len(efforts) == len(joints):
+        torque = min(effort / share for effort, share in zip(efforts, shares, strict=True))
+        note("robot.flippers.torque_limit", lines([joint.effort_at for joint in joints]))
+    else:
+        rule = "1.6 times what lifts half of the robot with both tips: the file has no limit"
+        note("robot.flippers.torque_limit", estimate(rule))
+    return rate, torque

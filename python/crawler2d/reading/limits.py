@@ -1,0 +1,54 @@
+"""What a child process may use, and how it answers: JSON in, JSON out."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from crawler2d.errors import ScenarioError
+
+__all__ = ["serve"]
+
+_SECONDS = 2  # of computing, after the imports
+_BYTES = 400_000_000  # of memory, beyond what the imports took
+
+
+def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> None:
+    """Answer the question on standard input, within limits.
+
+    Parameters
+    ----------
+    prepare : callable
+        Imports what is needed and returns what answers. It runs before the limits hold.
+    """
+    out, sys.stdout = sys.stdout, sys.stderr  # what a library prints is no answer
+    try:
+        work = prepare()
+        _limit()
+        answer = work(json.loads(sys.stdin.read()))
+    except ImportError as error:
+        answer = {"missing": str(error)}
+    except ScenarioError as error:
+        answer = {"path": error.path, "value": error.value, "rule": error.rule}
+    out.write(json.dumps(answer))
+    out.flush()
+
+
+def _limit() -> None:
+    """Set the limits, where the system knows such."""
+    with contextlib.suppress(ImportError):
+        import resource  # noqa: PLC0415 - not on Windows, where only the patience of the parent holds
+
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        seconds = int(used.ru_utime + used.ru_stime) + 1 + _SECONDS
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        with contextlib.suppress(OSError, ValueError):
+            with open("/proc/self/statm", encoding="ascii") as file:
+                pages = int(file.read().split()[0])
+            most = pages * os.sysconf("SC_PAGE_SIZE") + _BYTES
+            resource.setrlimit(resource.RLIMIT_AS, (most, most))

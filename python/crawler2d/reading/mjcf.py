@@ -1,0 +1,228 @@
+"""MJCF as a neutral tree, by MuJoCo's own parser in a child process."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.reading.child import answered
+from crawler2d.reading.elements import Element, Where
+from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.order import checked
+from crawler2d.reading.poses import Pose, from_quaternion, unit
+from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
+
+__all__ = ["read_mjcf"]
+
+Plain = dict[str, Any]
+
+
+def read_mjcf(root: Element, path: Path, model: str | None, meshes: Meshes) -> Tree:
+    """Read the robot of an MJCF file: what hangs on one free joint.
+
+    Parameters
+    ----------
+    root : Element
+        Of the file.
+    path : Path
+        The file, which MuJoCo reads for itself.
+    model : str, optional
+        Name of the body with the free joint; None takes the only one.
+    meshes : Meshes
+        What is done with meshes.
+
+    Returns
+    -------
+    Tree
+        The robot, in the frame of its root body.
+
+    Raises
+    ------
+    ScenarioError
+        If MuJoCo does not compile it, or no body floats.
+    ImportError
+        If MuJoCo is missing; the message names the extra to install.
+    """
+    _refuse_includes(root)
+    question = {"path": str(path.resolve()), "file": path.name}
+    plain = answered(
+        "crawler2d.reading.mjcf_child", question, file=path.name, folder=path.resolve().parent
+    )
+    if not _finite(plain):
+        raise ScenarioError(path.name, "a number", "must have finite numbers only")
+    return _Model(plain, root.where, meshes).tree(model)
+
+
+def _refuse_includes(root: Element) -> None:
+    """Refuse files in several parts, whose lines would be those of any of them."""
+    for element in root.within():
+        if element.tag == "include":
+            rule = "must hold the robot itself: read the included file"
+            element.refuse(element.attributes.get("file", ""), rule)
+
+
+def _finite(value: Any) -> bool:
+    if isinstance(value, dict):
+        return all(_finite(v) for v in value.values())
+    if isinstance(value, list):
+        return all(_finite(v) for v in value)
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+class _Model:
+    """What MuJoCo told about a model, on its way to a tree."""
+
+    def __init__(self, plain: Plain, at: Where, meshes: Meshes) -> None:
+        self.plain = plain
+        self.at = at
+        self.meshes = meshes
+        self.bodies: list[Plain] = plain["bodies"]
+        self.joints: dict[int, list[Plain]] = {}
+        for joint in plain["joints"]:
+            self.joints.setdefault(joint["body"], []).append(joint)
+        self.motors = {motor["joint"]: motor for motor in plain["motors"]}
+
+    def where(self, item: Plain) -> Where:
+        return Where(self.at.file, item["line"] or self.at.line)
+
+    def tree(self, name: str | None) -> Tree:
+        root = self.root(name)
+        poses = {root: Pose()}
+        names = [(self.bodies[root]["name"], self.where(self.bodies[root]))]
+        joints: dict[str, Joint] = {}
+        for number, body in enumerate(self.bodies):  # parents come before their children
+            if number and body["parent"] in poses:
+                inner = from_quaternion(body["turn"], body["place"])
+                poses[number] = poses[body["parent"]].then(inner)
+                names.append((body["name"], self.where(body)))
+                joints[body["name"]] = self.joint(number, poses[number])
+        ends = [(j.name, j.parent, j.child, j.at) for j in joints.values()]
+        order = {each: rank for rank, each in enumerate(checked(names, ends, self.at))}
+        links = [self.link(number, pose) for number, pose in poses.items()]
+        return Tree(
+            name=self.plain["name"],
+            format="MJCF",
+            file=self.at.file,
+            links=tuple(sorted(links, key=lambda link: order[link.name])),
+            joints=joints,
+            driven={name: self.where(motor) for name, motor in self.motors.items() if name},
+            at=self.at,
+        )
+
+    def root(self, name: str | None) -> int:
+        """Return the body that floats."""
+        floating = [
+            number
+            for number, joints in self.joints.items()
+            if [joint["kind"] for joint in joints] == ["free"]
+        ]
+        called = [self.bodies[number]["name"] for number in floating]
+        if name is not None:
+            if name not in called:
+                raise ScenarioError("model", name, f"must be one of {', '.join(called[:10])}")
+            return floating[called.index(name)]
+        if len(floating) != 1:
+            rule = "must have one body with a free joint, or model= must name one"
+            raise ScenarioError(str(self.at), ", ".join(called[:10]) or "none", rule)
+        return floating[0]
+
+    def joint(self, number: int, pose: Pose) -> Joint:
+        body = self.bodies[number]
+        child, parent = body["name"], self.bodies[body["parent"]]["name"]
+        found = self.joints.get(number, [])
+        if not found:
+            return Joint(
+                name=f"of {child}",
+                kind="fixed",
+                parent=parent,
+                child=child,
+                place=pose.place,
+                axis=pose.turn[:, 2],
+                at=self.where(body),
+                effort_at=self.where(body),
+                velocity_at=self.where(body),
+            )
+        if len(found) > 1:
+            path = f"{self.where(body)}: body[{child}]"
+            raise ScenarioError(path, f"{len(found)} joints", "must have at most one joint")
+        (joint,) = found
+        motor = self.motors.get(joint["name"], {})
+        lower, upper = joint["range"] or (-math.inf, math.inf)
+        efforts = [e for e in (joint["effort"], motor.get("effort")) if e is not None and e >= 0.0]
+        axis = unit(pose.along(joint["axis"]))
+        motor_at = self.where(motor or joint)
+        return Joint(
+            name=joint["name"],
+            kind=joint["kind"],
+            parent=parent,
+            child=child,
+            place=pose.at(joint["place"]),
+            axis=pose.turn[:, 2] if axis is None else axis,
+            lower=lower,
+            upper=upper,
+            effort=min(efforts, default=None),
+            velocity=motor.get("velocity"),
+            stiffness=joint["stiffness"],
+            at=self.where(joint),
+            effort_at=motor_at if motor.get("effort") is not None else self.where(joint),
+            velocity_at=motor_at,
+        )
+
+    def link(self, number: int, pose: Pose) -> Link:
+        body = self.bodies[number]
+        axes = pose.then(from_quaternion(body["axes"], body["center"]))
+        shapes = (self.shape(s, pose) for s in self.plain["shapes"] if s["body"] == number)
+        return Link(
+            name=body["name"],
+            pose=pose,
+            mass=body["mass"],
+            center=axes.place,
+            inertia=axes.turn @ np.diag(body["inertia"]) @ axes.turn.T,
+            shapes=tuple(shape for shape in shapes if shape is not None),
+            at=self.where(body),
+            pose_at=self.where(body),
+            mass_at=self.where(body),
+        )
+
+    def shape(self, plain: Plain, body: Pose) -> Shape | None:
+        if not plain["collides"]:
+            return None
+        at = self.where(plain)
+        kind, sizes = plain["kind"], plain["size"]
+        pose = body.then(from_quaternion(plain["turn"], plain["place"]))
+        points = np.zeros((0, 3))
+        if kind == "mesh":
+            if self.meshes.rule != "hull":
+                stand_in = Element("geom", {"name": plain["name"]}, None, at)
+                made = Shape(
+                    name=plain["name"], kind="mesh", pose=pose, at=at, pose_at=at, size_at=at
+                )
+                return self.meshes.hull(made, stand_in, plain["name"], [1.0, 1.0, 1.0])
+            kind, points = "hull", pose.at(np.array(plain["points"], dtype=float).reshape(-1, 3))
+        elif kind not in ("box", "cylinder", "capsule", "sphere"):
+            rule = "must be a box, cylinder, capsule, sphere or mesh"
+            raise ScenarioError(f"{at}: geom[{plain['name']}]", kind, rule)
+        return Shape(
+            name=plain["name"],
+            kind=kind,
+            pose=pose,
+            radius=sizes[0] if kind in ("cylinder", "capsule", "sphere") else 0.0,
+            length=2.0 * sizes[1] if kind in ("cylinder", "capsule") else 0.0,
+            size=2.0 * np.array(sizes) if kind == "box" else np.zeros(3),
+            points=points,
+            friction=Friction(
+                first=plain["friction"],
+                second=plain["friction"],
+                priority=plain["priority"],
+                first_at=at,
+                second_at=at,
+            ),
+            surface_speed=plain["moved"],
+            at=at,
+            pose_at=at,
+            size_at=at,
+        )

@@ -1,0 +1,127 @@
+"""Asks MuJoCo what a model is, as plain data; runs in a child process."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from crawler2d.common.extras import extra
+from crawler2d.errors import ScenarioError
+from crawler2d.reading.limits import serve
+
+# MuJoCo numbers the kinds of joints and shapes; what is not here is refused by its number.
+_JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
+_SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
+_SHAPES |= {6: "box", 7: "mesh"}
+
+
+def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Import MuJoCo."""
+    mujoco = extra("mujoco", "models")
+    return lambda question: _described(mujoco, question["path"], question["file"])
+
+
+def _described(mujoco: Any, path: str, file: str) -> dict[str, Any]:
+    try:
+        spec = mujoco.MjSpec.from_file(path)
+        model = spec.compile()
+    except Exception as error:  # MuJoCo has several classes of errors for a bad file
+        said = " ".join(str(error).split())
+        line = re.search(r"line (\d+)", said)
+        at = f"{file}:{line[1]}" if line else file
+        raise ScenarioError(at, said, "must be a model that MuJoCo compiles") from None
+    return {
+        "name": spec.modelname,
+        "bodies": [_body(model, body) for body in spec.bodies],
+        "joints": [_joint(model, joint) for joint in spec.joints],
+        "shapes": [_shape(model, geom) for geom in spec.geoms],
+        "motors": [_motor(model, actuator) for actuator in spec.actuators],
+    }
+
+
+def _line(item: Any) -> int:
+    """Return the line that MuJoCo noted for an item of the file; 0 for what it added itself."""
+    found = re.search(r"line (\d+)", item.info)
+    return int(found[1]) if found else 0
+
+
+def _body(model: Any, body: Any) -> dict[str, Any]:
+    i = body.id
+    return {
+        "name": body.name or f"body {i}",
+        "parent": int(model.body_parentid[i]),
+        "place": model.body_pos[i].tolist(),
+        "turn": model.body_quat[i].tolist(),
+        "mass": float(model.body_mass[i]),
+        "center": model.body_ipos[i].tolist(),
+        "axes": model.body_iquat[i].tolist(),
+        "inertia": model.body_inertia[i].tolist(),
+        "line": _line(body),
+    }
+
+
+def _joint(model: Any, joint: Any) -> dict[str, Any]:
+    i = joint.id
+    limited = bool(model.jnt_limited[i])
+    return {
+        "name": joint.name or f"joint {i}",
+        "kind": _JOINTS.get(int(model.jnt_type[i]), "unknown"),
+        "body": int(model.jnt_bodyid[i]),
+        "place": model.jnt_pos[i].tolist(),
+        "axis": model.jnt_axis[i].tolist(),
+        "range": model.jnt_range[i].tolist() if limited else None,
+        "stiffness": float(model.jnt_stiffness[i].flat[0]),
+        "effort": float(model.jnt_actfrcrange[i, 1]) if model.jnt_actfrclimited[i] else None,
+        "line": _line(joint),
+    }
+
+
+def _shape(model: Any, geom: Any) -> dict[str, Any]:
+    i = geom.id
+    kind = _SHAPES.get(int(model.geom_type[i]), "unknown")
+    points = None
+    if kind == "mesh":
+        mesh = int(model.geom_dataid[i])
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        points = model.mesh_vert[first : first + count].tolist()
+    return {
+        "name": geom.name or f"geom {i}",
+        "kind": kind,
+        "body": int(model.geom_bodyid[i]),
+        "place": model.geom_pos[i].tolist(),
+        "turn": model.geom_quat[i].tolist(),
+        "size": model.geom_size[i].tolist(),
+        "points": points,
+        # In one dimension, a contact has no friction.
+        "friction": float(model.geom_friction[i, 0]) if model.geom_condim[i] > 1 else 0.0,
+        "priority": int(model.geom_priority[i]),
+        "collides": bool(model.geom_contype[i] or model.geom_conaffinity[i]),
+        "moved": bool(abs(geom.surfacevel).max() > 0.0) if hasattr(geom, "surfacevel") else False,
+        "line": _line(geom),
+    }
+
+
+def _motor(model: Any, actuator: Any) -> dict[str, Any]:
+    """Return what an actuator can do at its joint; None where it has no limit."""
+    i = actuator.id
+    gear = abs(float(model.actuator_gear[i, 0]))
+    gain, bias = float(model.actuator_gainprm[i, 0]), model.actuator_biasprm[i]
+    most = float(model.actuator_ctrlrange[i, 1]) if model.actuator_ctrllimited[i] else None
+    effort = None
+    if model.actuator_forcelimited[i]:
+        effort = float(model.actuator_forcerange[i, 1]) * gear
+    elif most is not None and not bias.any():  # a motor: its force is its control
+        effort = most * gain * gear
+    # A servo of speed holds control / gear; one of position has a bias on the position, too.
+    is_servo = bias[2] < 0.0 and bias[1] == 0.0
+    return {
+        "joint": actuator.target,
+        "effort": effort,
+        "velocity": most / gear if is_servo and most is not None and gear > 0.0 else None,
+        "line": _line(actuator),
+    }
+
+
+if __name__ == "__main__":
+    serve(prepare)

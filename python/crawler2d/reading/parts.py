@@ -1,0 +1,107 @@
+"""The parts of a running gear in the side view: wheels, drums, flippers, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from crawler2d.reading.poses import Array
+from crawler2d.reading.tree import Joint, Link, Shape
+
+__all__ = ["Arm", "Gear", "Runner", "corners_of"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Runner:
+    """A wheel, or a drum of a track.
+
+    Parameters
+    ----------
+    name : str
+        Of its link, and of its shape if that is one of several.
+    x, y, z : float
+        [m] Its middle: forward, up and to the left.
+    radius : float
+        [m] Its radius.
+    link : Link
+        What it is part of.
+    shape : Shape
+        Its own shape, the largest if there are several.
+    joint : Joint, optional
+        On which it turns; None for a drum, which is fixed while a plugin moves its surface.
+    mass : float
+        [kg] Of what turns; 0 for a drum.
+    inertia : float
+        [kg m^2] Of that, about its axis.
+    """
+
+    name: str
+    x: float
+    y: float
+    z: float
+    radius: float
+    link: Link
+    shape: Shape
+    joint: Joint | None = None
+    mass: float = 0.0
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Arm:
+    """What turns about the pivot of a flipper.
+
+    Parameters
+    ----------
+    joint : Joint
+        The pivot.
+    pivot : ndarray, shape (3,)
+        [m] In the side view.
+    links : tuple of Link
+        Everything that turns with it.
+    runners : tuple of Runner
+        Its wheels or drums.
+    bars : tuple of ndarray, shape (n, 3)
+        [m] Corners of the boxes whose surface is moved, in the side view.
+    shapes : tuple of (Link, Shape)
+        What neither turns nor is moved.
+    """
+
+    joint: Joint
+    pivot: Array
+    links: tuple[Link, ...]
+    runners: tuple[Runner, ...]
+    bars: tuple[Array, ...]
+    shapes: tuple[tuple[Link, Shape], ...]
+
+
+@dataclass(slots=True, eq=False)
+class Gear:
+    """The running gear of a model.
+
+    Parameters
+    ----------
+    runners, bars : list
+        As in `Arm`, of the chassis.
+    arms : list of Arm
+        The flippers.
+    shapes : list of (Link, Shape)
+        What the chassis has besides, fixed to it.
+    moving : list of (Joint, Link, Shape)
+        Shapes of other moving parts, such as a lidar or a manipulator.
+    """
+
+    runners: list[Runner] = field(default_factory=list)
+    bars: list[Array] = field(default_factory=list)
+    arms: list[Arm] = field(default_factory=list)
+    shapes: list[tuple[Link, Shape]] = field(default_factory=list)
+    moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)
+
+
+def corners_of(shape: Shape) -> Array:
+    """[m] Return the corners of a box or hull in the frame of the model, shape (n, 3)."""
+    if shape.kind == "hull":
+        return shape.points
+    signs = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
+    return shape.pose.at(signs * shape.size)

@@ -1,0 +1,55 @@
+"""What plugins do: turn joints, or move the surface of links."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from crawler2d.reading.elements import Element, Where
+from crawler2d.reading.tree import Plugin, Tree
+
+__all__ = ["driven_by", "moved_links", "plugin_of"]
+
+_DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
+
+
+def plugin_of(plugin: Element) -> Plugin:
+    """Flatten the settings of a plugin."""
+    settings: list[tuple[str, str, Where]] = []
+    waiting = [(child, child.tag) for child in reversed(plugin.children)]
+    while waiting:
+        element, path = waiting.pop()
+        settings.append((path, element.text, element.where))
+        if path.count("/") < _DEEPEST_SETTING:
+            waiting.extend((child, f"{path}/{child.tag}") for child in reversed(element.children))
+    name, filename = (plugin.attributes.get(key, "") for key in ("name", "filename"))
+    return Plugin(name=name, filename=filename, settings=tuple(settings), at=plugin.where)
+
+
+def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
+    """Return the joints that a differential drive turns, and the lines that say so."""
+    return {
+        joint: where
+        for plugin in plugins
+        if "diff" in f"{plugin.name} {plugin.filename}".lower()
+        for joint, where in plugin.values("left_joint", "right_joint", "leftJoint", "rightJoint")
+    }
+
+
+def moved_links(tree: Tree) -> dict[str, Where]:
+    """Return the links whose surface is moved, and the lines that say so."""
+    links = tree.by_name
+    return dict(_named(tree)) | {name: links[name].at for name in tree.tracks}
+
+
+def _named(tree: Tree) -> Iterator[tuple[str, Where]]:
+    known = {link.name for link in tree.links}
+    for plugin in tree.plugins:
+        if "track" in f"{plugin.name} {plugin.filename}".lower():
+            for path, text, where in plugin.settings:
+                if path.rpartition("/")[2] in _TRACKS and text in known:
+                    yield text, where
+
+
+# Gazebo's TrackController has link; its TrackedVehicle left_track/link and right_track/link; the
+# plugins of Gazebo classic name the links of tracks and flippers like this.
+_TRACKS = {"link", "left_track", "right_track", "left_flipper", "right_flipper"}

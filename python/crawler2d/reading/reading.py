@@ -1,0 +1,270 @@
+"""Read a robot from a public model file."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from crawler2d.common.arrays import real_number
+from crawler2d.common.markup import table
+from crawler2d.common.table import Table
+from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.parameters.robot import Robot
+from crawler2d.reading.assembly import Assembly, assembled
+from crawler2d.reading.formats import tree_of
+from crawler2d.reading.friction import ENGINES, Engine
+from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.sources import Sources
+from crawler2d.reading.tree import Tree
+
+__all__ = ["Reading", "read_robot"]
+
+_TOLERANCE = 0.001  # [m] Public models are symmetric to their last digit; CAD exports to 0.1 mm.
+_SHOWN = 12  # wheels in the text of a reading
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Reading:
+    """What was read from a model file.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, in side view.
+    friction : float
+        [-] Between its tracks and the ground, by the rule of `engine`.
+    sources : Sources
+        For every figure of the robot its file and lines, or the word "estimate" with its rule.
+    wheels : Table
+        One row for each wheel and each drum of a moved track: `side`, `carrier`, `name`, `x`, `y`
+        and `z` [m] (in the frame of the model: forward, up and to the left), `radius` [m], `mass`
+        [kg] of what turns, `line`.
+    notes : tuple of str
+        What was decided while reading, in words.
+    doubts : tuple of str
+        What is legal but hardly meant, in words; each was also a `ScenarioWarning`.
+    engine : str
+        The engine whose rule combined the friction.
+    tree : Tree
+        Links, joints and collision shapes as the file has them.
+    text : str
+        What the lines are those of: the file, or what a xacro file expands to.
+    """
+
+    robot: Robot
+    friction: float
+    sources: Sources
+    wheels: Table
+    notes: tuple[str, ...]
+    doubts: tuple[str, ...]
+    engine: str
+    tree: Tree
+    text: str
+
+    @property
+    def in_words(self) -> str:
+        """What it is, for titles."""
+        return (
+            f"{self.robot.in_words}; {self.robot.mass:.4g} kg,"
+            f" friction {self.friction:.3g} ({self.tree.format}, {self.tree.file})"
+        )
+
+    def __repr__(self) -> str:
+        """Write the robot, its wheels, and what was decided and doubted."""
+        rows = [self.in_words]
+        rows += [f"  {line}" for line in self._wheel_lines()]
+        rows += [f"  note: {note}" for note in self.notes]
+        rows += [f"  doubt: {doubt}" for doubt in self.doubts]
+        rows.append(f"  estimates: {', '.join(self.sources.estimates)}")
+        return "\n".join(rows)
+
+    def _repr_html_(self) -> str:
+        """Show the robot with the sources of its figures in a notebook."""
+        card = self.robot._repr_html_() or ""
+        return card + table(self.sources.items())
+
+    def _wheel_lines(self) -> list[str]:
+        columns = [self.wheels[name].tolist() for name in ("side", "carrier", "x", "y", "radius")]
+        lines = [
+            f"{side} {carrier}: x {x:.4f} m, y {y:.4f} m, radius {radius:.4f} m"
+            for side, carrier, x, y, radius in zip(*columns, strict=True)
+        ]
+        more = len(lines) - _SHOWN
+        return lines if more <= 0 else [*lines[:_SHOWN], f"and {more} more: see .wheels"]
+
+
+def read_robot(
+    path: str | os.PathLike[str],
+    engine: Engine | None = None,
+    *,
+    forward: Literal["+x", "-x", "+y", "-y"] | None = None,
+    model: str | None = None,
+    mesh: MeshRule = "refuse",
+    missing: Literal["refuse", "leave_out"] = "refuse",
+    tracks: Collection[str] = (),
+    ground_friction: float | None = None,
+    tolerance: float = _TOLERANCE,
+    trusted: bool = False,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
+    arguments: Mapping[str, str] | None = None,
+) -> Reading:
+    """Read a robot from a file that others simulate with: SDF, URDF, xacro or MJCF.
+
+    What a side view cannot hold is refused by name: sides that differ, suspension, steering, wheels
+    that nothing drives, friction that differs from wheel to wheel, meshes. The rules are in
+    ``docs/conventions.md``, "Reading a model file".
+
+    Parameters
+    ----------
+    path : str or PathLike
+        The file; one with xacro is named ``*.xacro``.
+    engine : {"gz", "mujoco", "isaac"}, optional
+        By whose rule the friction of two surfaces is combined. "gz": the smaller, as in ODE and
+        DART. "mujoco": the larger, or that of the geom of higher priority (MuJoCo's documentation,
+        "Contact parameters"). "isaac": the mean, the default of a PhysX material
+        (``PxCombineMode::eAVERAGE``). None takes "mujoco" for MJCF and "gz" for the rest.
+    forward : {"+x", "-x", "+y", "-y"}, optional
+        Direction of the model that is forward. None takes the side of the links called front, or
+        else +x; where neither tells, it must be given.
+    model : str, optional
+        Name of the model in a world; None takes the only one that can move.
+    mesh : {"refuse", "hull", "leave_out"}
+        What to do with collision meshes: "hull" takes the hull of an .stl or .obj file.
+    missing : {"refuse", "leave_out"}
+        What to do with includes of packages that are not there, and with joints of missing links.
+    tracks : collection of str
+        Links whose surface something outside the file moves, as a controller in Isaac does.
+    ground_friction : float, optional
+        [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, in Isaac
+        0.5.
+    tolerance : float
+        [m] By how much the two sides may differ in side view.
+    trusted : bool
+        Whether the file may evaluate expressions, as xacro does.
+    packages : mapping of str to path, optional
+        Folders of the packages that ``$(find ...)``, ``package://`` and ``model://`` name.
+    arguments : mapping of str to str, optional
+        Values for the arguments of a xacro file.
+
+    Returns
+    -------
+    Reading
+        The robot with its friction, and the source of every figure.
+
+    Raises
+    ------
+    ScenarioError
+        If the file cannot be read, breaks a rule of its format, or has what a side view cannot
+        hold. The error names file, line and element.
+    ImportError
+        If the library for xacro or MJCF is missing; the message names the extra to install.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import crawler2d as c2d
+    >>> body = '''
+    ... <link name="{name}">
+    ...   <inertial><mass value="{mass}"/>
+    ...     <inertia ixx="0.1" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="0.1"/></inertial>
+    ...   <collision><origin rpy="1.5707963267948966 0 0"/><geometry>{shape}</geometry></collision>
+    ... </link>'''
+    >>> joint = '''
+    ... <joint name="{name}_joint" type="continuous">
+    ...   <parent link="hull"/><child link="{name}"/><origin xyz="{x} {y} 0"/><axis xyz="0 1 0"/>
+    ...   <limit effort="5" velocity="10"/>
+    ... </joint>'''
+    >>> box, disc = '<box size="0.4 0.05 0.2"/>', '<cylinder radius="0.08" length="0.05"/>'
+    >>> text = "<robot name='cart'>" + body.format(name="hull", mass=8, inertia=0.2, shape=box)
+    >>> for name, x, y in (("a", 0.2, 0.2), ("b", -0.2, 0.2), ("c", 0.2, -0.2), ("d", -0.2, -0.2)):
+    ...     text += body.format(name=name, mass=1, inertia=0.003, shape=disc)
+    ...     text += joint.format(name=name, x=x, y=y)
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "cart.urdf"
+    >>> _ = path.write_text(text + "</robot>")
+    >>> reading = c2d.read_robot(path)
+    >>> reading.robot.mass, reading.robot.outline.axle_distance, reading.friction
+    (12.0, 0.4, 1.0)
+    >>> print(reading.sources["robot.outline.front_radius"])
+    cart.urdf:10, 28
+    >>> run = c2d.simulate(reading.robot, c2d.terrains.step(0.03, friction=reading.friction))
+    >>> str(run.outcome)
+    'cleared'
+    """
+    for name, value, allowed in (
+        ("engine", engine, (None, *ENGINES)),
+        ("mesh", mesh, get_args(MeshRule)),
+        ("missing", missing, ("refuse", "leave_out")),
+    ):
+        if not (value is None or isinstance(value, str)) or value not in allowed:
+            rule = f"must be one of {', '.join(str(each) for each in allowed)}"
+            raise ScenarioError(name, value, rule)
+    if not isinstance(path, (str, os.PathLike)):
+        raise ScenarioError("path", path, "must be the name of a file")
+    tolerance = _between(tolerance, "tolerance", 0.0, 0.1)
+    found = tree_of(
+        Path(path),
+        model=model,
+        mesh=mesh,
+        leave_out_missing=missing == "leave_out",
+        trusted=trusted is True,
+        packages={name: Path(folder) for name, folder in (packages or {}).items()},
+        arguments=arguments or {},
+    )
+    tree = replace(found.tree, tracks=_known(tracks, found.tree))
+    engine = engine or ("mujoco" if tree.format == "MJCF" else "gz")
+    if ground_friction is None:
+        ground_friction = ENGINES[engine].usual
+    ground_friction = _between(ground_friction, "ground_friction", 0.0, 1e3)
+    robot, friction, work = assembled(
+        tree, forward=forward, tolerance=tolerance, engine=engine, ground=ground_friction
+    )
+    robot.wheels()  # the core checks every rule of a robot
+    left_out = [("left out", what, f"is {kind}") for what, kind in found.left_out]
+    doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.told.doubts]]
+    for doubt in doubts:
+        warnings.warn(doubt, stacklevel=2)
+    return Reading(
+        robot=robot,
+        friction=friction,
+        sources=Sources(work.told.sources),
+        wheels=_table(work),
+        notes=tuple(work.told.notes),
+        doubts=tuple(str(doubt) for doubt in doubts),
+        engine=engine,
+        tree=tree,
+        text=found.text,
+    )
+
+
+def _known(tracks: Collection[str], tree: Tree) -> tuple[str, ...]:
+    links = tree.by_name
+    for name in tracks:
+        if not isinstance(name, str) or name not in links:
+            raise ScenarioError("tracks", name, "must be links of the model")
+    return tuple(tracks)
+
+
+def _between(value: float, path: str, least: float, most: float) -> float:
+    number = real_number(value, path)
+    if not least <= number <= most:
+        raise ScenarioError(path, number, f"must be between {least:g} and {most:g}")
+    return number
+
+
+def _table(work: Assembly) -> Table:
+    rows = work.told.rows
+    columns: dict[str, Any] = {
+        "side": ["left" if runner.z > work.middle else "right" for _, runner in rows],
+        "carrier": [carrier for carrier, _ in rows],
+        "name": [runner.name for _, runner in rows],
+        **{
+            name: [getattr(runner, name) for _, runner in rows]
+            for name in ("x", "y", "z", "radius", "mass")
+        },
+        "line": [runner.link.at.line for _, runner in rows],
+    }
+    return Table(columns)

@@ -1,0 +1,252 @@
+"""URDF as a neutral tree, with what its extensions for Gazebo and Bullet say about friction."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from crawler2d.reading.elements import Element, Where, real
+from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.order import checked
+from crawler2d.reading.plugins import plugin_of
+from crawler2d.reading.poses import Pose, from_rpy, unit
+from crawler2d.reading.shapes import inertia, shape_of
+from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
+
+__all__ = ["read_urdf"]
+
+_KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
+
+
+def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None = None) -> Tree:
+    """Read the robot of a URDF.
+
+    Parameters
+    ----------
+    root : Element
+        Of the file.
+    meshes : Meshes
+        What is done with meshes.
+    left_out : list of Element, optional
+        Where to note joints whose links are missing, which are left out; None refuses them.
+
+    Returns
+    -------
+    Tree
+        The robot, in the frame of its root link.
+
+    Raises
+    ------
+    ScenarioError
+        If anything breaks a rule of the format.
+    """
+    _refuse_macros(root)
+    elements = {link.attribute("name"): link for link in root.all("link")}
+    ends = []
+    for joint in root.all("joint"):
+        parent, child = (joint.needed(end).attribute("link") for end in ("parent", "child"))
+        if left_out is not None and not {parent, child} <= elements.keys():
+            left_out.append(joint)
+            continue
+        ends.append((joint, joint.attribute("name"), parent, child))
+    order = checked(
+        [(link.attribute("name"), link.where) for link in root.all("link")],
+        [(name, parent, child, joint.where) for joint, name, parent, child in ends],
+        root.where,
+    )
+    by_child = {child: (joint, parent) for joint, _, parent, child in ends}
+    frictions = _frictions(root)
+    poses: dict[str, Pose] = {}
+    links, joints = [], {}
+    for name in order:
+        pose_at = elements[name].where
+        if name not in by_child:
+            poses[name] = Pose()
+        else:
+            element, parent = by_child[name]
+            poses[name] = poses[parent].then(_origin(element))
+            joints[name] = _joint(element, parent, name, poses[name])
+            pose_at = _place(element).where
+        links.append(_link(elements[name], poses[name], pose_at, frictions.get(name), meshes))
+    gazebo = [plugin for block in root.all("gazebo") for plugin in block.all("plugin")]
+    return Tree(
+        name=root.attributes.get("name", ""),
+        format="URDF",
+        file=root.where.file,
+        links=tuple(links),
+        joints=joints,
+        plugins=tuple(plugin_of(plugin) for plugin in gazebo),
+        driven=_driven(root),
+        at=root.where,
+    )
+
+
+def _refuse_macros(root: Element) -> None:
+    """Refuse what xacro would have to expand, wherever it stands."""
+    for element in root.within():
+        if element.tag.startswith("xacro:"):
+            element.refuse(element.tag, "must be expanded: a file with xacro is named *.xacro")
+
+
+def _origin(element: Element) -> Pose:
+    origin = element.only("origin")
+    if origin is None:
+        return Pose()
+    xyz, rpy = (
+        origin.reals(3, name) if name in origin.attributes else [0.0, 0.0, 0.0]
+        for name in ("xyz", "rpy")
+    )
+    return from_rpy(rpy, xyz)
+
+
+def _place(element: Element) -> Element:
+    return element.only("origin") or element
+
+
+def _link(
+    link: Element, pose: Pose, pose_at: Where, friction: Friction | None, meshes: Meshes
+) -> Link:
+    mass, center, tensor, mass_at = 0.0, pose, np.zeros((3, 3)), link.where
+    inertial = link.only("inertial")
+    if inertial is not None:
+        given = inertial.needed("mass")
+        (mass,), mass_at = given.reals(1, "value"), given.where
+        center = pose.then(_origin(inertial))
+        values = inertial.needed("inertia")
+        tensor = inertia(values, lambda name: values.reals(1, name)[0])
+    if mass < 0.0:
+        link.refuse(mass, "must have a mass >= 0 kg")
+    shapes = (
+        _shape(collision, link, pose, friction, meshes) for collision in link.all("collision")
+    )
+    return Link(
+        name=link.attribute("name"),
+        pose=pose,
+        mass=mass,
+        center=center.place,
+        inertia=center.turn @ tensor @ center.turn.T,
+        shapes=tuple(shape for shape in shapes if shape is not None),
+        at=link.where,
+        pose_at=pose_at,
+        mass_at=mass_at,
+    )
+
+
+def _shape(
+    collision: Element, link: Element, pose: Pose, friction: Friction | None, meshes: Meshes
+) -> Shape | None:
+    place = pose.then(_origin(collision))
+    if friction is not None and friction.direction is not None:
+        friction = replace(friction, direction=unit(place.along(friction.direction)))
+    return shape_of(
+        collision,
+        name=collision.attributes.get("name") or link.attribute("name"),
+        pose=place,
+        pose_at=_place(collision),
+        friction=friction,
+        numbers=lambda element, name, count: element.reals(count, name),
+        mesh_name=lambda mesh: mesh.attribute("filename"),
+        meshes=meshes,
+    )
+
+
+def _frictions(root: Element) -> dict[str, Friction]:
+    """Return what the extensions say, by link; the direction in the frame of the collision."""
+    found: dict[str, Friction] = {}
+    for link in root.all("link"):
+        bullet = link.only("contact/lateral_friction")
+        if bullet is not None:
+            (value,) = bullet.reals(1, "value")
+            found[link.attribute("name")] = _friction(bullet, [(value, bullet.where)] * 2, None)
+    for block in root.all("gazebo"):
+        name = block.attributes.get("reference", "")
+        given = [block.only(tag) for tag in ("mu1", "mu2")]
+        if not name or given == [None, None]:
+            continue
+        pair = [
+            (1.0, block.where) if mu is None else (real(mu, _value(mu), unlimited=True), mu.where)
+            for mu in given
+        ]
+        fdir1 = block.only("fdir1")
+        along = None
+        if fdir1 is not None:
+            along = unit(fdir1.reals(3, "value" if "value" in fdir1.attributes else None))
+        found[name] = _friction(block, pair, along)
+    return found
+
+
+def _value(element: Element) -> str:
+    """Return the setting of an extension: its text, or its attribute."""
+    return element.attributes.get("value", "") or element.text
+
+
+def _friction(
+    element: Element, pair: list[tuple[float, Where]], direction: np.ndarray[tuple[int]] | None
+) -> Friction:
+    (first, first_at), (second, second_at) = pair
+    if min(first, second) < 0.0:
+        element.refuse(min(first, second), "must have coefficients of friction >= 0")
+    return Friction(
+        first=first, second=second, direction=direction, first_at=first_at, second_at=second_at
+    )
+
+
+def _joint(element: Element, parent: str, child: str, pose: Pose) -> Joint:
+    kind = element.attribute("type")
+    made = Joint(
+        name=element.attribute("name"),
+        kind=_KINDS.get(kind, kind),
+        parent=parent,
+        child=child,
+        place=pose.place,
+        axis=pose.turn[:, 0],
+        at=element.where,
+        effort_at=element.where,
+        velocity_at=element.where,
+    )
+    if kind not in _KINDS:
+        return made
+    axis, limit = element.only("axis"), element.only("limit")
+    direction = unit(pose.along((1.0, 0.0, 0.0) if axis is None else axis.reals(3, "xyz")))
+    if direction is None:
+        element.refuse("0 0 0", "must have an axis with a direction")
+    made = replace(made, axis=direction)
+    if limit is None:
+        if kind != "continuous":
+            element.refuse("none", "must have a limit")
+        return made
+    values = {
+        name: real(limit, text, f"@{name}", unlimited=True)
+        for name, text in limit.attributes.items()
+        if name in ("lower", "upper", "effort", "velocity")
+    }
+    bounds = (-math.inf, math.inf)
+    if kind != "continuous":
+        bounds = (values.get("lower", 0.0), values.get("upper", 0.0))
+    if bounds[0] > bounds[1]:
+        limit.refuse(bounds[0], f"must have a lower limit of at most the upper, {bounds[1]}")
+    effort, velocity = (values.get(name, math.inf) for name in ("effort", "velocity"))
+    return replace(
+        made,
+        lower=bounds[0],
+        upper=bounds[1],
+        effort=effort if 0.0 <= effort < math.inf else None,
+        velocity=velocity if 0.0 <= velocity < math.inf else None,
+        effort_at=limit.where,
+        velocity_at=limit.where,
+    )
+
+
+def _driven(root: Element) -> dict[str, Where]:
+    """Return the joints that a transmission or ros2_control turns, and the lines that say so."""
+    found = {}
+    for block in root.all("transmission"):
+        for joint in block.all("joint"):
+            found[joint.attribute("name")] = joint.where
+    for block in root.all("ros2_control"):
+        for joint in block.all("joint"):
+            if any(joint.all("command_interface")):
+                found[joint.attribute("name")] = joint.where
+    return found

@@ -1,0 +1,64 @@
+"""Xacro as URDF text: expanded in a child process, because it evaluates expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from crawler2d.errors import ScenarioError
+from crawler2d.reading.child import answered
+
+__all__ = ["expanded"]
+
+
+def expanded(
+    path: Path,
+    *,
+    trusted: bool,
+    packages: Mapping[str, Path],
+    arguments: Mapping[str, str],
+    leave_out: bool,
+) -> tuple[bytes, list[str]]:
+    """Expand a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    trusted : bool
+        Whether its user trusts it: its expressions are evaluated.
+    packages : mapping of str to Path
+        Folders by package.
+    arguments : mapping of str to str
+        Values of its ``xacro:arg``.
+    leave_out : bool
+        Whether includes of packages that are not there are left out.
+
+    Returns
+    -------
+    text : bytes
+        The URDF.
+    left_out : list of str
+        The includes that were left out.
+
+    Raises
+    ------
+    ScenarioError
+        If it is not trusted, does not expand, or needs packages that are not there.
+    ImportError
+        If xacrodoc is missing; the message names the extra to install.
+    """
+    if not trusted:
+        rule = "must be trusted, because xacro evaluates expressions: trusted=True"
+        raise ScenarioError(path.name, trusted, rule)
+    question = {
+        "path": str(path.resolve()),
+        "file": path.name,
+        "packages": {name: str(Path(folder).resolve()) for name, folder in packages.items()},
+        "arguments": dict(arguments),
+        "leave_out": leave_out,
+    }
+    answer = answered(
+        "crawler2d.reading.xacro_child", question, file=path.name, folder=path.resolve().parent
+    )
+    return answer["text"].encode(), answer["left_out"]

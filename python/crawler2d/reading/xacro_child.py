@@ -1,0 +1,74 @@
+"""Expands a xacro file that its user trusts; runs in a child process."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from crawler2d.common.extras import extra
+from crawler2d.errors import ScenarioError
+from crawler2d.reading.limits import serve
+
+_FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
+_LOST = re.compile(r"Package not found: (\S+)")
+_INCLUDE = re.compile(r"<xacro:include\b[^>]*?/>|<xacro:include\b[^>]*?>\s*</xacro:include>")
+
+
+def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Import xacrodoc, which brings xacro along and needs no ROS."""
+    module = extra("xacrodoc", "models")
+    return lambda question: _expanded(module, **question)
+
+
+def _expanded(
+    module: Any,
+    *,
+    path: str,
+    file: str,
+    packages: dict[str, str],
+    arguments: dict[str, str],
+    leave_out: bool,
+) -> dict[str, Any]:
+    module.packages.update_package_cache(packages)
+    text = Path(path).read_text(encoding="utf-8")
+    left_out: list[str] = []
+    if leave_out:
+        text = _without_missing(module, text, left_out)
+    try:
+        document = module.XacroDoc.from_string(text, subargs=arguments, resolve_packages=False)
+        return {"text": document.to_urdf_string(), "left_out": left_out}
+    except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
+        said = " ".join(str(error).split()) or type(error).__name__
+        if lost := _LOST.search(said):
+            names = [name for name in _FIND.findall(text) if not _known(module, name)]
+            rule = "must have its packages: packages={name: folder} says where each is"
+            value = ", ".join(dict.fromkeys([*names, lost[1]]))
+            raise ScenarioError(file, value, rule) from None
+        raise ScenarioError(file, said, "must be xacro that expands") from None
+
+
+def _without_missing(module: Any, text: str, left_out: list[str]) -> str:
+    """Take out the includes of packages that are not there; lines stay what they are."""
+
+    def kept(include: re.Match[str]) -> str:
+        for name in _FIND.findall(include[0]):
+            if not _known(module, name):
+                left_out.append(" ".join(include[0].split()))
+                return "\n" * include[0].count("\n")
+        return include[0]
+
+    return _INCLUDE.sub(kept, text)
+
+
+def _known(module: Any, name: str) -> bool:
+    try:
+        module.packages.get_path(name)
+    except Exception:  # whatever a finder raises: it is not found
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    serve(prepare)

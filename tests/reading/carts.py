@@ -1,0 +1,86 @@
+"""Robots written for one test each, as URDF and SDF text, and how they are read."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import crawler2d as c2d
+
+FILES = Path(__file__).parent / "files"
+ROBOTS = Path(__file__).parent.parent / "robots"
+
+HULL = '<link name="hull"><inertial><mass value="{mass}"/>{tensor}</inertial>{shapes}</link>'
+TENSOR = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
+WHEEL_TENSOR = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0" izz="0.002"/>'
+ROUND = '<cylinder radius="{radius}" length="0.05"/>'
+ACROSS = '<origin rpy="1.5707963267948966 0 0"/>'
+SIDES = (("left", 1.0), ("right", -1.0))
+
+
+def wheel(name: str, xyz: str, **changed: str) -> str:
+    """A link on a joint of the hull, each part replaced by what is given for it."""
+    parts = {
+        "parent": "hull",
+        "radius": "0.08",
+        "type": "continuous",
+        "axis": "0 1 0",
+        "limit": '<limit effort="5" velocity="10"/>',
+        "mass": "1",
+        "origin": ACROSS,
+        "geometry": ROUND.format(radius=changed.get("radius", "0.08")),
+        "rpy": "0 0 0",
+        **changed,
+    }
+    return f"""
+<link name="{name}">
+  <inertial><mass value="{parts["mass"]}"/>{WHEEL_TENSOR}</inertial>
+  <collision>{parts["origin"]}<geometry>{parts["geometry"]}</geometry></collision>
+</link>
+<joint name="{name}_joint" type="{parts["type"]}">
+  <parent link="{parts["parent"]}"/><child link="{name}"/>
+  <origin xyz="{xyz}" rpy="{parts["rpy"]}"/><axis xyz="{parts["axis"]}"/>{parts["limit"]}
+</joint>"""
+
+
+def pair(name: str, x: float, y: float = 0.15, z: float = 0.0, **changed: str) -> str:
+    """Two wheels, left and right."""
+    return "".join(
+        wheel(f"{side}_{name}", f"{x} {sign * y} {z}", **changed) for side, sign in SIDES
+    )
+
+
+WHEELS = pair("front", 0.2) + pair("rear", -0.2)
+
+
+def urdf(*parts: str, mass: str = "8", shapes: str = "") -> str:
+    """A robot of a hull and these parts."""
+    hull = HULL.format(mass=mass, tensor=TENSOR, shapes=shapes)
+    return f'<robot name="cart">{hull}{"".join(parts)}</robot>'
+
+
+def collision(geometry: str, origin: str = "") -> str:
+    return f"<collision>{origin}<geometry>{geometry}</geometry></collision>"
+
+
+def link(name: str, joint: str, xyz: str = "0 0 0", parent: str = "hull") -> str:
+    """A link of 0.5 kg without shapes, and the rest of its joint."""
+    return f"""
+<link name="{name}"><inertial><mass value="0.5"/>{WHEEL_TENSOR}</inertial></link>
+<joint name="{name}_joint" {joint}
+  <parent link="{parent}"/><child link="{name}"/><origin xyz="{xyz}"/></joint>"""
+
+
+def read(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> c2d.Reading:
+    """Read a text as a file; what it doubts is in the reading."""
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return quietly(path, **how)
+
+
+def quietly(path: Path, **how: Any) -> c2d.Reading:
+    """Read a file; what it doubts is in the reading."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+        return c2d.read_robot(path, **how)

@@ -1,0 +1,276 @@
+"""One robot in three formats is one robot; each format is read by its own rules."""
+
+import math
+import pickle
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from tests.reading.carts import (
+    FILES,
+    SIDES,
+    WHEELS,
+    collision,
+    link,
+    pair,
+    quietly,
+    read,
+    urdf,
+    wheel,
+)
+
+SDF = quietly(FILES / "cart.sdf")
+
+
+def test_one_robot_as_sdf_and_urdf_is_the_same_scenario() -> None:
+    other = quietly(FILES / "cart.urdf")
+    step = c2d.terrains.step(0.05)
+    assert c2d.Scenario(SDF.robot, step) == c2d.Scenario(other.robot, step)
+    assert other.friction == SDF.friction == 0.75
+
+
+def test_one_robot_as_mjcf_is_the_same_scenario() -> None:
+    pytest.importorskip("mujoco")
+    other = quietly(FILES / "cart.xml", engine="gz")
+    assert c2d.Scenario(SDF.robot, c2d.terrains.flat()) == c2d.Scenario(
+        other.robot, c2d.terrains.flat()
+    )
+    assert other.friction == SDF.friction
+
+
+def test_mujoco_takes_the_larger_friction_for_its_own_format() -> None:
+    pytest.importorskip("mujoco")
+    assert quietly(FILES / "cart.xml").friction == 1.0
+    assert quietly(FILES / "cart.xml", ground_friction=0.3).friction == 0.75
+
+
+def test_a_geom_of_higher_priority_has_its_own_friction(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (
+        (FILES / "cart.xml")
+        .read_text()
+        .replace('<geom friction="0.75"', '<geom friction="0.75" priority="1"')
+    )
+    assert read(tmp_path, text, "cart.xml").friction == 0.75
+
+
+def test_mjcf_names_the_line_of_an_error(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text().replace('zaxis="0 1 0"', 'zaxle="0 1 0"')
+    with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:6 must be a model that"):
+        read(tmp_path, text, "cart.xml")
+
+
+def test_mjcf_that_includes_other_files_is_refused(tmp_path: Path) -> None:
+    text = '<mujoco><include file="robot.xml"/></mujoco>'
+    with pytest.raises(c2d.ScenarioError, match="must hold the robot itself"):
+        read(tmp_path, text, "scene.xml")
+
+
+def test_a_mjcf_robot_that_does_not_float_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text().replace("<freejoint/>", "")
+    with pytest.raises(c2d.ScenarioError, match="must have one body with a free joint"):
+        read(tmp_path, text, "cart.xml")
+
+
+def test_surfaces_that_mujoco_moves_are_drums(tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    if not hasattr(mujoco.MjSpec().worldbody.add_geom(), "surfacevel"):
+        pytest.skip("this MuJoCo moves no surfaces")
+    drums = "".join(
+        f'<geom type="cylinder" zaxis="0 1 0" pos="{x} {y} 0" size="0.1 0.02" surfacevel="1 0 0"/>'
+        for x in (-0.3, 0.3)
+        for y in (-0.2, 0.2)
+    )
+    text = f'<mujoco><worldbody><body name="hull"><freejoint/>{drums}</body></worldbody></mujoco>'
+    reading = read(tmp_path, text, "belt.xml")
+    assert reading.robot.track == c2d.BeltTrack()
+    assert reading.robot.outline.axle_distance == 0.6
+
+
+def test_links_that_something_outside_the_file_moves_are_named(tmp_path: Path) -> None:
+    drum = '<collision><origin xyz="{x} 0 0" rpy="1.5707963267948966 0 0"/><geometry>'
+    drum += '<cylinder radius="0.1" length="0.1"/></geometry></collision>'
+    both = "".join(drum.format(x=x) for x in (-0.25, 0.25))
+    tracks = "".join(
+        link(f"{side}_track", 'type="fixed">', f"0 {sign * 0.2} 0").replace(
+            "</link>", f"{both}</link>"
+        )
+        for side, sign in SIDES
+    )
+    reading = read(tmp_path, urdf(tracks), tracks=["left_track", "right_track"])
+    assert reading.robot.track == c2d.BeltTrack()
+    with pytest.raises(c2d.ScenarioError, match="tracks must be links of the model"):
+        read(tmp_path, urdf(tracks), tracks=["middle_track"])
+
+
+def sdf(version: str, axis: str) -> str:
+    """A cart whose wheel links are rolled by 90 degrees: their z axis points to the right."""
+    wheels = "".join(
+        f"""<link name="{side}{end}"><pose>{x} {y} 0 1.5707963267948966 0 0</pose>
+        <inertial><mass>1</mass></inertial><collision name="c"><geometry><cylinder>
+        <radius>0.1</radius><length>0.1</length></cylinder></geometry></collision></link>
+        <joint name="{side}{end}j" type="revolute"><parent>hull</parent><child>{side}{end}</child>
+        {axis}</joint>"""
+        for side, y in (("l", 0.2), ("r", -0.2))
+        for end, x in (("f", 0.2), ("b", -0.2))
+    )
+    return f'<sdf version="{version}"><model name="m"><link name="hull"/>{wheels}</model></sdf>'
+
+
+@pytest.mark.parametrize(
+    ("version", "axis"),
+    [
+        ("1.4", "<axis><xyz>0 1 0</xyz></axis>"),  # in the frame of the model
+        ("1.5", "<axis><xyz>0 0 1</xyz></axis>"),  # in that of the joint
+        ("1.6", "<axis><xyz>0 1 0</xyz><use_parent_model_frame>1</use_parent_model_frame></axis>"),
+        ("1.6", "<axis><xyz>0 0 1</xyz><use_parent_model_frame>0</use_parent_model_frame></axis>"),
+        ("1.7", '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis>'),
+        ("1.11", "<axis><xyz>0 0 1</xyz></axis>"),
+    ],
+)
+def test_an_axis_is_in_the_frame_that_its_version_of_sdf_says(
+    tmp_path: Path, version: str, axis: str
+) -> None:
+    assert read(tmp_path, sdf(version, axis), "m.sdf").robot.track == c2d.LineOfWheels(2)
+
+
+@pytest.mark.parametrize("version", ["1.3", "1.12", "2.0", "", "1.6.1"])
+def test_other_versions_of_sdf_are_refused(tmp_path: Path, version: str) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r"@version must be of version 1.4 to 1.11"):
+        read(tmp_path, sdf(version, ""), "m.sdf")
+
+
+def test_of_several_models_in_a_world_one_must_be_named(tmp_path: Path) -> None:
+    model = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
+    worlds = "".join(f"<model{model.replace('cart', name)}</model>" for name in ("one", "two"))
+    text = f'<sdf version="1.9"><world name="w">{worlds}</world></sdf>'
+    with pytest.raises(c2d.ScenarioError, match="must hold one model that is not static"):
+        read(tmp_path, text, "w.sdf")
+    assert read(tmp_path, text, "w.sdf", model="two").robot.name == "two"
+    with pytest.raises(c2d.ScenarioError, match="model must be one of one, two"):
+        read(tmp_path, text, "w.sdf", model="three")
+
+
+def test_xacro_is_expanded_only_if_it_is_trusted(tmp_path: Path) -> None:
+    with pytest.raises(c2d.ScenarioError, match="must be trusted, because xacro evaluates"):
+        read(tmp_path, urdf(WHEELS), "cart.xacro")
+
+
+def test_xacro_that_is_trusted_takes_arguments(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    start = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
+    start += '<xacro:arg name="mass" default="8"/>'
+    text = urdf(WHEELS, mass="$(arg mass)").replace('<robot name="cart">', start)
+    assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass == 12.0
+    given = read(tmp_path, text, "cart.xacro", trusted=True, arguments={"mass": "18"})
+    assert given.robot.mass == 22.0
+    assert "cart.xacro (expanded):" in given.sources["robot.mass"]
+    assert "18" in given.text
+
+
+def test_xacro_that_needs_packages_says_which(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    parts = '<xacro:include filename="$(find cart_parts)/wheels.xacro"/>'
+    text = urdf(parts).replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"')
+    with pytest.raises(c2d.ScenarioError, match=r"must have its packages.*got cart_parts"):
+        read(tmp_path, text, "cart.xacro", trusted=True)
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    (folder / "wheels.xacro").write_text(f"<robot>{WHEELS}</robot>")
+    found = read(tmp_path, text, "cart.xacro", trusted=True, packages={"cart_parts": folder})
+    assert found.robot.track == c2d.LineOfWheels(2)
+
+
+def test_macros_in_a_file_that_is_not_called_xacro_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(c2d.ScenarioError, match="must be expanded"):
+        read(tmp_path, urdf('<xacro:wheel name="w"/>'))
+
+
+def test_wheels_that_stand_unevenly_are_placed_one_by_one(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS, pair("mid", 0.05, z=-0.01, radius="0.05")))
+    assert isinstance(reading.robot.track, c2d.HybridWheels)
+    assert reading.robot.track.placements == (
+        (-0.2, 0.0, 0.08),
+        (0.05, -0.01, 0.05),
+        (0.2, 0.0, 0.08),
+    )
+
+
+def test_a_double_wheel_is_one_in_side_view(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS, pair("front_outer", 0.2, y=0.25)))
+    assert reading.robot.track == c2d.LineOfWheels(2)
+    assert len(reading.wheels) == 6
+
+
+def test_forward_is_the_side_of_the_links_called_front(tmp_path: Path) -> None:
+    turned = urdf(pair("front", -0.2) + pair("rear", 0.2, radius="0.07"))
+    reading = read(tmp_path, turned)
+    assert reading.robot.outline.front_radius == 0.08
+    assert any("on the other side than its name says" in doubt for doubt in reading.doubts)
+
+
+def test_forward_is_x_where_no_name_tells(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(pair("a", 0.2) + pair("b", -0.2)))
+    assert reading.notes[0] == "by convention, x is forward: +x is forward"
+
+
+def across_x(name: str) -> str:
+    """A wheel on either side, with its axle along x."""
+    turned = {"axis": "1 0 0", "origin": '<origin rpy="0 1.5707963267948966 0"/>'}
+    y = 0.2 if name == "a" else -0.2
+    return "".join(wheel(f"{name}{x}", f"{x} {y} 0", **turned) for x in (-0.15, 0.15))
+
+
+def test_forward_must_be_given_where_nothing_tells(tmp_path: Path) -> None:
+    text = urdf(across_x("a"), across_x("b"))
+    with pytest.raises(c2d.ScenarioError, match=r'forward must be given, as "\+y" or "-y"'):
+        read(tmp_path, text)
+    assert read(tmp_path, text, forward="-y").notes[0] == "forward was given: -y is forward"
+    with pytest.raises(c2d.ScenarioError, match="forward must be across the axes of the wheels"):
+        read(tmp_path, text, forward="+x")
+
+
+def test_a_mesh_is_read_as_its_hull_where_its_file_is_there(tmp_path: Path) -> None:
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (0, 1)]
+    (tmp_path / "hull.obj").write_text("\n".join(f"v {x} {y} {z}" for x, y, z in corners))
+    shape = collision('<mesh filename="hull.obj" scale="0.1 0.1 0.05"/>')
+    reading = read(tmp_path, urdf(WHEELS, shapes=shape), mesh="hull")
+    assert reading.robot.belly == ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.05), (-0.1, 0.05))
+
+
+def test_a_round_mesh_is_a_wheel(tmp_path: Path) -> None:
+    rim = [(math.cos(a / 32 * math.tau), math.sin(a / 32 * math.tau)) for a in range(32)]
+    facets = "".join(f"vertex {x} {y} {z}\n" for x, y in rim for z in (-0.5, 0.5))
+    (tmp_path / "wheel.stl").write_text(f"solid wheel\n{facets}endsolid")
+    mesh = '<mesh filename="wheel.stl" scale="0.08 0.08 0.05"/>'
+    wheels = pair("front", 0.2, geometry=mesh) + pair("rear", -0.2, geometry=mesh)
+    reading = read(tmp_path, urdf(wheels), mesh="hull")
+    assert reading.robot.outline.front_radius == pytest.approx(0.08, rel=1e-6)  # float32 corners
+
+
+def test_a_reading_survives_a_pickle() -> None:
+    again = pickle.loads(pickle.dumps(SDF))
+    assert again.robot == SDF.robot
+    assert dict(again.sources) == dict(SDF.sources)
+
+
+def test_a_reading_says_what_it_is() -> None:
+    assert SDF.in_words.startswith("cart: 3 round wheels in a line; flippers: 2 round wheels")
+    assert "left front flipper: x 0.5000 m" in repr(SDF)
+    assert "robot.mass" in SDF._repr_html_()
+
+
+def test_a_mesh_in_mjcf_is_read_as_its_hull(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    corners = " ".join(f"{x} {y} {z}" for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (0, 0.1))
+    mesh = f'<asset><mesh name="hull" vertex="{corners}"/></asset>'
+    text = (FILES / "cart.xml").read_text().replace("<worldbody>", f"{mesh}<worldbody>")
+    box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
+    text = text.replace(box, '<geom type="mesh" mesh="hull"/>')
+    with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:13: geom.* must be no mesh"):
+        read(tmp_path, text, "cart.xml")
+    belly = read(tmp_path, text, "cart.xml", mesh="hull").robot.belly
+    assert belly == ((-0.2, 0.0), (0.2, 0.0), (0.2, 0.1), (-0.2, 0.1))

@@ -1,0 +1,344 @@
+"""What a side view cannot hold, and what no robot is, is refused by name, with its line."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from tests.reading.carts import SIDES, WHEELS, collision, link, pair, read, urdf, wheel
+
+LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
+
+
+def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
+    with pytest.raises(c2d.ScenarioError, match=rule) as caught:
+        read(folder, text, name, **how)
+    assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
+
+
+def on_links(kind: str) -> str:
+    """Front wheels on a link of their own, which moves on the hull."""
+    arms = "".join(link(f"{side}_arm", kind, f"0.2 {sign * 0.1} 0") for side, sign in SIDES)
+    wheels = "".join(
+        wheel(f"{side}_front", f"0 {sign * 0.05} 0", parent=f"{side}_arm") for side, sign in SIDES
+    )
+    return urdf(arms, wheels, pair("rear", -0.2))
+
+
+def test_a_wheel_without_a_partner_is_refused(tmp_path: Path) -> None:
+    refused(
+        tmp_path, urdf(WHEELS, wheel("left_mid", "0 0.15 0")), "must have a partner on the right"
+    )
+
+
+def test_sides_that_differ_by_2_mm_are_refused(tmp_path: Path) -> None:
+    text = urdf(wheel("l", "0.2 0.15 0"), wheel("r", "0.202 -0.15 0"), pair("rear", -0.2))
+    refused(tmp_path, text, "must have a partner on the right, in side view within 1 mm")
+    assert read(tmp_path, text, tolerance=0.003).robot.outline.axle_distance == pytest.approx(0.401)
+
+
+def test_a_wheel_in_the_middle_is_refused(tmp_path: Path) -> None:
+    refused(
+        tmp_path, urdf(WHEELS, wheel("tail", "0 0 0")), "must stand on the left or on the right"
+    )
+
+
+def test_wheels_on_slides_are_refused_as_suspension(tmp_path: Path) -> None:
+    kind = 'type="prismatic"><axis xyz="0 0 1"/>' + LIMIT
+    refused(tmp_path, on_links(kind), "a side view holds no suspension")
+
+
+def test_wheels_on_a_steered_joint_are_refused(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 0 1"/>' + LIMIT
+    refused(tmp_path, on_links(kind), "a side view holds no steering")
+
+
+def test_wheels_on_a_rocker_are_refused(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    arms = "".join(link(f"{side}_arm", kind, f"0 {sign * 0.1} 0") for side, sign in SIDES)
+    wheels = "".join(
+        wheel(f"{side}_{x}", f"{x} {sign * 0.05} 0", parent=f"{side}_arm")
+        for side, sign in SIDES
+        for x in (-0.2, 0.2)
+    )
+    refused(tmp_path, urdf(arms, wheels), "a side view holds no rocker")
+
+
+def test_wheels_on_a_floating_joint_are_refused(tmp_path: Path) -> None:
+    refused(tmp_path, on_links('type="floating">'), "must be fixed or turn about an axis")
+
+
+def test_a_toed_wheel_is_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, pair("mid", 0.0, rpy="0 0 0.2"))
+    refused(tmp_path, text, "must turn about the axis of the other wheels")
+
+
+def test_a_sprung_flipper_is_refused_as_suspension(tmp_path: Path) -> None:
+    text = (Path(__file__).parent / "files" / "cart.sdf").read_text()
+    spring = "<dynamics><spring_stiffness>50</spring_stiffness></dynamics>"
+    text = text.replace("<velocity>1</velocity></limit>", f"<velocity>1</velocity></limit>{spring}")
+    refused(tmp_path, text, "must have no spring", "cart.sdf")
+
+
+def test_friction_that_differs_from_wheel_to_wheel_is_refused(tmp_path: Path) -> None:
+    slick = '<gazebo reference="left_front"><mu1>0.2</mu1><mu2>0.2</mu2></gazebo>'
+    refused(tmp_path, urdf(WHEELS, slick), "must be that of all wheels")
+
+
+def test_friction_above_that_of_the_ground_is_the_grounds_in_gazebo(tmp_path: Path) -> None:
+    rough = '<gazebo reference="left_front"><mu1>2</mu1><mu2>3</mu2></gazebo>'
+    assert read(tmp_path, urdf(WHEELS, rough)).friction == 1.0
+
+
+def test_friction_without_limit_is_refused_where_the_larger_holds(tmp_path: Path) -> None:
+    names = [f"{side}_{end}" for side, _ in SIDES for end in ("front", "rear")]
+    rough = "".join(
+        f'<gazebo reference="{n}"><mu1>1e30</mu1><mu2>1e30</mu2></gazebo>' for n in names
+    )
+    refused(tmp_path, urdf(WHEELS, rough), "must have a limit", engine="mujoco")
+
+
+def test_a_roller_beside_driven_wheels_is_refused(tmp_path: Path) -> None:
+    motors = "".join(
+        f'<transmission name="t"><joint name="{side}_{end}_joint"/></transmission>'
+        for side, _ in SIDES
+        for end in ("front", "rear")
+    )
+    text = urdf(WHEELS, pair("mid", 0.0, radius="0.05"), motors)
+    refused(tmp_path, text, "must be driven as the other wheels are")
+
+
+def test_a_mesh_is_refused_unless_its_hull_is_asked_for(tmp_path: Path) -> None:
+    text = urdf(WHEELS, shapes=collision('<mesh filename="a.stl"/>'))
+    refused(tmp_path, text, 'must be no mesh: mesh="hull" takes its hull')
+    refused(tmp_path, text, "must be a mesh that is there", mesh="hull")
+    reading = read(tmp_path, text, mesh="leave_out")
+    assert reading.robot.belly is None
+    assert "left out is a mesh" in reading.doubts[0]
+
+
+def test_a_mesh_of_an_unknown_kind_or_package_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.dae").write_text("")
+    for name, rule in (("a.dae", "must be an .stl or .obj"), ("package://p/a.stl", "packages=")):
+        refused(
+            tmp_path,
+            urdf(WHEELS, shapes=collision(f'<mesh filename="{name}"/>')),
+            rule,
+            mesh="hull",
+        )
+
+
+def test_a_shape_that_is_no_shape_of_a_robot_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(WHEELS, shapes=collision("<plane/>")), "must be a box, cylinder")
+
+
+def test_a_model_without_anything_that_turns_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(), "must have wheels, which are round collision shapes")
+
+
+def test_wheels_with_upright_axles_are_refused(tmp_path: Path) -> None:
+    text = urdf(pair("a", 0.2, axis="0 0 1", origin=""), pair("b", -0.2, axis="0 0 1", origin=""))
+    refused(tmp_path, text, "must have wheels with horizontal axes")
+
+
+def test_a_single_pair_of_wheels_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(pair("only", 0.0)), "must have two wheels or drums on each side")
+
+
+def flippers(x: float = 0.2, tip: str = "0.2 0 0", radius: str = "0.05", shape: str = "") -> str:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    arms = "".join(
+        link(f"{side}_arm{x}", kind, f"{x} {sign * 0.25} 0").replace("</link>", f"{shape}</link>")
+        for side, sign in SIDES
+    )
+    tips = "".join(
+        wheel(f"{side}_tip{x}", tip, parent=f"{side}_arm{x}", radius=radius) for side, _ in SIDES
+    )
+    return arms + tips
+
+
+def test_a_flipper_with_a_wheel_at_its_tip_alone_keeps_it_there(tmp_path: Path) -> None:
+    robot = read(tmp_path, urdf(WHEELS, flippers())).robot
+    assert robot.flippers is not None
+    assert (robot.flippers.length, robot.flippers.torque_limit) == (0.2, 9.0)
+    assert isinstance(robot.flippers.track, c2d.HybridWheels)
+    assert robot.flippers.track.placements[0] == pytest.approx((0.1, 0.0, 0.05))
+
+
+def test_a_flipper_that_pivots_off_the_end_axle_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(WHEELS, flippers(x=0.1)), "must pivot within 5% of the axle distance")
+
+
+def test_flippers_that_differ_from_end_to_end_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers(), flippers(x=-0.2, tip="-0.25 0 0"))
+    refused(tmp_path, text, "must be alike at both ends")
+
+
+def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: Path) -> None:
+    bar = collision('<box size="0.2 0.02 0.02"/>', '<origin xyz="0.1 0 0"/>')
+    refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within a wheel of its flipper")
+
+
+TRACKED = """<sdf version="1.7"><model name="tank">
+<link name="hull"><inertial><mass>20</mass></inertial></link>{links}{plugins}</model></sdf>"""
+
+
+def tracked(drums: tuple[tuple[float, float, float], ...]) -> str:
+    """A vehicle with drums of x, z and radius that Gazebo's controllers move."""
+    shapes = "".join(
+        f"""<collision name="d{n}"><pose>{x} 0 {z} 1.5707963267948966 0 0</pose><geometry><cylinder>
+        <radius>{r}</radius><length>0.1</length></cylinder></geometry></collision>"""
+        for n, (x, z, r) in enumerate(drums)
+    )
+    links = "".join(
+        f"""<link name="{side}"><pose>0 {0.3 * sign} 0 0 0 0</pose>{shapes}</link>
+        <joint name="{side}j" type="fixed"><parent>hull</parent><child>{side}</child></joint>"""
+        for side, sign in SIDES
+    )
+    plugins = "".join(
+        f'<plugin name="TrackController" filename="x"><link>{side}</link></plugin>'
+        for side, _ in SIDES
+    )
+    return TRACKED.format(links=links, plugins=plugins)
+
+
+def test_drums_between_the_end_drums_are_within_the_belt(tmp_path: Path) -> None:
+    text = tracked(((-0.4, 0.0, 0.1), (0.0, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    robot = read(tmp_path, text, "tank.sdf").robot
+    assert robot.track == c2d.BeltTrack()
+    assert robot.outline.axle_distance == 0.8
+
+
+def test_a_trapezoid_of_drums_is_refused_for_now(tmp_path: Path) -> None:
+    text = tracked(((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.1)))
+    refused(tmp_path, text, "an outline has two discs", "tank.sdf")
+
+
+def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:
+    skid = collision('<box size="0.1 0.1 0.16"/>')
+    assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).doubts[0]
+
+
+def test_a_lidar_that_turns_touches_nothing(tmp_path: Path) -> None:
+    lidar = link("lidar", 'type="continuous"><axis xyz="0 0 1"/>', "0.1 0 0.2").replace(
+        "</link>", collision('<box size="0.1 0.1 0.1"/>') + "</link>"
+    )
+    reading = read(tmp_path, urdf(WHEELS, lidar))
+    assert reading.robot.belly is None
+    assert any(note.startswith("lidar: move by themselves") for note in reading.notes)
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [("engine", "ode"), ("mesh", "keep"), ("missing", None), ("forward", "x"), ("tolerance", -1.0)],
+)
+def test_an_argument_that_is_none_of_its_values_is_refused(
+    tmp_path: Path, argument: str, value: object
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
+    assert caught.value.path == argument
+
+
+def test_a_flipper_without_a_partner_is_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers().replace("0.2 -0.25 0", "0.19 -0.25 0"))
+    refused(tmp_path, text, "must have a partner on the other side")
+
+
+def test_flippers_that_differ_in_mass_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers()).replace('<mass value="0.5"/>', '<mass value="0.8"/>', 1)
+    refused(tmp_path, text, "must have flippers whose masses differ by at most 1%")
+
+
+def test_two_pairs_of_flippers_at_one_end_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers(), flippers(x=0.201))
+    refused(tmp_path, text, "must be the only flippers at its end")
+
+
+def test_a_flipper_on_a_flipper_is_refused(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    hands = "".join(
+        link(f"{side}_hand", kind, "0.2 0 0", parent=f"{side}_arm0.2") for side, _ in SIDES
+    )
+    tips = "".join(wheel(f"{side}_end", "0.1 0 0", parent=f"{side}_hand") for side, _ in SIDES)
+    refused(tmp_path, urdf(WHEELS, flippers(), hands, tips), "on another moving part")
+
+
+def test_flippers_at_one_end_without_wheels_on_the_chassis_are_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(flippers()), "must have wheels on the chassis, or flippers at both ends")
+
+
+def test_unevenly_spaced_wheels_on_flippers_at_both_ends_are_refused(tmp_path: Path) -> None:
+    text = urdf(WHEELS, flippers(), flippers(x=-0.2, tip="-0.2 0 0"))
+    refused(tmp_path, text, "must be alike at both ends and have evenly spaced wheels")
+
+
+def test_one_joint_may_turn_both_flippers_and_each_has_half_its_torque(tmp_path: Path) -> None:
+    kind = 'type="revolute"><axis xyz="0 1 0"/>' + LIMIT
+    both = link("arms", kind, "0.2 0 0") + "".join(
+        wheel(f"{side}_tip", f"0.2 {sign * 0.25} 0", parent="arms") for side, sign in SIDES
+    )
+    arms = read(tmp_path, urdf(WHEELS, both)).robot.flippers
+    assert arms is not None
+    assert (arms.torque_limit, arms.mass) == (4.5, 1.25)
+
+
+def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
+    drum = collision('<cylinder radius="0.1" length="0.1"/>', '<origin rpy="1.57079632679 0 0"/>')
+    belts = "".join(
+        link(f"{side}_belt", 'type="fixed">', f"0 {sign * 0.3} 0").replace(
+            "</link>", f"{drum}</link>"
+        )
+        for side, sign in SIDES
+    )
+    text = urdf(WHEELS, belts)
+    refused(tmp_path, text, "must have one kind on the chassis", tracks=["left_belt", "right_belt"])
+
+
+def test_a_track_of_one_drum_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, tracked(((0.0, 0.0, 0.1),)), "must have a drum at either end", "tank.sdf")
+
+
+def test_a_moved_box_beyond_the_belt_is_refused(tmp_path: Path) -> None:
+    box = "<collision name='b'><geometry><box><size>0.3 0.1 0.3</size></box></geometry></collision>"
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
+    text = re.sub(r"</link>(\s*<joint)", rf"{box}</link>\1", text)
+    refused(tmp_path, text, "must lie within the belt round the end drums", "tank.sdf")
+
+
+@pytest.mark.parametrize(
+    ("part", "rule"),
+    [
+        ('<model name="arm"/>', "must hold its parts itself"),
+        ("<include><uri>model://arm</uri></include>", "must hold its parts itself"),
+        (
+            '<joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint>',
+            "must not fix the robot to the world",
+        ),
+        (
+            '<link name="b"><inertial auto="true"/></link>'
+            '<joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>',
+            "must state mass and inertia",
+        ),
+    ],
+)
+def test_what_an_sdf_model_does_not_hold_itself_is_refused(
+    tmp_path: Path, part: str, rule: str
+) -> None:
+    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1))).replace("</model>", f"{part}</model>")
+    refused(tmp_path, text, rule, "tank.sdf")
+
+
+def test_a_body_with_two_joints_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (Path(__file__).parent / "files" / "cart.xml").read_text()
+    joint = '<joint name="left_rear_joint" axis="0 1 0"/>'
+    text = text.replace(joint, joint + '<joint name="toe" axis="0 0 1"/>')
+    refused(tmp_path, text, "must have at most one joint", "cart.xml")
+
+
+def test_a_robot_without_mass_is_refused(tmp_path: Path) -> None:
+    text = re.sub(r'<mass value="[^"]*"', '<mass value="0"', urdf(WHEELS))
+    refused(tmp_path, text, "must have links with a mass > 0 kg")
