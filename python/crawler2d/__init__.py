@@ -139,14 +139,16 @@ _WHEN_NAMED = {
 }
 
 
-def __getattr__(name: str) -> object:
-    """Import what has not been named before."""
-    if name not in _WHEN_NAMED:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = import_module(_WHEN_NAMED[name])
-    found: object = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
-    globals()[name] = found
-    return found
+if not TYPE_CHECKING:  # which would let any name pass
+
+    def __getattr__(name: str) -> object:
+        """Import what has not been named before."""
+        if name not in _WHEN_NAMED:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        module = import_module(_WHEN_NAMED[name])
+        found = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
+        globals()[name] = found
+        return found
 
 
 def __dir__() -> list[str]:
