@@ -167,6 +167,24 @@ impl Envelope {
         self.stretches.iter().filter_map(arc).collect()
     }
 
+    /// The ends of its straight runs.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = [Vector; 2]> {
+        let is_run = |stretch: &&Stretch| matches!(stretch.shape, Form::Run { .. });
+        let ends = |stretch: &Stretch| [0.0, stretch.length].map(|way| stretch.point_at(way));
+        self.stretches.iter().filter(is_run).map(ends)
+    }
+
+    /// [rad] How far the hull bends round each of the first `count` discs; 0 if it does not touch it.
+    pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
+        let mut bends = vec![0.0; count];
+        for stretch in &self.stretches {
+            if let Form::Arc { disc, sweep, .. } = stretch.shape {
+                bends[disc] += sweep;
+            }
+        }
+        bends
+    }
+
     /// Points along the hull, arcs divided every `turn` [rad]; the first point is not repeated at the end.
     pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
         let points = self.cuts(turn);

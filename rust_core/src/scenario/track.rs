@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::TorqueSharing;
-use super::fields::{Fields, Range, one_of};
+use super::fields::{Fields, Range, joined, one_of};
 use super::wheel::{MAX_GROUSERS, Wheel};
 
 /// Largest number of wheels per side.
@@ -271,6 +271,34 @@ impl Track {
         match self {
             Self::Closed(closed) => &closed.of,
             open => open,
+        }
+    }
+
+    /// Checks that it can stand at `path` for a track round so many discs.
+    pub(super) fn check_discs(&self, path: &str, count: usize) -> Result<(), ScenarioError> {
+        let refused = |field: &str, value: &str, rule: &str| {
+            let rule = format!("{rule} on robot.outline.discs, of which there are {count}");
+            Err(ScenarioError::new(joined(path, field), value, rule))
+        };
+        match self {
+            _ if count <= 2 => Ok(()),
+            Self::Line(_) => refused(
+                "kind",
+                "line",
+                "must be another model: a line has two ends, and leaves out the other discs; circumferential wheels go all round",
+            ),
+            Self::Force(force) if force.support == ForceSupport::Wheels => refused(
+                "support",
+                "wheels",
+                "must be \"skids\": a line of wheels has two ends, and leaves out the other discs",
+            ),
+            Self::Segmental(chain) if chain.mechanism == ChainMechanism::Sprocket => refused(
+                "mechanism",
+                "sprocket",
+                "must be \"guide\": a sprocket and an idler hold a chain round two discs, and would not keep it",
+            ),
+            Self::Closed(closed) => closed.of.check_discs(&joined(path, "of"), count),
+            _ => Ok(()),
         }
     }
 

@@ -53,7 +53,7 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
                 "case {case}"
             );
         }
-        let depth = run.metrics.max_penetration / scenario.robot.outline.rear_radius;
+        let depth = run.metrics.max_penetration / scenario.robot.outline.rear_radius();
         deepest = deepest.max(depth);
     }
     println!("seed {seed}: deepest penetration {deepest:.4} of a radius");
