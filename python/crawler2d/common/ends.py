@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-__all__ = ["Disc", "ends_of", "is_short"]
+__all__ = ["Disc", "discs_in", "ends_of", "is_short", "two_discs"]
 
 Disc = tuple[float, float, float]
 """[m] Centre (x, y) in the chassis frame, and radius."""
@@ -23,6 +24,22 @@ def ends_of(discs: Sequence[Disc]) -> tuple[Disc, Disc]:
     rear = max(discs, key=lambda disc: (disc[2] - disc[0], disc[1]))
     front = max(discs, key=lambda disc: (disc[2] + disc[0], disc[1]))
     return rear, front
+
+
+def two_discs(axle_distance: float, rear: float, front: float) -> tuple[Disc, Disc]:
+    """Make two discs of their distance and radii [m], the chassis frame midway between them."""
+    half = 0.5 * axle_distance
+    return (-half, 0.0, rear), (half, 0.0, front)
+
+
+def discs_in(outline: Mapping[str, Any]) -> Sequence[Disc]:
+    """Read the discs of an outline in JSON."""
+    if "discs" in outline:
+        return [(x, y, radius) for x, y, radius in outline["discs"]]
+    distance, rear, front = (
+        outline[name] for name in ("axle_distance", "rear_radius", "front_radius")
+    )
+    return two_discs(distance, rear, front)
 
 
 def is_short(discs: Sequence[Disc]) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import frozen_rows, real_number
-from crawler2d.common.ends import Disc, ends_of, is_short
+from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.flippers import Flippers
@@ -496,8 +496,7 @@ def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
     if not numbers["axle_distance"] > 0.0:  # two discs do not show it
         path = "robot.outline.axle_distance"
         raise ScenarioError(path, numbers["axle_distance"], "must be > 0 m")
-    half = 0.5 * numbers["axle_distance"]
-    return (-half, 0.0, numbers["rear_radius"]), (half, 0.0, numbers["front_radius"])
+    return two_discs(numbers["axle_distance"], numbers["rear_radius"], numbers["front_radius"])
 
 
 def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:

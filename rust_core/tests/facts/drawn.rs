@@ -1,9 +1,9 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Gait,
-    GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack, ShoeShape,
-    Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ChainMechanism, Checked, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers,
+    Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
+    ShoeShape, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 
 use crate::common::*;
@@ -236,10 +236,36 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
     }
 }
 
-/// A legal scenario anywhere in the space of robots, grounds and settings.
+/// A legal scenario anywhere in the space of robots, grounds and settings, on two discs.
 pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
-    let mut s = engineer();
-    let r = &mut s.robot;
+    drawn_round(draw, drawn_ends)
+}
+
+/// The same on three to six discs; the model is one that goes round them.
+pub(crate) fn drawn_on_discs(draw: &mut Draw) -> Scenario {
+    loop {
+        let mut scenario = drawn_round(draw, drawn_discs);
+        let track = &mut scenario.robot.track;
+        match track {
+            Track::Line(_) => *track = grouser_belt(),
+            Track::Force(_) => *track = force(),
+            Track::Segmental(chain) => {
+                chain.mechanism = ChainMechanism::Guide;
+                (chain.road_wheel_count, chain.return_roller_count) = (None, None);
+            }
+            _ => {}
+        }
+        if matches!(track, Track::GrouserBelt(_)) {
+            scenario.robot.drivetrain.torque_sharing = TorqueSharing::Track;
+        }
+        // A disc may lie within the others, and a shoe be too long for a short run.
+        if Checked::new(&scenario).is_ok() {
+            return scenario;
+        }
+    }
+}
+
+fn drawn_ends(draw: &mut Draw) -> Vec<[f64; 3]> {
     let axle_distance = draw.between(0.1, 1.5);
     let front_radius = draw.between(0.1, 0.45) * axle_distance;
     let rear_radius = if draw.unit() < 0.5 {
@@ -247,8 +273,33 @@ pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
     } else {
         draw.between(0.1, 0.45) * axle_distance
     };
-    r.outline.discs = TrackOutline::two_discs(axle_distance, [rear_radius, front_radius]);
-    let smallest = r.outline.smallest_radius();
+    TrackOutline::two_discs(axle_distance, [rear_radius, front_radius])
+}
+
+/// Ends at any height, discs between them below and perhaps one above, in any order.
+fn drawn_discs(draw: &mut Draw) -> Vec<[f64; 3]> {
+    let length = draw.between(0.1, 1.5);
+    let mut disc = |x: [f64; 2], y: [f64; 2]| {
+        let place = [draw.between(x[0], x[1]), draw.between(y[0], y[1])];
+        [place[0], place[1], draw.between(0.08, 0.25)].map(|part| part * length)
+    };
+    let mut discs = vec![
+        disc([-0.15, 0.0], [-0.25, 0.0]),
+        disc([-0.6, -0.5], [-0.1, 0.4]),
+        disc([0.5, 0.6], [-0.1, 0.4]),
+        disc([0.1, 0.35], [-0.25, 0.0]),
+        disc([-0.35, -0.2], [-0.2, 0.0]),
+        disc([-0.2, 0.2], [0.4, 0.8]),
+    ];
+    discs.truncate(3 + (draw.unit() * 4.0) as usize);
+    discs
+}
+
+fn drawn_round(draw: &mut Draw, discs: fn(&mut Draw) -> Vec<[f64; 3]>) -> Scenario {
+    let mut s = engineer();
+    let r = &mut s.robot;
+    r.outline.discs = discs(draw);
+    let (axle_distance, smallest) = (r.outline.axle_distance(), r.outline.smallest_radius());
     r.outline.grouser_height = draw.between(0.0, 0.3) * smallest;
     r.mass = libm::exp(draw.between(0.0, 6.0));
     r.track_mass = draw.between(0.01, 0.3) * r.mass;
