@@ -4,7 +4,7 @@ import copy
 import dataclasses
 import json
 import pickle
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -179,9 +179,10 @@ def test_discs_of_the_short_form_can_be_varied() -> None:
 
 def test_a_number_that_follows_from_discs_is_not_replaced() -> None:
     for name in ("axle_distance", "front_radius", "rear_radius"):
-        path = f"robot.outline.{name}"
+        path, given = f"robot.outline.{name}", cast("dict[str, Any]", {name: 0.1})
         for each in (
-            refused(lambda name=name: dataclasses.replace(TRAPEZOID.outline, **{name: 0.1})),
+            refused(lambda given=given: c2d.TrackOutline(discs=DISCS, **GROUSERS, **given)),
+            refused(lambda given=given: dataclasses.replace(TRAPEZOID.outline, **given)),
             refused(lambda path=path: Scenario(TRAPEZOID, STEP).replace({path: 0.1})),
         ):
             assert (each.path, each.value) == (path, 0.1)
@@ -249,6 +250,15 @@ def test_what_are_no_discs_is_refused_at_once(discs: Any) -> None:
     assert refused(lambda: on(discs)).path.startswith("robot.outline.discs")
 
 
+def test_an_outline_without_discs_has_no_ends() -> None:
+    empty = on(())
+    asked: list[Any] = [lambda: empty.outline.axle_distance, empty.plot, Scenario(empty, STEP).plot]
+    for call in asked:
+        assert refused(call).path == "robot.outline.discs"
+    assert empty._repr_html_() is None
+    assert repr(empty.outline).startswith("TrackOutline(discs=(), ")
+
+
 def test_grousers_are_lower_than_the_smallest_disc() -> None:
     error = refusal(on((*DISCS[:3], (0.29, 0.1, 0.012))))
     assert error.path == "robot.outline.grouser_height"
@@ -291,7 +301,7 @@ def test_a_chain_that_does_not_fit_says_how_many_shoes_do() -> None:
 def test_a_run_on_discs_can_be_tried_continued_and_shown(track: Any, tmp_path: Any) -> None:
     scenario = Scenario(TRAPEZOID.with_track(track), c2d.terrains.step(0.3, friction=0.4))
     run = c2d.simulate(scenario.replace({"duration": 6.0}))
-    assert run.outcome.is_stop
+    assert run.diagnosis is not None
     assert run.what_if("friction x 2").name == "friction x 2"
     page = tmp_path / "run.html"
     run.to_html(page)

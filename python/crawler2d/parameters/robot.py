@@ -142,6 +142,8 @@ class TrackOutline(Parameters):
     @property
     def ends(self) -> tuple[Disc, Disc]:
         """[m] Centre (x, y) and radius of the disc on the rear and on the front end axle."""
+        if not self.discs:
+            raise ScenarioError("robot.outline.discs", self.discs, "must have at least 2 discs")
         return ends_of(self.discs)
 
     @property
