@@ -127,7 +127,7 @@ pub enum ShoeShape {
     Trapezoid,
 }
 
-/// The drive acts on the chassis as a force along its axis at axle height, in the air, too.
+/// The drive acts on the chassis as a force along its axis, x of the chassis frame, in the air, too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceTrack {
     /// What the robot slides or rolls on.
