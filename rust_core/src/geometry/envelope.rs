@@ -392,6 +392,25 @@ mod tests {
     }
 
     #[test]
+    fn the_hull_bends_once_round_and_only_round_discs_that_it_touches() {
+        let discs = [
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.02, 0.05),
+            disc(0.3, 0.0, 0.1),
+            disc(0.4, 0.2, 0.05),
+        ];
+        let belt = Envelope::new(&discs);
+        let bends = belt.bends(discs.len());
+        assert!((bends.iter().sum::<f64>() - TAU).abs() < 1e-12);
+        assert!(bends[1].abs() < 1e-12 && [0, 2, 3].iter().all(|i| bends[*i] > 0.1));
+        assert_eq!(belt.runs().count(), 3);
+        for [from, to] in belt.runs() {
+            let middle = (from + to) * 0.5;
+            assert!(belt.depth(middle).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn distances_along_the_belt_come_back_as_distances() {
         let belt = Envelope::new(&[disc(-0.2, 0.0, 0.1), disc(0.3, 0.05, 0.04)]);
         for i in 0..100 {

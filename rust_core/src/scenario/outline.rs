@@ -131,7 +131,7 @@ impl TrackOutline {
     fn is_short(&self) -> bool {
         match self.discs[..] {
             [[rear, rear_y, _], [front, front_y, _]] => {
-                rear < 0.0 && front == -rear && rear_y == 0.0 && front_y == 0.0
+                rear < 0.0 && rear + front == 0.0 && rear_y == 0.0 && front_y == 0.0
             }
             _ => false,
         }
