@@ -123,6 +123,21 @@ def test_it_drives_up_a_ramp_that_its_raised_nose_meets(track: Any) -> None:
     assert run.metrics["max_angle"] == pytest.approx(0.4, abs=0.1)
 
 
+@pytest.mark.parametrize("track", [c2d.BeltTrack(), c2d.ClosedTrack(c2d.CircumferentialWheels(40))])
+@pytest.mark.parametrize("x", [-0.25, 0.0, 0.27])
+def test_it_starts_on_ground_that_stands_under_any_of_its_runs(track: Any, x: float) -> None:
+    place = -0.435 + x  # with its nose at -0.1 m
+    spike = [(place - 0.005, 0.0), (place, 0.1), (place + 0.005, 0.0)]
+    points = [(-3.0, 0.0), *spike, (0.0, 0.0), (0.0, 0.01), (3.0, 0.01)]
+    ground = c2d.terrains.from_points(points, goal=0.0)
+    robot = dataclasses.replace(TRAPEZOID.with_track(track), belly=None)
+    start = c2d.Start(approach=0.1)
+    run = c2d.simulate(Scenario(robot, ground, start=start, duration=0.01))
+    # It touches the tip of the spike and falls from there.
+    assert run.position[0, 1] > 0.08
+    assert run.metrics["max_penetration"] < 1e-5
+
+
 def test_a_closed_track_runs_round_the_wheels_on_discs() -> None:
     wheels = c2d.CircumferentialWheels(40)
     closed = on(TRAVELLED["trapezoid"], c2d.ClosedTrack(wheels))
