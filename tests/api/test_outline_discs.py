@@ -276,7 +276,7 @@ def test_grousers_are_lower_than_the_smallest_disc() -> None:
 def test_what_has_two_ends_is_refused_round_more_discs(track: Any, path: str, value: str) -> None:
     error = refusal(TRAPEZOID.with_track(track))
     assert (error.path, error.value) == (f"robot.track.{path}", value)
-    assert error.rule.endswith("on robot.outline.discs, of which there are 4")
+    assert "round 4 discs (robot.outline.discs)" in error.rule
     # Two discs at any height have two ends.
     inclined = on(((-0.2, 0.0, 0.05), (0.2, 0.05, 0.06)))
     Scenario(inclined.with_track(track), STEP).validate()

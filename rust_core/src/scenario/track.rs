@@ -276,8 +276,9 @@ impl Track {
 
     /// Checks that it can stand at `path` for a track round so many discs.
     pub(super) fn check_discs(&self, path: &str, count: usize) -> Result<(), ScenarioError> {
-        let refused = |field: &str, value: &str, rule: &str| {
-            let rule = format!("{rule} on robot.outline.discs, of which there are {count}");
+        let refused = |field: &str, value: &str, [instead, why]: [&str; 2]| {
+            let rule =
+                format!("must be {instead} round {count} discs (robot.outline.discs): {why}");
             Err(ScenarioError::new(joined(path, field), value, rule))
         };
         match self {
@@ -285,17 +286,26 @@ impl Track {
             Self::Line(_) => refused(
                 "kind",
                 "line",
-                "must be another model: a line has two ends, and leaves out the other discs; circumferential wheels go all round",
+                [
+                    "another model",
+                    "a line has two ends, and leaves out the others; circumferential wheels go all round",
+                ],
             ),
             Self::Force(force) if force.support == ForceSupport::Wheels => refused(
                 "support",
                 "wheels",
-                "must be \"skids\": a line of wheels has two ends, and leaves out the other discs",
+                [
+                    "\"skids\"",
+                    "a line of wheels has two ends, and leaves out the others",
+                ],
             ),
             Self::Segmental(chain) if chain.mechanism == ChainMechanism::Sprocket => refused(
                 "mechanism",
                 "sprocket",
-                "must be \"guide\": a sprocket and an idler hold a chain round two discs, and would not keep it",
+                [
+                    "\"guide\"",
+                    "sprocket, idler and the wheels on two runs hold a chain round two",
+                ],
             ),
             Self::Closed(closed) => closed.of.check_discs(&joined(path, "of"), count),
             _ => Ok(()),
