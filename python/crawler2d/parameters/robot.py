@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import frozen_rows, real_number
+from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.flippers import Flippers
@@ -32,32 +33,123 @@ _HOLDING_SLOPE = math.radians(45.0)
 _HOLDING_MARGIN = 1.6
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class TrackOutline(Parameters):
-    """Side view of the track: two arcs about the end axles and their outer tangents.
+    """Side view of the track: a taut belt round discs, measured to the grouser tips.
+
+    Two discs are given by their `axle_distance`, `front_radius` and `rear_radius`, with the chassis
+    frame midway between their axles; any number of them by `discs`. Then the chassis frame is that
+    of `discs`, with its origin between the end axles, x forward along the chassis and y up.
 
     Parameters
     ----------
+    discs : array_like, shape (n, 3)
+        [m] Centre x and y in the chassis frame and radius of each disc, in any order. The track
+        must bend round each: a disc inside the hull of the others is refused, and so are more than
+        64 discs.
     axle_distance : float
-        [m] Distance between the end axles.
+        [m] Distance of the end axles along the chassis. The end axles are those of the discs that
+        reach farthest back and forwards, of two that reach equally far the higher one; the rear one
+        is the sprocket's.
     front_radius, rear_radius : float
-        [m] Radius of each end, to the grouser tips.
+        [m] Radius of the disc on each end axle.
     grouser_height : float
         [m] Height of the grousers above the belt; 0 for a smooth belt.
     grouser_pitch : float
         [m] Spacing of the grousers along the belt.
     grouser_thickness : float
         [m] Thickness of a grouser along the belt, less than the pitch.
+
+    Raises
+    ------
+    ScenarioError
+        If `discs` does not hold real numbers, is masked or has another shape, or is given beside a
+        distance or a radius that follows from it; if one of the three is missing or not a number.
+
+    Notes
+    -----
+    `axle_distance`, `front_radius` and `rear_radius` can be read of any outline, and replaced, by
+    `dataclasses.replace` or by path, in one that could have been given by them.
+
+    Examples
+    --------
+    >>> grousers = {"grouser_height": 0.01, "grouser_pitch": 0.05, "grouser_thickness": 0.006}
+    >>> two = TrackOutline(axle_distance=0.4, front_radius=0.06, rear_radius=0.05, **grousers)
+    >>> two == TrackOutline(discs=[(-0.2, 0, 0.05), (0.2, 0, 0.06)], **grousers)
+    True
+
+    With a raised idler in front:
+
+    >>> raised = TrackOutline(discs=[*two.discs, (0.3, 0.08, 0.04)], **grousers)
+    >>> raised.axle_distance, raised.front_radius
+    (0.5, 0.04)
     """
 
     place: ClassVar[str] = "robot.outline"
+    besides: ClassVar[tuple[str, ...]] = ("axle_distance", "front_radius", "rear_radius")
 
-    axle_distance: float
-    front_radius: float
-    rear_radius: float
+    discs: tuple[Disc, ...]
+    if TYPE_CHECKING:
+        # For `dataclasses.replace`; they are properties.
+        axle_distance: float
+        front_radius: float
+        rear_radius: float
     grouser_height: float
     grouser_pitch: float
     grouser_thickness: float
+
+    def __init__(
+        self,
+        *,
+        discs: Any = None,
+        axle_distance: float | None = None,
+        front_radius: float | None = None,
+        rear_radius: float | None = None,
+        grouser_height: float,
+        grouser_pitch: float,
+        grouser_thickness: float,
+    ) -> None:
+        ends = dict(zip(self.besides, (axle_distance, front_radius, rear_radius), strict=True))
+        is_plain = discs is not None and all(number is None for number in ends.values())
+        fields = {
+            "discs": discs if is_plain else _two(discs, ends),
+            "grouser_height": grouser_height,
+            "grouser_pitch": grouser_pitch,
+            "grouser_thickness": grouser_thickness,
+        }
+        for name, value in fields.items():
+            object.__setattr__(self, name, value)
+        self.__post_init__()
+
+    if not TYPE_CHECKING:
+
+        @property
+        def axle_distance(self) -> float:
+            """[m] Distance of the end axles along the chassis."""
+            rear, front = self.ends
+            return front[0] - rear[0]
+
+        @property
+        def front_radius(self) -> float:
+            """[m] Radius of the disc on the front end axle."""
+            return self.ends[1][2]
+
+        @property
+        def rear_radius(self) -> float:
+            """[m] Radius of the disc on the rear end axle."""
+            return self.ends[0][2]
+
+    @property
+    def ends(self) -> tuple[Disc, Disc]:
+        """[m] Centre (x, y) and radius of the disc on the rear and on the front end axle."""
+        if not self.discs:
+            raise ScenarioError("robot.outline.discs", self.discs, "must have at least 2 discs")
+        return ends_of(self.discs)
+
+    @property
+    def in_place_of(self) -> dict[str, tuple[str, ...]]:
+        """What texts have in place of discs, if three numbers say it all."""
+        return {"discs": self.besides} if is_short(self.discs) else {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +192,7 @@ class Robot(Parameters):
     mass : float
         [kg] Of the whole robot, including both tracks and all flippers.
     center_of_mass : array_like, shape (2,)
-        [m] In the chassis frame: origin midway between the end axles, x forward, y up.
+        [m] In the chassis frame: that of the outline, x forward, y up.
     moment_of_inertia : float
         [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0.
     track_mass : float
@@ -383,12 +475,40 @@ class Robot(Parameters):
         return robot if track is None else robot.with_track(track)
 
 
+def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
+    """Make two discs of their distance and radii, those of other discs where one is not given."""
+    given = {name: value for name, value in given.items() if value is not None}
+    values = given
+    if discs is not None:
+        # So does `dataclasses.replace` change one of the three.
+        held = frozen_rows(discs, "robot.outline.discs", rows=True, columns=3)
+        if not is_short(held):
+            name, value = next(iter(given.items()))
+            rule = "must not be given beside discs, which it follows from"
+            raise ScenarioError(f"robot.outline.{name}", value, rule)
+        (_, _, rear), (half, _, front) = held
+        own = {"axle_distance": 2.0 * half, "front_radius": front, "rear_radius": rear}
+        values = {**own, **given}
+    numbers = {}
+    for name in TrackOutline.besides:
+        path = f"robot.outline.{name}"
+        if name not in values:
+            raise ScenarioError(path, None, "must be given, or discs in its place")
+        numbers[name] = real_number(values[name], path)
+    if not numbers["axle_distance"] > 0.0:  # two discs do not show it
+        path = "robot.outline.axle_distance"
+        raise ScenarioError(path, numbers["axle_distance"], "must be > 0 m")
+    return two_discs(numbers["axle_distance"], numbers["rear_radius"], numbers["front_radius"])
+
+
 def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     """Add (+1) or subtract (-1) the mass of arms, as uniform rods at angle 0."""
     length = real_number(flippers.length, "robot.flippers.length")
     pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
-    reach = 0.5 * robot.outline.axle_distance + 0.5 * length
-    places = {"front": (reach,), "rear": (-reach,), "both": (reach, -reach)}
+    rear_axle, front_axle = robot.outline.ends
+    front = (front_axle[0] + 0.5 * length, front_axle[1])
+    rear = (rear_axle[0] - 0.5 * length, rear_axle[1])
+    places = {"front": (front,), "rear": (rear,), "both": (front, rear)}
     if flippers.ends not in places:
         rule = f"must be one of {', '.join(places)}"
         raise ScenarioError("robot.flippers.ends", flippers.ends, rule)
@@ -397,12 +517,15 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     if not mass > 0.0:
         raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave mass for the chassis")
     x, y = robot.center_of_mass
-    center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
+    center = (
+        (robot.mass * x + pair * sum(end[0] for end in ends)) / mass,
+        (robot.mass * y + pair * sum(end[1] for end in ends)) / mass,
+    )
     inertia = robot.moment_of_inertia
     inertia += robot.mass * ((x - center[0]) ** 2 + (y - center[1]) ** 2)
-    for place in ends:
+    for end in ends:
         inertia += pair * length**2 / 12.0
-        inertia += pair * ((place - center[0]) ** 2 + center[1] ** 2)
+        inertia += pair * ((end[0] - center[0]) ** 2 + (end[1] - center[1]) ** 2)
     return replace(robot, mass=mass, center_of_mass=center, moment_of_inertia=inertia)
 
 
