@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PARTS", "Pages", "Part"]
 
+_SLOWEST = {"24 gears all round", "chain of 22 shoes"}
+"""Layouts of ours whose runs take longer than those of all others together: they come last."""
+
 Made = Iterator[tuple[str, str]]
 """Names of sections with their text."""
 
@@ -149,7 +152,9 @@ def _fields_read_otherwise(work: Work, pages: Pages) -> Made:
 
 
 def _other_fields(work: Work, pages: Pages) -> Made:
-    yield from _fields(work, pages, _named(work, lambda row: row == ""))
+    ours = _named(work, lambda row: row == "")
+    for names in (set(ours) - _SLOWEST, set(ours) & _SLOWEST):
+        yield from _fields(work, pages, [name for name in ours if name in names])
 
 
 def _named(work: Work, wanted: Callable[[str], bool]) -> list[str]:
