@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -101,7 +101,7 @@ mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and s
 		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
 	$(BIN)/python tests/mutants.py
 
-# One wheel for every Python from 3.11 on; THIRD_PARTY_NOTICES.yaml has the licences of what is compiled in.
+# One wheel for every Python from 3.11 on.
 wheel: $(VENV)/.dependencies ## build the wheel into dist/
 	@rm -f dist/*.whl
 	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin build --release --locked --out dist
@@ -111,13 +111,6 @@ test-wheel: wheel ## the wheel in a fresh environment without a compiler
 	@rm -rf $(VENV)/fresh && $(PYTHON) -m venv $(VENV)/fresh
 	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,analysis,sensitivity]"
 	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin python $(CURDIR)/tests/fresh_wheel.py
-
-# Those who change Cargo.lock run it; the wheel carries the file.
-notices: $(BIN)/cargo-bundle-licenses ## gather the licences of what is compiled in
-	$(BIN)/cargo-bundle-licenses --format yaml --output THIRD_PARTY_NOTICES.yaml
-
-$(BIN)/cargo-bundle-licenses: | tools
-	env -u CARGO_TARGET_DIR cargo install --quiet --locked --root $(VENV) cargo-bundle-licenses@5.0.0
 
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
