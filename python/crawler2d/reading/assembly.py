@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
@@ -22,7 +23,6 @@ from crawler2d.reading.sides import Pair, middle_of, paired
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base, wheels_of
-from crawler2d.reading.tree import Tree
 from crawler2d.reading.view import SideView, side_view
 
 __all__ = ["Assembly", "assembled"]

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Where
-from crawler2d.reading.poses import Array
+from crawler2d.models.poses import Array
+from crawler2d.models.where import Where
 from crawler2d.reading.sides import Pair
 
 __all__ = ["belt_ends"]

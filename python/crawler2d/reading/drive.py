@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from crawler2d.models.tree import Tree
+from crawler2d.models.where import Where
 from crawler2d.parameters.robot import Drivetrain
 from crawler2d.parameters.track import LineOfWheels, Track
-from crawler2d.reading.elements import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines
-from crawler2d.reading.tree import Tree
 
 __all__ = ["drivetrain_of"]
 
@@ -76,6 +76,12 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
         for pair in pairs
         for wheel in pair.both
         if wheel.joint is not None and wheel.joint.velocity
+    ]
+    found += [
+        (drum.shape.surface_speed, drum.shape.at)
+        for pair in pairs
+        for drum in pair.both
+        if drum.joint is None and drum.shape.surface_speed
     ]
     for plugin in tree.plugins:
         if "track" in plugin.name.lower() or "diff" in plugin.name.lower():
