@@ -93,8 +93,10 @@ class Assembly:
         self.told.note("robot.moment_of_inertia", of_links)
         outline = outline_of(self.told, base, rear[2], front[2])
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
-        torque = _holding_torque(total.mass, max(rear[2], front[2]))
-        drivetrain = drivetrain_of(tree, driven, track, torque=torque, note=self.told.note)
+        torque = _holding_torque(total.mass, rear[2])
+        drivetrain = drivetrain_of(
+            tree, driven, track, radius=rear[2], torque=torque, note=self.told.note
+        )
         flippers = flippers_of(self.told, by_end, total.mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")

@@ -21,7 +21,7 @@ Note = Callable[[str, str], None]
 
 
 def drivetrain_of(
-    tree: Tree, pairs: list[Pair], track: Track, *, torque: float, note: Note
+    tree: Tree, pairs: list[Pair], track: Track, *, radius: float, torque: float, note: Note
 ) -> Drivetrain:
     """Return speed and torque of the tracks.
 
@@ -33,6 +33,8 @@ def drivetrain_of(
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     track : Track
         The model of the track of the chassis.
+    radius : float
+        [m] Of the rear end, at which the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
     note : callable
@@ -47,9 +49,8 @@ def drivetrain_of(
     sharing = "track"
     if wheels and len(efforts) == len(wheels):
         # Every wheel has its own motor; the robot's figure is that of one side.
-        largest = max(pair.radius for pair in pairs)
         torque = 0.5 * sum(
-            effort * largest / wheel.radius for effort, wheel in zip(efforts, wheels, strict=True)
+            effort * radius / wheel.radius for effort, wheel in zip(efforts, wheels, strict=True)
         )
         note(
             "robot.drivetrain.max_torque",
