@@ -192,3 +192,12 @@ def test_a_robot_without_torque_has_none_in_its_file() -> None:
     robot = dataclasses.replace(robot, drivetrain=motors)
     assert "<effort>0.0</effort>" in robot.to_sdf()
     assert "<velocity" not in robot.to_mjcf()
+
+
+def test_the_belt_of_a_steep_flipper_is_read(tmp_path: Path) -> None:
+    """Its large root reaches farther forward and farther back than its tip."""
+    built = c2d.robots.absolem()
+    assert built.flippers is not None
+    steep = dataclasses.replace(built.flippers, angle=1.5)
+    robot = dataclasses.replace(built, flippers=steep)
+    assert list(differences(robot, read_again(robot, "sdf", tmp_path), "sdf")) == []

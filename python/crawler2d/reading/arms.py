@@ -186,7 +186,10 @@ def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> At
     has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= tolerance)
     if pair.is_belt:
         bars = [bar for arm in pair.arms for bar in arm.bars]
-        ends = belt_ends(list(pair.pairs), bars, at=pair.at)
+        # Along the arm: a steep one has its tip above its root.
+        away = np.array([tip.x, tip.y]) - pair.pivot
+        along = away / max(math.hypot(*away), 1e-9)
+        ends = belt_ends(list(pair.pairs), bars, along=along, at=pair.at)
         if not has_root or {root, tip} != set(ends):
             pair.refuse("a belt beside the pivot", "must have a belt from the pivot to the tip")
     out = places[-1] - (places[0] if has_root else pivot)
