@@ -126,8 +126,7 @@ def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
     outline = None
     # The core gives the radius of what is a disc.
     if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
-        turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
-        outline = placed(scene.bodies["outline"][body], turned)
+        outline = scene.bodies["outline"][body]
     return Wheel(
         center=np.array([row["x"], row["y"]]),
         radius=float(row["radius"]),

@@ -54,8 +54,7 @@ def written(
     friction, track_width, chassis_width
         See `Robot.to_sdf`.
     """
-    _core.validate(text)
-    robot: dict[str, Any] = json.loads(text)["robot"]
+    robot: dict[str, Any] = json.loads(_core.canonical(text))["robot"]
     across = across_of(float(robot["gauge"]), track_width, chassis_width)
     friction = real_number(friction, "friction")
     if not 0.0 <= friction <= 1e3:
