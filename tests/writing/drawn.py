@@ -82,8 +82,9 @@ def _track(rng: Generator, length: float, rear: float, front: float, *, wheels_o
         line,
         c2d.HybridWheels((*ends[0], *inner, *ends[1])),
         c2d.CircumferentialWheels(int(around / small / 2.2), wheel_radius=small),
-        *([] if wheels_only else [c2d.BeltTrack(), c2d.ClosedTrack(c2d.LineOfWheels(4))]),
     ]
+    if not wheels_only:
+        models += [c2d.BeltTrack(), c2d.ClosedTrack(c2d.LineOfWheels(4))]
     return models[rng.integers(len(models))]
 
 

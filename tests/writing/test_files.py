@@ -115,7 +115,7 @@ def _grousers(track: Any) -> int:
 @pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 @pytest.mark.parametrize("name", FORMATS)
 def test_masses_that_leave_no_chassis_are_refused(name: str) -> None:
-    far = c2d.HybridWheels([(-0.9, 0.0, 0.064), (0.9, 0.0, 0.064)])
+    far = c2d.HybridWheels(((-0.9, 0.0, 0.064), (0.9, 0.0, 0.064)))
     error = refused(lambda: write(WHEELS.with_track(far), name))
     assert error.path == "robot.moment_of_inertia"
 
