@@ -59,10 +59,12 @@ def test_a_name_that_xml_cannot_hold_is_refused(name: str) -> None:
     assert (error.path, error.value) == ("robot.name", "a\x07b")
 
 
-def test_a_name_that_sdf_reserves_is_refused_there_alone() -> None:
-    odd = dataclasses.replace(WHEELS, name="a::b")
+@pytest.mark.parametrize("name", ["a::b", "__a__"])
+def test_a_name_that_sdf_reserves_is_refused_there_alone(name: str) -> None:
+    odd = dataclasses.replace(WHEELS, name=name)
     assert refused(odd.to_sdf).path == "robot.name"
-    assert 'name="a::b"' in odd.to_urdf()
+    assert f'name="{name}"' in odd.to_urdf()
+    assert 'name="a__b"' in dataclasses.replace(WHEELS, name="a__b").to_sdf()
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -9,6 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import _core
+from crawler2d.drawings.scene import Scene, at_start, on_chassis
 from crawler2d.models.tree import Shape, Tree
 from crawler2d.writing.across import across_of
 from crawler2d.writing.held import Format
@@ -116,3 +117,16 @@ def test_wheels_are_hoops_only_where_uniform_ones_leave_no_chassis() -> None:
     heavy = dataclasses.replace(light, track_mass=6.0)
     hoop = heavy.wheels()["moment_of_inertia"][0] / 0.08**2
     assert tree_of(heavy).by_name["left_wheel_1"].mass == pytest.approx(hoop)
+
+
+def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> None:
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=5)))
+    text = robot._alone()
+    scene = Scene(text, on_chassis(at_start(text)))
+    tree = tree_of(robot)
+    for number in range(3):
+        outline = dense(scene.outline(3 + number, 0)[:-1])
+        shapes = tree.by_name[f"front_left_flipper_wheel_{number + 1}"].shapes
+        inside = deepest(shapes, outline)
+        assert inside.min() > -1e-9
+        assert inside.max() < 1e-3

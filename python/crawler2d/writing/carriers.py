@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,9 @@ from crawler2d.common.bodies import BodyKind
 from crawler2d.drawings.plane import placed
 from crawler2d.drawings.scene import Scene, at_start, on_chassis
 from crawler2d.models.poses import Array
-from crawler2d.writing.inertia import Part
+from crawler2d.writing.inertia import Part, rest
 
-__all__ = ["Carrier", "Wheel", "carriers_of", "track_of"]
+__all__ = ["Carrier", "Wheel", "carriers_of", "left_of", "track_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -120,13 +121,29 @@ def carriers_of(robot: dict[str, Any], text: str) -> list[Carrier]:
     return found
 
 
+def left_of(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
+    """Return what is left without parts and wheels, and whether these are hoops.
+
+    A wheel of a given moment of inertia is lightest as a hoop. It is one only where uniform wheels
+    would leave too little.
+    """
+    wheels = list(wheels)
+    for is_hoop in (False, True):
+        left = rest(whole, [*parts, *(wheel.part(is_hoop=is_hoop) for wheel in wheels)])
+        if left is not None:
+            return left, is_hoop
+    return None, True
+
+
 def _wheel(scene: Scene, row: dict[str, Any]) -> Wheel:
     """Return a wheel with its exact outline, if it is a gear wheel."""
     body = int(np.flatnonzero(scene.bodies["body"] == row["body"])[0])
     outline = None
     # The core gives the radius of what is a disc.
     if scene.kinds[body] == BodyKind.WHEEL and np.isnan(scene.bodies["radius"][body]):
-        outline = scene.bodies["outline"][body]
+        # A flipper that is raised has turned the wheels on it, the farther ones more.
+        turned = np.array([0.0, 0.0, scene.poses[0, body, 2]])
+        outline = placed(scene.bodies["outline"][body], turned)
     return Wheel(
         center=np.array([row["x"], row["y"]]),
         radius=float(row["radius"]),

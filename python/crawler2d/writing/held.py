@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -24,14 +25,14 @@ class Format:
         Whether it can move the surface of a shape, as a belt needs.
     has_hulls : bool
         Whether it can hold the corners of a convex hull.
-    reserved : tuple of str
-        What no name may have in it.
+    reserved : str
+        A pattern of names that it keeps for itself.
     """
 
     name: str
     moves_surfaces: bool
     has_hulls: bool
-    reserved: tuple[str, ...] = ()
+    reserved: str = ""
 
 
 _RULES = {
@@ -70,10 +71,9 @@ def refuse_unheld(robot: dict[str, Any], carriers: Iterable[Carrier], form: Form
     name = robot["name"]
     if not all(letter >= " " and letter not in "\x7f\ufffe\uffff" for letter in name):
         raise ScenarioError("robot.name", name, "must have letters only that XML can hold")
-    for letters in form.reserved:
-        if letters in name:
-            rule = f"must not have {letters} in it, which {form.name} reserves"
-            raise ScenarioError("robot.name", name, rule)
+    if form.reserved and re.fullmatch(form.reserved, name):
+        rule = f"must be no name that {form.name} reserves, with :: in it or between pairs of _"
+        raise ScenarioError("robot.name", name, rule)
 
 
 def refuse_tapering(robot: dict[str, Any], end: str, form: Format) -> NoReturn:

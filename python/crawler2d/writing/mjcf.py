@@ -7,7 +7,7 @@ import numpy as np
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.writing.held import Format
-from crawler2d.writing.model import lowest
+from crawler2d.writing.solids import lowest
 from crawler2d.writing.xml import XML, element, numbers
 
 __all__ = ["MJCF", "mjcf_of"]

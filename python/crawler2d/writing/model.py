@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Array, Pose
+from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.models.where import MADE
 from crawler2d.writing.across import Across
 from crawler2d.writing.belly import belly_shapes
 from crawler2d.writing.belts import belt_shapes
-from crawler2d.writing.carriers import Carrier, Wheel, carriers_of
+from crawler2d.writing.carriers import Carrier, Wheel, carriers_of, left_of
 from crawler2d.writing.gears import gear_shapes
 from crawler2d.writing.held import Format, refuse_tapering, refuse_unheld
-from crawler2d.writing.inertia import Part, rest, tensor
+from crawler2d.writing.inertia import Part, tensor
 from crawler2d.writing.solids import Solids, in_space
 
-__all__ = ["lowest", "model_of"]
+__all__ = ["model_of"]
 
 CHASSIS = "chassis"
 """The root link; its frame is the chassis frame."""
@@ -108,9 +107,9 @@ class _Model:
         arms = [self.rod(arm.end) for arm in self.arms for _ in _SIDES]
         belt = self.belt()
         tracks = [] if belt is None else [belt, belt]
-        left, is_hoop = _left_of(whole, [*arms, *tracks], 2 * self.chassis.wheels)
+        left, is_hoop = left_of(whole, [*arms, *tracks], 2 * self.chassis.wheels)
         if left is None:
-            rule = "must leave some for the chassis: more than that of tracks and flippers there"
+            rule = "must, as the mass, be more than that of tracks and flippers where they are"
             raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
         radius = max(outline["front_radius"], outline["rear_radius"])
         belly = None if robot["belly"] is None else np.array(robot["belly"])
@@ -185,7 +184,7 @@ class _Model:
         flippers, sign = self.robot["flippers"], _sign(arm.end)
         rod = self.rod(arm.end)
         turned = Part(mass=rod.mass, center=arm.middle, inertia=rod.inertia)
-        left, is_hoop = _left_of(turned, [], arm.wheels)
+        left, is_hoop = left_of(turned, [], arm.wheels)
         if left is None:
             rule = "must be such that a rod of that length has more inertia than the wheels on it"
             raise ScenarioError("robot.flippers.length", flippers["length"], rule)
@@ -269,31 +268,3 @@ class _Model:
 
 def _sign(end: str) -> float:
     return 1.0 if end == "front" else -1.0
-
-
-def _left_of(whole: Part, parts: list[Part], wheels: Iterable[Wheel]) -> tuple[Part | None, bool]:
-    """Return what is left without parts and wheels, and whether these are hoops.
-
-    A wheel of a given moment of inertia is lightest as a hoop. It is one only where uniform wheels
-    would leave too little.
-    """
-    wheels = list(wheels)
-    for is_hoop in (False, True):
-        left = rest(whole, [*parts, *(wheel.part(is_hoop=is_hoop) for wheel in wheels)])
-        if left is not None:
-            return left, is_hoop
-    return None, True
-
-
-def lowest(tree: Tree) -> float:
-    """[m] Return the height of the lowest point of all shapes."""
-    return min((_low(shape) for link in tree.links for shape in link.shapes), default=0.0)
-
-
-def _low(shape: Shape) -> float:
-    if shape.kind == "hull":
-        return float(shape.points[:, 2].min())
-    if shape.kind == "cylinder":
-        return float(shape.pose.place[2]) - shape.radius
-    reach: Array = np.abs(shape.pose.turn[2]) @ shape.size
-    return float(shape.pose.place[2] - 0.5 * reach)

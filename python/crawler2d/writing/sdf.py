@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Joint, Link, Shape, Tree
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.writing.across import Across
 from crawler2d.writing.held import Format
-from crawler2d.writing.model import lowest
 from crawler2d.writing.motors import Limits, flipper_joints, moved_links, wheels_by_radius
+from crawler2d.writing.solids import lowest
 from crawler2d.writing.xml import XML, element, numbers
 
 __all__ = ["SDF", "sdf_of"]
 
-SDF = Format(name="SDF", moves_surfaces=True, has_hulls=False, reserved=("::", "__"))
+SDF = Format(name="SDF", moves_surfaces=True, has_hulls=False, reserved=".*::.*|__.*__")
 """SDF has meshes in files of their own only."""
 
 # Newer versions add nothing that is needed here, and DART reads none of them.
@@ -22,20 +24,14 @@ _KINDS = {"hinge": "revolute", "fixed": "fixed"}
 
 def sdf_of(tree: Tree, across: Across, limits: Limits) -> XML:
     """Write a model that stands on z = 0."""
-    model = element("model", element("pose", text=_pose(_up(-lowest(tree)))), name=tree.name)
+    stand = Pose(place=np.array([0.0, 0.0, -lowest(tree)]))
+    model = element("model", element("pose", text=_pose(stand)), name=tree.name)
     for link in tree.links:
         model.append(_link(link))
         if link.name in tree.joints:
-            joint = tree.joints[link.name]
-            model.append(_joint(joint))
+            model.append(_joint(tree.joints[link.name]))
     model.extend(_plugins(tree, across, limits))
     return element("sdf", model, version=_VERSION)
-
-
-def _up(height: float) -> Pose:
-    pose = Pose()
-    pose.place[2] = height
-    return pose
 
 
 def _pose(pose: Pose) -> str:
@@ -71,7 +67,7 @@ def _link(link: Link) -> XML:
             for tag in ("collision", "visual")
         )
         if shape.friction is not None:
-            collision.append(_surface(shape))
+            collision.append(_surface(shape.friction))
         made.extend([collision, visual])
     return made
 
@@ -84,9 +80,8 @@ def _geometry(shape: Shape) -> XML:
     return element("geometry", element("cylinder", radius, length))
 
 
-def _surface(shape: Shape) -> XML:
-    assert shape.friction is not None
-    first, second = shape.friction.first, shape.friction.second
+def _surface(friction: Friction) -> XML:
+    first, second = friction.first, friction.second
     ode = element("ode", element("mu", text=numbers(first)), element("mu2", text=numbers(second)))
     return element("surface", element("friction", ode))
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from crawler2d.models.poses import Array, Pose, from_rpy
-from crawler2d.models.tree import Friction, Shape
+from crawler2d.models.tree import Friction, Shape, Tree
 
-__all__ = ["UPRIGHT", "Solids", "in_space"]
+__all__ = ["Solids", "in_space", "lowest"]
 
-UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))
+_UPRIGHT = from_rpy((-0.5 * math.pi, 0.0, 0.0))
 """Turns the axis of a cylinder, its z, to the left."""
 
 
@@ -46,7 +46,7 @@ class Solids:
 
     def cylinder(self, number: int, center: Array, radius: float) -> Shape:
         """Return a disc in side view."""
-        pose = Pose(place=in_space(center, self.across), turn=UPRIGHT.turn)
+        pose = Pose(place=in_space(center, self.across), turn=_UPRIGHT.turn)
         return self._shape(number, "cylinder", pose, radius=radius, length=self.width)
 
     def box(
@@ -76,3 +76,17 @@ class Solids:
             surface_speed=self.speed,
             **sizes,  # type: ignore[arg-type]
         )
+
+
+def lowest(tree: Tree) -> float:
+    """[m] Return the height of the lowest point of all shapes."""
+    return min((_low(shape) for link in tree.links for shape in link.shapes), default=0.0)
+
+
+def _low(shape: Shape) -> float:
+    if shape.kind == "hull":
+        return float(shape.points[:, 2].min())
+    if shape.kind == "cylinder":
+        return float(shape.pose.place[2]) - shape.radius
+    reach: Array = np.abs(shape.pose.turn[2]) @ shape.size
+    return float(shape.pose.place[2] - 0.5 * reach)
