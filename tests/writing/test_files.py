@@ -11,6 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters.plain import to_plain
+from tests.fuzz.drawn_robots import Draw, drawn_robot
 from tests.shared import refused, with_flippers
 
 WHEELS = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
@@ -176,3 +177,29 @@ def test_widths_are_estimated_from_the_gauge() -> None:
     wide = 0.25 * WHEELS.gauge
     assert f"<length>{wide!r}</length>" in text
     assert f"<length>{0.1!r}</length>" in WHEELS.to_sdf(track_width=0.1)
+
+
+def attempt(number: int) -> int:
+    """Write a legal robot in all formats; count those that hold it."""
+    robot, count = drawn_robot(Draw(number)), 0
+    for name in FORMATS:
+        try:
+            text = write(robot, name)
+        except c2d.ScenarioError:
+            continue
+        ElementTree.fromstring(text.encode())
+        assert "nan" not in text
+        assert "inf" not in text.partition("-->")[2].replace("inertia", "")
+        count += 1
+    return count
+
+
+@pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+def test_any_legal_robot_is_written_or_refused_by_a_rule() -> None:
+    assert sum(attempt(number) for number in range(60)) > 10
+
+
+@pytest.mark.soak
+@pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
+def test_very_many_legal_robots_are_written_or_refused_by_a_rule() -> None:
+    assert sum(attempt(number) for number in range(1000, 3000)) > 400

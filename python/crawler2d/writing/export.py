@@ -84,7 +84,8 @@ def _comment(robot: dict[str, Any], across: Across, friction: float) -> str:
             f"Written by crawler2d {_core.build_info()['version']}. Not from the robot:",
             f"friction {friction:g} of all surfaces; widths of track {across.track_width:g} m,",
             f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
-            "moments of inertia about x and z; limits of half a turn for flippers.",
+            "moments of inertia about x and z; masses of single wheels, shares of their motors;",
+            "limits of half a turn for flippers.",
             f"The robot: {commented(robot)}",
         ]
     )
