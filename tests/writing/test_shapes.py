@@ -130,3 +130,10 @@ def test_gear_wheels_of_a_raised_flipper_are_turned_as_the_core_turns_them() -> 
         inside = deepest(shapes, outline)
         assert inside.min() > -1e-9
         assert inside.max() < 1e-3
+
+
+def test_grousers_that_rounding_swallows_are_none() -> None:
+    wheel = c2d.GearWheel(grouser_count=12, grouser_height=1e-13, tip_thickness=0.004)
+    robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3, wheel=wheel))
+    (shape,) = tree_of(robot).by_name["left_wheel_1"].shapes
+    assert (shape.kind, shape.radius) == ("cylinder", pytest.approx(0.064))

@@ -82,7 +82,8 @@ def belt_shapes(discs: Array, solids: Solids) -> list[Shape]:
 
     The middle of each box lies as deep as its surface is from the axis about which that turns.
     """
-    runs = runs_round(discs)
+    # The box between two equal discs is that of its upper run, and so is not turned about.
+    runs = sorted(runs_round(discs), key=lambda run: -float(run.normal[1]))
     ends = sorted({number for run in runs for number in (run.start, run.end)})
     shapes = [
         solids.cylinder(number, discs[end, :2], float(discs[end, 2]))

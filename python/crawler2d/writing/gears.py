@@ -32,6 +32,8 @@ def grousers_of(outline: Array) -> tuple[float, Array]:
     radii = np.hypot(*outline.T)
     tip = radii.max()
     at_tip = radii >= tip * (1.0 - _SAME)
+    if at_tip.all():  # grousers that rounding cannot tell from the wheel
+        return float(tip), np.zeros((0, 4, 2))
     first = np.flatnonzero(at_tip & ~np.roll(at_tip, 1))
     count = len(outline)
     corners = outline[(first[:, None] + np.array([-1, 0, 1, 2])) % count]

@@ -90,7 +90,7 @@ def _geom(shape: Shape, link: Link) -> XML:
     if shape.surface_speed:
         given["surfacevel"] = numbers(_surface_velocity(shape))
     # Parts of the robot do not touch each other, but everything else.
-    return element("geom", contype="1", conaffinity="0", **given)
+    return element("geom", **given, contype="1", conaffinity="0")
 
 
 def _surface_velocity(shape: Shape) -> list[float]:
