@@ -35,11 +35,11 @@ class Format:
     reserved: str = ""
 
 
-_RULES = {
-    "belt": "must be wheels: {} has no surface that moves",
-    "grouser_belt": "must be a smooth belt or wheels: {} has no grousers that travel along a belt",
-    "segmental": "must be wheels or a smooth belt: a chain is a loop of links, and {} has trees",
-    "force": "must be wheels or a smooth belt: {} has no motor that pushes the chassis",
+_REASONS = {
+    "belt": "{} has no surface that moves",
+    "grouser_belt": "{} has no grousers that travel along a belt",
+    "segmental": "a chain is a loop of links, and {} has trees",
+    "force": "{} has no motor that pushes the chassis",
 }
 
 
@@ -65,9 +65,9 @@ def refuse_unheld(robot: dict[str, Any], carriers: Iterable[Carrier], form: Form
         if carrier.surface == "wheels" or (carrier.surface == "belt" and form.moves_surfaces):
             continue
         path, track = track_of(robot, carrier.end)
-        raise ScenarioError(
-            f"{path}.kind", track["kind"], _RULES[carrier.surface].format(form.name)
-        )
+        held = "wheels or a smooth belt" if form.moves_surfaces else "wheels"
+        reason = _REASONS[carrier.surface].format(form.name)
+        raise ScenarioError(f"{path}.kind", track["kind"], f"must be {held}: {reason}")
     name = robot["name"]
     if not all(letter >= " " and letter not in "\x7f\ufffe\uffff" for letter in name):
         raise ScenarioError("robot.name", name, "must have letters only that XML can hold")
