@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -364,6 +365,157 @@ class Robot(Parameters):
         from crawler2d.drawings.robot_view import draw_robot  # noqa: PLC0415 - optional
 
         return draw_robot(self._alone(), self.in_words, ax)
+
+    def to_sdf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as a model in SDF 1.6, as Gazebo reads it.
+
+        In three dimensions, with both sides: wheels on joints that turn, gear wheels as cylinders
+        with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
+        joints, the belly. `read_robot` finds this robot in all that the file states; the robot
+        itself is in a comment. ``docs/conventions.md``, "Writing a model file", says what each
+        format holds and which figures are estimates.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: in Gazebo the smaller one of two
+            surfaces counts.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot (chains of shoes, travelling grousers, a pushing
+            force), or its masses leave none for the chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> text = c2d.robots.engineer().to_sdf()  # a belt
+        >>> text.count("gz::sim::systems::TrackController")
+        4
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "sdf", path, friction=friction, **widths)
+
+    def to_urdf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as URDF, as ROS and most simulators read it.
+
+        As `to_sdf`, but URDF holds neither belts nor motors: wheels have the limits of theirs.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: each simulator combines two
+            surfaces in its own way.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot (belts, too), or its masses leave none for the
+            chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> robot.with_track(c2d.LineOfWheels(4)).to_urdf().count('type="continuous"')
+        8
+        >>> robot.to_urdf()
+        Traceback (most recent call last):
+        ...
+        crawler2d.errors.ScenarioError: robot.track.kind must be wheels: URDF has no surface ...
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "urdf", path, friction=friction, **widths)
+
+    def to_mjcf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as MJCF, as MuJoCo reads it.
+
+        As `to_sdf`. Wheels have servos of their speed, flippers of their rate. The surfaces of
+        belts move at the largest speed; at run time ``MjModel.geom_surfacevel`` sets another one.
+        Gear wheels and belly may have any shape. The file has no ground.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: it holds whatever the ground
+            has.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot, or its masses leave none for the chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> text = robot.to_mjcf(friction=0.7, track_width=0.08)
+        >>> text.count("<velocity "), text.count('friction="0.7"')
+        (8, 9)
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "mjcf", path, friction=friction, **widths)
 
     @property
     def in_words(self) -> str:
