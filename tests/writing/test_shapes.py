@@ -138,3 +138,21 @@ def test_grousers_that_rounding_swallows_are_none() -> None:
     (shape,) = tree_of(robot).by_name["left_wheel_1"].shapes
     assert shape.kind == "cylinder"
     assert shape.radius == pytest.approx(0.064)
+
+
+def test_a_belt_round_three_discs_is_written_with_a_drum_on_each() -> None:
+    robot = c2d.robots.engineer(flippers=None)
+    discs = [*robot.outline.discs, (0.28, 0.08, 0.04)]
+    raised = dataclasses.replace(
+        robot,
+        outline=c2d.TrackOutline(
+            discs=discs,
+            grouser_height=robot.outline.grouser_height,
+            grouser_pitch=robot.outline.grouser_pitch,
+            grouser_thickness=robot.outline.grouser_thickness,
+        ),
+    )
+    (track,) = (link for link in tree_of(raised).links if link.name == "left_track")
+    drums = [shape for shape in track.shapes if shape.kind == "cylinder"]
+    found = [(*track.pose.then(drum.pose).place[[0, 2]], drum.radius) for drum in drums]
+    assert sorted(found) == pytest.approx(sorted(discs))

@@ -51,12 +51,11 @@ def belt_ends(
     tolerance = _BEYOND * max(rear.radius, front.radius)
     out = [drum for drum in drums if (_reach(drum) - reach).max() > tolerance]
     if out:
-        # An outline of more than two discs would hold these.
         runner = out[0].left[0]
         raise ScenarioError(
             f"{runner.shape.at}: drum[{runner.name}]",
             f"{len(out)} beyond the belt round the end drums",
-            "must lie within the belt round the end drums: an outline has two discs",
+            "must lie within the belt round the end drums: tracks round more are not read",
         )
     for corners in bars:
         beyond = float((corners[:, :2] @ _NORMALS - reach).max())

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
+from crawler2d.common.ends import discs_in, ends_of
 from crawler2d.errors import ScenarioError
 from crawler2d.models.tree import Tree
 from crawler2d.writing.across import Across, across_of
@@ -68,12 +69,12 @@ def written(
 
 
 def _limits(robot: dict[str, Any]) -> Limits:
-    drivetrain, outline = robot["drivetrain"], robot["outline"]
+    drivetrain, ends = robot["drivetrain"], ends_of(discs_in(robot["outline"]))
     return Limits(
         speed=float(drivetrain["max_speed"]),
         acceleration=float(drivetrain["max_acceleration"]),
         deceleration=float(drivetrain["max_deceleration"]),
-        track_height=2.0 * float(max(outline["front_radius"], outline["rear_radius"])),
+        track_height=2.0 * max(radius for _, _, radius in ends),
     )
 
 

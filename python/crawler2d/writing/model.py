@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from crawler2d.common.ends import discs_in, ends_of
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
@@ -77,9 +78,12 @@ class _Model:
         outline, drivetrain = robot["outline"], robot["drivetrain"]
         self.speed = float(drivetrain["max_speed"])
         # [N] Of one side; its torque acts at the radius of the belt round the rear end.
-        belt_radius = outline["rear_radius"] - outline["grouser_height"]
-        self.force = drivetrain["max_torque"] / belt_radius
-        self.half = 0.5 * float(outline["axle_distance"])
+        rear, front = ends_of(discs_in(outline))
+        self.force = drivetrain["max_torque"] / (rear[2] - outline["grouser_height"])
+        # [m] The end axles, on which flippers pivot, and what the track takes between them.
+        self.axles = {"rear": np.array(rear[:2]), "front": np.array(front[:2])}
+        self.length = front[0] - rear[0]
+        self.radius = max(rear[2], front[2])
         self.links: list[Link] = []
         self.joints: dict[str, Joint] = {}
 
@@ -98,7 +102,7 @@ class _Model:
 
     def add_chassis(self) -> None:
         """Add what is left of the masses without flippers and tracks, the belly, and the tracks."""
-        robot, outline = self.robot, self.robot["outline"]
+        robot = self.robot
         whole = Part(
             mass=robot["mass"],
             center=np.array(robot["center_of_mass"]),
@@ -111,9 +115,8 @@ class _Model:
         if left is None:
             rule = "must, as the mass, be more than that of tracks and flippers where they are"
             raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
-        radius = max(outline["front_radius"], outline["rear_radius"])
         belly = None if robot["belly"] is None else np.array(robot["belly"])
-        sizes = np.ptp(belly, axis=0) if belly is not None else (2.0 * self.half, radius)
+        sizes = np.ptp(belly, axis=0) if belly is not None else (self.length, self.radius)
         solids = Solids(
             name=CHASSIS, across=0.0, width=self.across.chassis_width, friction=self.friction
         )
@@ -133,7 +136,7 @@ class _Model:
         for side, sign in _SIDES:
             y = sign * 0.5 * self.across.gauge
             if belt is not None:
-                self.add_track(f"{side}_track", y, belt, radius)
+                self.add_track(f"{side}_track", y, belt)
             for number, wheel in enumerate(self.chassis.wheels, 1):
                 name = f"{side}_wheel_{number}"
                 self.add_wheel(name, CHASSIS, self.chassis, wheel, y, is_hoop=is_hoop)
@@ -149,20 +152,20 @@ class _Model:
         """Return a flipper at angle 0."""
         flippers, sign = self.robot["flippers"], _sign(end)
         mass, length = flippers["mass"], flippers["length"]
-        center = np.array([sign * (self.half + 0.5 * length), 0.0])
+        center = self.axles[end] + np.array([sign * 0.5 * length, 0.0])
         return Part(mass=mass, center=center, inertia=mass * length**2 / 12.0)
 
-    def add_track(self, name: str, y: float, belt: Part, radius: float) -> None:
+    def add_track(self, name: str, y: float, belt: Part) -> None:
         """Add a belt: fixed to the chassis, while its surface moves."""
         width = self.across.track_width
-        length = 2.0 * (self.half + radius)
+        height = 2.0 * self.radius
         self.add(
             Link(
                 name=name,
                 pose=Pose(place=np.array([0.0, y, 0.0])),
                 mass=belt.mass,
                 center=in_space(belt.center, y),
-                inertia=tensor(belt, length=length, height=2.0 * radius, width=width),
+                inertia=tensor(belt, length=self.length + height, height=height, width=width),
                 shapes=self.belt_shapes(name, self.chassis, y, width),
             ),
             Joint(
@@ -188,7 +191,7 @@ class _Model:
         if left is None:
             rule = "must be such that a rod of that length has more inertia than the wheels on it"
             raise ScenarioError("robot.flippers.length", flippers["length"], rule)
-        pivot, width = np.array([sign * self.half, 0.0]), self.across.flipper_width
+        pivot, width = self.axles[arm.end], self.across.flipper_width
         radius = max(flippers["root_radius"], flippers["tip_radius"])
         moments = tensor(left, length=flippers["length"], height=radius, width=width)
         (x, z) = arm.direction
