@@ -62,9 +62,11 @@ from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_
 
 if TYPE_CHECKING:
     from crawler2d import studies
+    from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
 
 __all__ = [
+    "Audit",
     "BatchInterrupted",
     "BeltTrack",
     "BodyKind",
@@ -104,6 +106,7 @@ __all__ = [
     "StoreError",
     "TrackOutline",
     "Until",
+    "audit",
     "build_info",
     "compare",
     "join_stores",
@@ -133,6 +136,8 @@ __version__ = str(build_info()["version"])
 # Rooms that not every user enters are imported when they are first named: they take as long as half
 # of the rest.
 _WHEN_NAMED = {
+    "Audit": "crawler2d.audits.audit",
+    "audit": "crawler2d.audits.audit",
     "Reading": "crawler2d.reading.reading",
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",

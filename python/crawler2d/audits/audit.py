@@ -1,0 +1,222 @@
+"""Audit a model of a robot: what it lacks, where it seizes, and what smallest change ends that."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Any, Unpack
+
+from crawler2d.audits.audited import Audited
+from crawler2d.audits.beside import belt_of
+from crawler2d.audits.lint import lint
+from crawler2d.audits.obstacles import read_obstacles, standard_obstacles
+from crawler2d.audits.pockets import pockets
+from crawler2d.audits.population import (
+    unknown_of,
+    unknown_of_file,
+    vary_of,
+    without_friction,
+)
+from crawler2d.audits.repairs import repaired
+from crawler2d.audits.runs import Runs, scenario_of
+from crawler2d.audits.subject import HowToRead, subject_of
+from crawler2d.audits.text import text_of
+from crawler2d.audits.verdicts import BELT, OWN, verdicts_of
+from crawler2d.common.arrays import whole_number
+from crawler2d.common.extras import extra
+from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.settings import Drive
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.runs.progress import Progress
+
+__all__ = ["Audit", "audit"]
+
+SAMPLES, REPEATS = 80, 2
+"""Of the unknowns, and runs of each: of 80 robots that never seize at most 4.6 % do, of 80 of which
+8 do so at least 5.2 %."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Audit(Audited):
+    """What an audit found; printing it shows the short form.
+
+    Attributes
+    ----------
+    robot, reading : Robot, and Reading or None
+        What was audited, and what was read if it was a file.
+    lint, pockets : tuple of Finding, tuple of Pocket
+        What is hardly meant in the model, and a screen of its geometry.
+    belt : Belt
+        The robot on belts that it was compared with; its `reason` says which belts, and why.
+    obstacles, verdicts : mapping of str to terrain, tuple of Verdict
+        What it drove over, and what came of it.
+    seizes : bool
+        Whether it seizes on an obstacle that the belt clears.
+    repairs, repaired : tuple of Repair, and Repaired or None
+        Changes that end the seizures, and all of the search for them.
+    table : xarray.Dataset
+        The runs behind the verdicts.
+    vary, unknown, drive
+        Over what the rates are rates, and how it was driven.
+    """
+
+    @property
+    def in_words(self) -> str:
+        """The short form, as ``python -m crawler2d audit`` prints it."""
+        return text_of(self)
+
+    def __repr__(self) -> str:
+        """Write the short form."""
+        return self.in_words
+
+
+def audit(
+    robot: Robot | str | os.PathLike[str],
+    obstacles: Mapping[str, Terrain] | None = None,
+    *,
+    vary: Mapping[str, Any] | None = None,
+    unknown: Mapping[str, Any] | None = None,
+    samples: int = SAMPLES,
+    repeats: int = REPEATS,
+    seed: int = 0,
+    repair: bool = True,
+    drive: Drive | None = None,
+    duration: float | None = None,
+    store: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    threads: int | None = None,
+    progress: bool | Progress | None = True,
+    **reading: Unpack[HowToRead],
+) -> Audit:
+    """Find out whether a model of a robot seizes where a belt would not, and what ends that.
+
+    The robot drives over the standard obstacles, beside the same robot on belts, again and again
+    with what is not known of it drawn anew. The rules of lint, verdicts and repairs are in
+    ``docs/conventions.md``, "Audit".
+
+    Parameters
+    ----------
+    robot : Robot or path
+        The robot, or the file of a model: SDF, URDF, xacro or MJCF.
+    obstacles : mapping of str to terrain, optional
+        What to drive over, by label, in place of the standard obstacles. They keep their friction.
+    vary : mapping of str to distribution, optional
+        What differs from run to run; see `sweep`. None takes start, contact and, of random step
+        fields, the field.
+    unknown : mapping of str to distribution, optional
+        What is not known, in the same form. None takes, of a file, narrow ranges for what it states
+        and wide ones for estimates; of a preset and of another robot those of `unknowns`; and the
+        friction of the floor. ``{}`` takes everything as known.
+    samples : int
+        Of the unknowns: so many robots on floors, 1 to 100,000.
+    repeats : int
+        Runs of each of them over every obstacle, 1 to 1,000,000.
+    seed : int
+        Seed of the draws, 0 to 2^64 - 1.
+    repair : bool
+        Whether to search for repairs if it seizes.
+    drive : Drive, optional
+        None drives at 0.2 sqrt(g L), with L the axle distance, or at the robot's largest speed if
+        that is less; flippers `Climb`, and are raised before the obstacle.
+    duration : float, optional
+        [s] Longest simulated time. None takes that in which the robot would drive fifteen times its
+        own length.
+    store : str or path-like, optional
+        A file that keeps every run: the same call goes on where it was; see `sweep`.
+    executor, threads, progress
+        See `sweep`.
+    **reading
+        For a file: the keywords of `read_robot`, such as `engine` and `trusted`.
+
+    Returns
+    -------
+    Audit
+        Lint, pockets, verdicts and repairs; printing it shows the short form.
+
+    Raises
+    ------
+    ScenarioError
+        If the file cannot be read, or an argument or the robot breaks a rule.
+    BatchInterrupted
+        On Ctrl-C; a store keeps what was finished.
+    ImportError
+        If xarray is missing, or what the format of the file needs.
+
+    Examples
+    --------
+    Four wheels that touch, on one step:
+
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+    >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
+    >>> found = audit(robot, step, unknown={}, repeats=20, progress=False)
+    >>> found.seizes, found.verdicts[0].where, found.verdicts[0].there
+    (True, '1-2', (20, 20))
+    >>> found.repairs[0].what, found.repairs[0].confirmed
+    ('chassis: 5 wheels in place of 4', True)
+    """
+    extra("xarray", "analysis")  # fail before the runs if it is missing
+    whole_number(seed, "seed", 0, 2**64 - 1)
+    if drive is not None and not isinstance(drive, Drive):
+        raise ScenarioError("drive", drive, "must be a Drive")
+    own, read, floors = subject_of(robot, reading)
+    friction = 0.9 if read is None else read.friction
+    grounds = standard_obstacles(own, friction)
+    if obstacles is not None:
+        grounds = read_obstacles(obstacles)
+    if unknown is None:
+        if read is None:
+            unknown = unknown_of(own, with_friction=obstacles is None)
+        else:
+            unknown = unknown_of_file(read, floors)
+            unknown = unknown if obstacles is None else without_friction(unknown)
+    runs = Runs(
+        scenario=scenario_of(own, next(iter(grounds.values())), drive, duration),
+        vary=vary_of() if vary is None else vary,
+        unknown=unknown,
+        samples=samples,
+        repeats=repeats,
+        seed=seed,
+        store=store,
+        executor=executor,
+        threads=threads,
+        progress=progress,
+    )
+    belt = belt_of(own)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ScenarioWarning)
+        table = runs.table({OWN: own, BELT: belt.robot}, grounds)
+        verdicts = verdicts_of(table, list(grounds))
+        is_seizing = any(each.word == "seizes" for each in verdicts)
+        found = None
+        if repair and is_seizing:
+            found = repaired(own, belt, grounds=grounds, verdicts=verdicts, table=table, runs=runs)
+    return Audit(
+        robot=own,
+        reading=read,
+        lint=lint(own, read, _doubts(caught)),
+        pockets=pockets(own),
+        belt=belt,
+        obstacles=grounds,
+        verdicts=verdicts,
+        repaired=found,
+        table=table,
+        vary=runs.vary,
+        unknown=unknown,
+        drive=runs.scenario.drive,
+    )
+
+
+def _doubts(caught: list[warnings.WarningMessage]) -> list[str]:
+    """Return what the core doubts, each once; other warnings go on."""
+    doubts = []
+    for each in caught:
+        if issubclass(each.category, ScenarioWarning):
+            doubts.append(str(each.message))
+        else:
+            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
+    return list(dict.fromkeys(doubts))

@@ -1,0 +1,226 @@
+"""Candidates for a repair: the same robot with other wheels, from little changed to much."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crawler2d.audits.pockets import pockets
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import (
+    CircumferentialWheels,
+    GearWheel,
+    HybridWheels,
+    LineOfWheels,
+    RoundWheel,
+    Track,
+)
+
+__all__ = ["CARRIERS", "Candidate", "candidates_of", "wheel_count"]
+
+CARRIERS = ("chassis", "flippers")
+"""What carries wheels."""
+
+KINDS = ("wheels", "gears", "belt")
+"""Kinds of repairs, in the order in which they are looked for."""
+
+_HEIGHT = 3.0 / 16.0  # of the smallest radius: the Engineer's grousers
+_THICKNESS = 1.0 / 8.0  # of the distance of two grousers, likewise
+_GROUSERS = (12, 8, 16)
+
+Wheeled = LineOfWheels | CircumferentialWheels | HybridWheels
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A robot that may not seize.
+
+    Parameters
+    ----------
+    what : str
+        What is changed, in words.
+    kind : {"wheels", "gears", "belt"}
+        Other numbers, sizes or places of round wheels; gear wheels in their place; or belts.
+    robot : Robot
+        With the change.
+    change : int
+        Wheels and belts of one side that are new, gone, or of another size or shape; those that
+        only move do not count.
+    """
+
+    what: str
+    kind: str
+    robot: Robot
+    change: int
+
+
+def candidates_of(robot: Robot, carriers: Collection[str]) -> list[Candidate]:
+    """List candidates that change the wheels where a robot seizes.
+
+    Parameters
+    ----------
+    robot : Robot
+        As it is.
+    carriers : collection of str
+        Which of `CARRIERS` seize; only their wheels are changed.
+
+    Returns
+    -------
+    list of Candidate
+        Wheels and gears, the least changed first. Empty if no wheels carry it there.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+    >>> for each in candidates_of(robot, ["chassis"])[:3]:
+    ...     print(each.change, each.what)
+    1 chassis: 5 wheels in place of 4
+    1 chassis: 3 wheels in place of 4
+    2 chassis: 6 wheels in place of 4
+    """
+    found = [*_of_kind(robot, carriers, "wheels", _more_wheels)]
+    found += _of_kind(robot, carriers, "gears", _gears)
+    return sorted((each for each in found if _fits(each.robot)), key=lambda each: each.change)
+
+
+def wheel_count(robot: Robot) -> int:
+    """Count the wheels of one side, flippers included."""
+    return int(np.count_nonzero(robot.wheels()["side"] == "left"))
+
+
+def _fits(robot: Robot) -> bool:
+    """Whether a robot keeps every rule, as one with wheels that are too many may not."""
+    try:
+        robot.wheels()
+    except ScenarioError:
+        return False
+    return True
+
+
+Variants = Callable[[Robot, str, Wheeled], Iterator[tuple[str, Track]]]
+
+
+def _of_kind(
+    robot: Robot, carriers: Collection[str], kind: str, variants: Variants
+) -> Iterator[Candidate]:
+    """Change every carrier in the first way, then every one in the second, and so on."""
+    chosen = [each for each in CARRIERS if each in carriers and _track_of(robot, each) is not None]
+    ways = []
+    for carrier in chosen:
+        track = _track_of(robot, carrier)
+        assert track is not None
+        ways.append(
+            [(f"{carrier}: {what}", carrier, new) for what, new in variants(robot, carrier, track)]
+        )
+    for changes in zip(*ways, strict=False):
+        changed = robot
+        for _, carrier, track in changes:
+            changed = _with(changed, carrier, track)
+        what = "; ".join(text for text, _, _ in changes)
+        yield Candidate(what=what, kind=kind, robot=changed, change=_change(robot, changed))
+
+
+def _track_of(robot: Robot, carrier: str) -> Wheeled | None:
+    """Return the wheels of a carrier; None if it has none."""
+    track: Track | None = robot.track
+    if carrier == "flippers":
+        track = None if robot.flippers is None else robot.flippers.track or robot.track
+    return track if isinstance(track, Wheeled) else None
+
+
+def _with(robot: Robot, carrier: str, track: Track) -> Robot:
+    """Put other wheels on a carrier; those of the other stay."""
+    arms = robot.flippers
+    if carrier == "flippers":
+        assert arms is not None
+        return replace(robot, flippers=replace(arms, track=track))
+    if arms is not None and arms.track is None and isinstance(robot.track, LineOfWheels):
+        robot = replace(robot, flippers=replace(arms, track=robot.track))
+    return robot.with_track(track)
+
+
+def _more_wheels(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Track]]:
+    """Yield other numbers, sizes and places of the wheels of a carrier."""
+    if isinstance(track, HybridWheels):
+        yield from _between(robot, carrier, track)
+        return
+    count = track.count
+    others = [count + 1, count - 1, count + 2, count + 3, 2 * count - 1, 3 * count - 2]
+    least = 2 if isinstance(track, LineOfWheels) else 3
+    for other in dict.fromkeys(others):
+        if other >= least:
+            yield f"{other} wheels in place of {count}", replace(track, count=other)
+    if isinstance(track, LineOfWheels) and track.wheel_radius is not None:
+        whole = robot.outline.front_radius
+        for radius in (0.5 * (track.wheel_radius + whole), whole):
+            if radius > track.wheel_radius * 1.001:
+                text = f"wheels of {1e3 * radius:.1f} mm in place of {1e3 * track.wheel_radius:.1f}"
+                yield text, replace(track, wheel_radius=radius)
+                text = f"{count + 1} wheels of {1e3 * radius:.1f} mm"
+                yield text, replace(track, wheel_radius=radius, count=count + 1)
+
+
+def _between(robot: Robot, carrier: str, track: HybridWheels) -> Iterator[tuple[str, Track]]:
+    """Yield placed wheels with one more in the deepest pocket, and with one in every pocket."""
+    if len(track.placements) < 2:
+        return
+    order = sorted(track.placements)
+    between = [
+        tuple(0.5 * (a + b) for a, b in zip(rear, front, strict=True))
+        for rear, front in itertools.pairwise(order)
+    ]
+    own = [p for p in pockets(robot) if carrier.removesuffix("s") in p.carrier]
+    deepest = max(range(len(between)), key=lambda k: own[k].friction if k < len(own) else 0.0)
+    for what, more in (
+        (f"one wheel more, between wheels {deepest} and {deepest + 1}", [between[deepest]]),
+        ("one wheel more between every two", between),
+    ):
+        placed = sorted([*order, *((x, y, radius) for x, y, radius in more)])
+        yield what, replace(track, placements=tuple(placed))
+
+
+def _gears(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[str, Track]]:
+    """Yield gear wheels in the place of round ones, with grousers of the Engineer's proportions."""
+    if not isinstance(track.wheel, RoundWheel):
+        return
+    table = robot.wheels()
+    here = np.char.find(table["carrier"].astype(str), carrier.removesuffix("s")) >= 0
+    smallest = float(table["radius"][here].min())
+    height = None if robot.outline.grouser_height > 0.0 else _HEIGHT * smallest
+    for grousers in _GROUSERS:
+        thickness = _THICKNESS * 2.0 * np.pi * smallest / grousers
+        gear = GearWheel(
+            grouser_count=grousers,
+            grouser_height=height,
+            tip_thickness=None if robot.outline.grouser_thickness > 0.0 else float(thickness),
+        )
+        yield f"gear wheels with {grousers} grousers", replace(track, wheel=gear)
+
+
+def _change(before: Robot, after: Robot) -> int:
+    """Count the wheels of one side that are new, gone, or of another size or shape."""
+    changed = 0
+    for carrier in CARRIERS:
+        old, new = _track_of(before, carrier), _track_of(after, carrier)
+        if old is None or new is None or old == new:
+            continue
+        arms = 1
+        if carrier == "flippers" and before.flippers is not None:
+            arms = 2 if before.flippers.ends == "both" else 1
+        was, now = _count(old), _count(new)
+        alike = old.wheel == new.wheel and _size(old) == _size(new)
+        changed += arms * (abs(now - was) if alike else max(now, was))
+    return changed
+
+
+def _count(track: Wheeled) -> int:
+    return len(track.placements) if isinstance(track, HybridWheels) else track.count
+
+
+def _size(track: Wheeled) -> float | None:
+    return None if isinstance(track, HybridWheels) else track.wheel_radius

@@ -1,0 +1,130 @@
+"""Rules of lint about what a file says: friction, limits, motors, sides, doubts of the reader."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from crawler2d.audits.finding import Finding, named
+from crawler2d.reading.reading import Reading
+from crawler2d.reading.sources import lines
+from crawler2d.reading.tree import Joint, Link
+
+__all__ = ["of_model", "wheel_links"]
+
+_STICKIEST = 2.0
+"""[-] Rubber tracks on concrete have up to 1; more is meant to stop sliding, not measured."""
+
+_SAME = 1e-6
+"""[m] Last digit of the files: sides that differ by less are equal."""
+
+
+def of_model(reading: Reading) -> Iterator[Finding]:
+    """Find what a file says that is hardly meant.
+
+    Parameters
+    ----------
+    reading : Reading
+        What was read.
+    """
+    yield from _friction(reading)
+    yield from _effort(reading)
+    yield from _driven(reading)
+    yield from _sides(reading)
+    for doubt in reading.doubts:
+        line = re.search(re.escape(reading.tree.file) + r"[^:]*:[0-9]+", doubt)
+        where = line[0] if line else reading.tree.file
+        yield Finding(rule="doubt", severity="warning", what=doubt, where=where)
+
+
+def wheel_links(reading: Reading) -> list[tuple[Link, Joint]]:
+    """Return the links of all wheels with the joints that they turn on; drums have none."""
+    joints = reading.tree.joints
+    carrying = [link for link in _carrying(reading) if link.name in joints]
+    return [(each, joints[each.name]) for each in carrying if joints[each.name].is_unlimited]
+
+
+def _carrying(reading: Reading) -> list[Link]:
+    """Return the links of wheels and drums."""
+    shown = set(reading.wheels["line"].tolist())
+    return [link for link in reading.tree.links if link.at.line in shown]
+
+
+def _friction(reading: Reading) -> Iterator[Finding]:
+    """Take the coefficients as they are written: an engine may combine them to less."""
+    found = [
+        (coefficient, at)
+        for link in _carrying(reading)
+        for shape in link.shapes
+        if shape.friction is not None
+        for coefficient, at in (
+            (shape.friction.first, shape.friction.first_at),
+            (shape.friction.second, shape.friction.second_at),
+        )
+        if coefficient > _STICKIEST
+    ]
+    if not found:
+        return
+    largest = max(coefficient for coefficient, _ in found)
+    what = (
+        f"friction of {largest:g}; tracks have 0.3 to 1. By the rule of {reading.engine} it counts"
+        f" as {reading.friction:g} on a floor, other engines may take it as it is"
+    )
+    severity = "error" if reading.friction > _STICKIEST else "warning"
+    where = lines([at for _, at in found])
+    yield Finding(rule="friction", severity=severity, what=what, where=where)
+
+
+def _effort(reading: Reading) -> Iterator[Finding]:
+    wheels = [joint for _, joint in wheel_links(reading)]
+    without = [joint for joint in wheels if not joint.effort or not math.isfinite(joint.effort)]
+    if not without:
+        return
+    torque = reading.robot.drivetrain.max_torque
+    what = (
+        f"{len(without)} of {len(wheels)} wheels have no effort limit: their motors hold the speed"
+        f" under any load; here they have {torque:.3g} N m a track, an estimate"
+    )
+    where = lines([joint.effort_at for joint in without])
+    yield Finding(rule="effort", severity="warning", what=what, where=where)
+
+
+def _driven(reading: Reading) -> Iterator[Finding]:
+    """Tell of wheels for which the file names no motor: something outside must turn them."""
+    wheels = [joint for _, joint in wheel_links(reading)]
+    idle = [joint for joint in wheels if joint.name not in reading.tree.driven]
+    if not idle:
+        return
+    names = named([joint.child for joint in idle])
+    what = (
+        f"the file names no motor for {len(idle)} of {len(wheels)} wheels ({names}); here all are"
+        " driven, as by a controller outside it: those that nothing turns drag"
+    )
+    where = lines([joint.at for joint in idle])
+    yield Finding(rule="not driven", severity="note", what=what, where=where)
+
+
+def _sides(reading: Reading) -> Iterator[Finding]:
+    """Compare left and right, wheel by wheel in the order of the table."""
+    table = reading.wheels
+    left, right = (table["side"] == side for side in ("left", "right"))
+    if left.sum() != right.sum():  # double wheels: the reader has paired them
+        return
+    off = {
+        name: np.abs(table[name][left] - table[name][right])
+        for name in ("x", "y", "radius", "mass")
+    }
+    worst = max(float(off[name].max()) for name in ("x", "y", "radius"))
+    heavier = float((off["mass"] / np.maximum(table["mass"][left], 1e-9)).max())
+    if worst <= _SAME and heavier <= _SAME:
+        return
+    index = int(np.argmax(off["x"] + off["y"] + off["radius"] + off["mass"]))
+    what = (
+        f"left and right differ by up to {1e3 * worst:.3g} mm and {heavier:.2g} of a wheel's mass,"
+        f" most at {table['name'][left][index]}; here both have the mean"
+    )
+    where = f"{reading.tree.file}:{table['line'][left][index]}, {table['line'][right][index]}"
+    yield Finding(rule="sides", severity="note", what=what, where=where)

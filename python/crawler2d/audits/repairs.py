@@ -1,0 +1,201 @@
+"""Repairs: the smallest changes that end the seizures, searched, and confirmed on fresh draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from crawler2d.audits.beside import Belt
+from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
+from crawler2d.audits.runs import Runs, raised
+from crawler2d.audits.screen import screened
+from crawler2d.audits.share import Share
+from crawler2d.audits.verdicts import OWN, Verdict, shares
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Flat, Terrain
+from crawler2d.studies.search import search
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Repair", "Repaired", "repaired"]
+
+_FIRST = 10  # runs of every candidate on each terrain in the first round of a search
+_GROUNDS = 4  # obstacles of a search: those that seize most
+LEVEL = "level ground"
+"""Where the cost of driving is measured."""
+
+_CLEARS = 0.95
+_SEIZES = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Repair:
+    """A change that was tried on fresh draws, and what it costs.
+
+    Parameters
+    ----------
+    what : str
+        What changes, in words.
+    kind : {"wheels", "gears", "belt"}
+        Other round wheels, gear wheels, or belts that a plugin moves.
+    robot : Robot
+        With the change; all else is as it was.
+    change : int
+        Wheels and belts of one side that are new, gone, or of another size or shape.
+    wheels : int
+        Wheels of one side, flippers included.
+    confirmed : bool
+        Whether it clears 95 % of its fresh runs or more on every obstacle that seized, and the
+        lower bound of its rate of seizing is above 5 % on none of all obstacles.
+    cleared, seized : mapping of str to Share
+        In fresh runs, by obstacle.
+    speed : float
+        [-] Simulated time by computing time on level ground, relative to the robot as it is: above
+        1 it is simulated faster. It is that of this simulator, on this machine.
+    """
+
+    what: str
+    kind: str
+    robot: Robot
+    change: int
+    wheels: int
+    confirmed: bool
+    cleared: Mapping[str, Share]
+    seized: Mapping[str, Share]
+    speed: float
+
+
+class Repaired(NamedTuple):
+    """What a search for repairs came to.
+
+    Parameters
+    ----------
+    repairs : tuple of Repair
+        The best of each kind, those that are confirmed first, the least changed first.
+    tried : int
+        Candidates that were simulated; of a kind of which none passed there is no repair.
+    before : mapping of str to Share
+        How often the robot as it is seizes in the same fresh runs, by obstacle.
+    table : xarray.Dataset
+        The fresh runs: the models "model" and the repairs by their words, the obstacles and "level
+        ground".
+    """
+
+    repairs: tuple[Repair, ...]
+    tried: int
+    before: Mapping[str, Share]
+    table: xarray.Dataset
+
+
+def repaired(
+    robot: Robot,
+    belt: Belt,
+    *,
+    grounds: Mapping[str, Terrain],
+    verdicts: Sequence[Verdict],
+    table: xarray.Dataset,
+    runs: Runs,
+) -> Repaired:
+    """Search for changes that end the seizures of a robot.
+
+    Candidates first drive the runs in which the robot seized; see `screened`. Of those that pass,
+    round wheels and gear wheels apart, the least changed is searched for that clears 95 % of its
+    runs on the four obstacles that seize most; see `crawler2d.studies.search`. Then these, the belt
+    and the robot as it is drive over all obstacles with draws that nothing before has had.
+
+    Parameters
+    ----------
+    robot : Robot
+        As it is.
+    belt : Belt
+        The same on belts.
+    grounds : mapping of str to terrain
+        All obstacles.
+    verdicts : sequence of Verdict
+        What was found on them.
+    table : xarray.Dataset
+        The runs behind these.
+    runs : Runs
+        How runs are made.
+    """
+    seizing = [each for each in verdicts if each.word == "seizes"]
+    worst = sorted(seizing, key=lambda each: -each.seized.rate)[:_GROUNDS]
+    carriers = {"chassis" if each.carrier == "chassis" else "flippers" for each in seizing}
+    every = candidates_of(robot, carriers)
+    passed = screened(every, table, worst[0].obstacle, runs.threads)
+    chosen = []
+    for kind in ("wheels", "gears"):
+        space = [each for each in passed if each.kind == kind]
+        if space:
+            chosen.append(_searched(space, {v.obstacle: grounds[v.obstacle] for v in worst}, runs))
+    if belt.robot != robot:
+        what = f"belts moved by a track plugin ({belt.reason})"
+        belts = wheel_count(robot) + 1
+        chosen.append(Candidate(what=what, kind="belt", robot=belt.robot, change=belts))
+    models = {OWN: robot, **{each.what: each.robot for each in chosen}}
+    # Stops that rattle cost most, so what driving costs is measured where nothing stops.
+    level = Flat(length=5.0 * robot.outline.axle_distance)
+    fresh = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
+    found = [_judged(fresh, each, list(grounds), seizing) for each in chosen]
+    order = sorted(found, key=lambda each: (not each.confirmed, each.change))
+    before = {name: shares(fresh, OWN, name)[1] for name in grounds}
+    return Repaired(tuple(order), len(every) + (belt.robot != robot), before, fresh)
+
+
+def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -> Candidate:
+    """Return the least changed candidate that gets over the grounds, or the best of all."""
+    drive = runs.scenario.drive
+    changes = {raised(each.robot, drive): each.change for each in space}
+
+    def change(scenario: Scenario) -> float:
+        return float(changes[scenario.robot])
+
+    found = search(
+        runs.scenario,
+        {each.what: {"robot": raised(each.robot, drive)} for each in space},
+        change,
+        terrains=grounds,
+        at_least=_CLEARS,
+        first=_FIRST,
+        confirm=1,  # the fresh runs of `repaired` confirm
+        vary=runs.vary,
+        unknown=runs.unknown,
+        samples=1,
+        seed=runs.seed,
+        store=runs.store,
+        executor=runs.executor,
+        threads=runs.threads,
+        progress=runs.progress,
+    )
+    return next(each for each in space if each.what == found.attrs["winner"])
+
+
+def _judged(
+    table: xarray.Dataset, chosen: Candidate, grounds: list[str], seizing: Sequence[Verdict]
+) -> Repair:
+    """Judge a candidate by its fresh runs."""
+    pairs = {name: shares(table, chosen.what, name) for name in grounds}
+    clears = all(pairs[each.obstacle][0].rate >= _CLEARS for each in seizing)
+    seizes = any(seized.low > _SEIZES for _, seized in pairs.values())
+    return Repair(
+        what=chosen.what,
+        kind=chosen.kind,
+        robot=chosen.robot,
+        change=chosen.change,
+        wheels=wheel_count(chosen.robot),
+        confirmed=clears and not seizes,
+        cleared={name: cleared for name, (cleared, _) in pairs.items()},
+        seized={name: seized for name, (_, seized) in pairs.items()},
+        speed=_speed(table, chosen.what) / _speed(table, OWN),
+    )
+
+
+def _speed(table: xarray.Dataset, model: str) -> float:
+    """[-] Return simulated time by computing time on level ground."""
+    own = table.sel(model=model, terrain=LEVEL)
+    return float(np.nansum(own["time"].values) / np.nansum(own["wall_time"].values))

@@ -1,0 +1,134 @@
+"""The runs behind an audit: every model over every obstacle, as one table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.parameters.gaits import Climb
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, Start
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.runs.progress import Progress
+from crawler2d.sweeps.axes import Axis
+from crawler2d.sweeps.labels import Label
+from crawler2d.sweeps.tabulate import tabulate
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import NDArray
+
+__all__ = ["TRIED", "Runs", "column", "raised", "scenario_of"]
+
+TRIED = ("torque x 2", "friction x 2")
+"""What is tried at every stop, besides the closed track of jammed robots."""
+
+_GRAVITY = 9.81
+_FROUDE = 0.2
+_LENGTHS = 15.0
+_FRESH = 2**63  # added to a seed
+
+
+def scenario_of(
+    robot: Robot, ground: Terrain, drive: Drive | None, duration: float | None
+) -> Scenario:
+    """Return what all runs of an audit share.
+
+    Unless `drive` is given, the robot drives at 0.2 sqrt(g L), with L its axle distance (0.4 m/s
+    for 0.41 m), so that large and small ones meet their obstacles alike, or at its largest speed if
+    that is less; flippers `Climb`. It has the time in which it would drive ten times its length,
+    flippers not counted, and begins a fifth of its axle distance before the obstacle.
+    """
+    outline = robot.outline
+    if drive is None:
+        speed = _FROUDE * math.sqrt(_GRAVITY * outline.axle_distance)
+        gait = None if robot.flippers is None else Climb()
+        drive = Drive(speed=round(min(speed, robot.drivetrain.max_speed), 3), gait=gait)
+    length = outline.axle_distance + outline.front_radius + outline.rear_radius
+    if duration is None:
+        duration = round(max(_LENGTHS * length / max(abs(drive.speed), 1e-3), 1.0), 1)
+    start = Start(approach=0.2 * outline.axle_distance)
+    ready = raised(robot, drive)
+    return Scenario(ready, ground, drive=drive, start=start, duration=duration)
+
+
+def raised(robot: Robot, drive: Drive) -> Robot:
+    """Raise the flippers of a robot that climbs, as its driver does before the obstacle."""
+    if robot.flippers is None or not isinstance(drive.gait, Climb):
+        return robot
+    return replace(robot, flippers=replace(robot.flippers, angle=drive.gait.reach_angle))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Runs:
+    """How the runs of an audit are made; the fields are arguments of `audit`."""
+
+    scenario: Scenario
+    vary: Mapping[str, Any]
+    unknown: Mapping[str, Any]
+    samples: int
+    repeats: int
+    seed: int
+    store: str | PathLike[str] | None
+    executor: Executor | None
+    threads: int | None
+    progress: bool | Progress | None
+
+    def table(
+        self,
+        robots: Mapping[str, Robot],
+        grounds: Mapping[str, Terrain],
+        *,
+        is_confirming: bool = False,
+    ) -> xarray.Dataset:
+        """Simulate every robot on every ground: by `model`, `terrain`, `sample`, `repeat`.
+
+        A confirmation takes half of the samples, once each, and draws that nothing else has had.
+        """
+        samples, repeats, seed = self.samples, self.repeats, self.seed
+        if is_confirming:
+            samples, seed = -(-samples // 2), (seed + _FRESH) % 2**64
+            repeats = 1 if self.unknown else repeats
+        drive = self.scenario.drive
+        for robot in robots.values():
+            for ground in grounds.values():
+                # A broken rule is an error here; a run that only its draws break is recorded.
+                self.scenario.replace({"robot": raised(robot, drive), "terrain": ground}).validate()
+        models: dict[Label, Mapping[str, Any]] = {
+            name: {"robot": raised(robot, drive)} for name, robot in robots.items()
+        }
+        terrains: dict[Label, Mapping[str, Any]] = {
+            name: {"terrain": ground} for name, ground in grounds.items()
+        }
+        table = tabulate(
+            self.scenario,
+            [Axis("model", ("robot",), models), Axis("terrain", ("terrain",), terrains)],
+            repeats=repeats,
+            seed=seed,
+            vary=self.vary,
+            unknown=self.unknown,
+            samples=samples,
+            trials=TRIED,
+            store=self.store,
+            executor=self.executor,
+            wall_time=True,
+            threads=self.threads,
+            progress=self.progress,
+            on_error="record",
+        )
+        if "sample" in table.dims:
+            return table
+        return table.rename(repeat="sample").expand_dims("repeat", -1)
+
+
+def column(table: xarray.Dataset, name: str, **at: str) -> NDArray[Any]:
+    """Return a column of one cell, shape (samples, repeats)."""
+    cell = table[name].sel(at).transpose("sample", "repeat")
+    return np.asarray(cell.values)

@@ -1,0 +1,184 @@
+"""What an audit says of each obstacle, by one written rule, from the runs on it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d.audits.runs import TRIED, column
+from crawler2d.audits.share import Share, share_of
+from crawler2d.results.outcome import Outcome
+from crawler2d.sweeps.stops import short_name
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["BELT", "OWN", "SEIZES", "WORDS", "Freed", "Verdict", "verdict_word", "verdicts_of"]
+
+OWN, BELT = "model", "belt"
+"""Names of the two in the table."""
+
+WORDS = ("seizes", "belt fails, too", "does not seize", "not certain")
+"""The words of a verdict, in the order in which they are asked."""
+
+SEIZES, _SELDOM, _CLEARS = 0.05, 0.10, 0.95
+
+_TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Freed:
+    """What a trial came to, over all seized runs.
+
+    Parameters
+    ----------
+    trial : str
+        As in `Run.trials`.
+    freed, made : int
+        How many runs it freed, of how many.
+    """
+
+    trial: str
+    freed: int
+    made: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What the runs over one obstacle say.
+
+    Parameters
+    ----------
+    obstacle : str
+        Its label.
+    word : {"seizes", "belt fails, too", "does not seize", "not certain"}
+        By the rule of `verdict_word`.
+    cleared, seized : Share
+        Of the model's runs.
+    belt_cleared, belt_seized : Share
+        Of those of the same robot on belts.
+    outcome, belt_outcome : str
+        How most runs ended.
+    where : str
+        Between which wheels most seized runs are jammed, such as "8-9"; "" without any.
+    carrier : str
+        Of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
+    there : tuple of int, shape (2,)
+        How many seized runs are jammed there, of how many.
+    freed : tuple of Freed
+        What trials came to in the seized runs.
+    friction : tuple of float, shape (2,)
+        [-] Between which frictions of the drawn floors the runs seized; nan without any.
+    """
+
+    obstacle: str
+    word: str
+    cleared: Share
+    seized: Share
+    belt_cleared: Share
+    belt_seized: Share
+    outcome: str
+    belt_outcome: str
+    where: str
+    carrier: str
+    there: tuple[int, int]
+    freed: tuple[Freed, ...]
+    friction: tuple[float, float]
+
+
+def verdict_word(cleared: Share, seized: Share, belt: Share) -> str:
+    """Judge an obstacle.
+
+    "seizes": the lower bound of the rate of seizing is above 5 %, and the belt clears in 95 % of
+    its runs or more. "belt fails, too": the belt clears in fewer, and so does the model. "does not
+    seize": the upper bound of the rate of seizing is below 10 %. "not certain": anything else.
+
+    Parameters
+    ----------
+    cleared, seized : Share
+        Of the model.
+    belt : Share
+        How often the belt clears.
+    """
+    if seized.low > SEIZES and belt.rate >= _CLEARS:
+        return "seizes"
+    if belt.rate < _CLEARS and cleared.rate < _CLEARS:
+        return "belt fails, too"
+    return "does not seize" if seized.high < _SELDOM else "not certain"
+
+
+def verdicts_of(table: xarray.Dataset, obstacles: Sequence[str]) -> tuple[Verdict, ...]:
+    """Judge every obstacle of a table with the models "model" and "belt"."""
+    return tuple(_verdict(table, each) for each in obstacles)
+
+
+def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Share]:
+    """Return how often a model clears an obstacle, and how often it seizes there."""
+    ends = column(table, "outcome", model=model, terrain=obstacle)
+    made = np.isin(ends, [str(each) for each in Outcome])
+    return share_of(ends == Outcome.CLEARED, made), share_of(ends == Outcome.SEIZED, made)
+
+
+def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
+    cleared, seized = shares(table, OWN, obstacle)
+    belt_cleared, belt_seized = shares(table, BELT, obstacle)
+    own = {"model": OWN, "terrain": obstacle}
+    jammed = column(table, "outcome", **own) == Outcome.SEIZED
+    where, carrier, there = _where(table, own, jammed)
+    return Verdict(
+        obstacle=obstacle,
+        word=verdict_word(cleared, seized, belt_cleared),
+        cleared=cleared,
+        seized=seized,
+        belt_cleared=belt_cleared,
+        belt_seized=belt_seized,
+        outcome=_commonest(column(table, "outcome", **own)),
+        belt_outcome=_commonest(column(table, "outcome", model=BELT, terrain=obstacle)),
+        where=where,
+        carrier=carrier,
+        there=there,
+        freed=_freed(table, own, jammed),
+        friction=_friction(table, own, jammed),
+    )
+
+
+def _commonest(ends: np.ndarray[tuple[int, int]]) -> str:
+    return str(Counter(ends.ravel().tolist()).most_common(1)[0][0])
+
+
+def _where(
+    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
+) -> tuple[str, str, tuple[int, int]]:
+    if not jammed.any():
+        return "", "", (0, 0)
+    carriers = column(table, "stop_carrier", **own)[jammed].tolist()
+    bodies = column(table, "stop_bodies", **own)[jammed].tolist()
+    (carrier, pair), count = Counter(zip(carriers, bodies, strict=True)).most_common(1)[0]
+    return str(pair), str(carrier), (count, len(bodies))
+
+
+def _freed(
+    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
+) -> tuple[Freed, ...]:
+    found = []
+    for trial in _TRIED:
+        name = short_name(trial)
+        made = column(table, f"tried_{name}", **own) & jammed
+        if made.any():
+            freed = column(table, f"freed_by_{name}", **own) & made
+            found.append(Freed(trial=trial, freed=int(freed.sum()), made=int(made.sum())))
+    return tuple(found)
+
+
+def _friction(
+    table: xarray.Dataset, own: dict[str, str], jammed: np.ndarray[tuple[int, int]]
+) -> tuple[float, float]:
+    if "unknown_friction" not in table or not jammed.any():
+        return math.nan, math.nan
+    drawn = column(table, "unknown_friction", **own)[jammed]
+    return float(drawn.min()), float(drawn.max())

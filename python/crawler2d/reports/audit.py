@@ -1,0 +1,100 @@
+"""Audit a model file: what it lacks, where the robot seizes, and what smallest change ends that.
+
+Exit status: 1 if the robot seizes where a belt clears, 2 if the file or an option is bad, else 0;
+130 after Ctrl-C, with what a store keeps.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any, get_args
+
+from crawler2d.audits.audit import REPEATS, SAMPLES, audit
+from crawler2d.audits.plain import plain_of
+from crawler2d.errors import LimitError, ScenarioError, StoreError
+from crawler2d.reading.friction import ENGINES
+from crawler2d.reading.meshes import MeshRule
+
+__all__ = ["add_arguments", "run"]
+
+_QUICK = 40
+"""Samples of a quick audit, each once."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``python -m crawler2d audit``."""
+    parser.add_argument("file", type=Path, help="SDF, URDF, xacro or MJCF")
+    parser.add_argument("--quick", action="store_true", help="few runs and no repairs")
+    parser.add_argument("--json", action="store_true", help="print plain data in place of words")
+    parser.add_argument("--samples", type=int, help=f"of what is not known (default: {SAMPLES})")
+    parser.add_argument("--repeats", type=int, help=f"runs of each (default: {REPEATS})")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
+    parser.add_argument("--store", type=Path, help="a file that keeps every run")
+    parser.add_argument("--threads", type=int, help="default: all cores")
+    parser.add_argument("--no-repairs", action="store_true", help="do not search for repairs")
+    reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
+    reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
+    reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
+    reading.add_argument("--model", help="name of the model in a world")
+    reading.add_argument("--mesh", choices=get_args(MeshRule), default="refuse")
+    reading.add_argument("--missing", choices=["refuse", "leave_out"], default="refuse")
+    reading.add_argument(
+        "--track", action="append", default=[], help="a link that moves; repeatable"
+    )
+    reading.add_argument("--ground-friction", type=float, help="of the floor's own surface")
+    reading.add_argument("--trusted", action="store_true", help="let xacro evaluate expressions")
+    reading.add_argument("--package", action="append", default=[], metavar="NAME=FOLDER")
+    reading.add_argument("--argument", action="append", default=[], metavar="NAME=VALUE")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Audit a file; returns the exit status."""
+    try:
+        found = audit(
+            options.file,
+            samples=_given(options.samples, _QUICK if options.quick else SAMPLES),
+            repeats=_given(options.repeats, 1 if options.quick else REPEATS),
+            seed=options.seed,
+            repair=not (options.quick or options.no_repairs),
+            store=options.store,
+            threads=options.threads,
+            **_reading(options),
+        )
+    except KeyboardInterrupt as interrupt:
+        print(str(interrupt) or "interrupted", file=sys.stderr)
+        return 130
+    except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
+        print(f"audit: {error}", file=sys.stderr)
+        return 2
+    if options.json:
+        print(json.dumps(plain_of(found), indent=2, allow_nan=False))
+    else:
+        print(found.in_words)
+    return 1 if found.seizes else 0
+
+
+def _given(number: int | None, usual: int) -> int:
+    return usual if number is None else number
+
+
+def _reading(options: argparse.Namespace) -> dict[str, Any]:
+    names = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "trusted")
+    return {
+        **{name: getattr(options, name) for name in names},
+        "tracks": options.track,
+        "packages": _pairs(options.package, "package"),
+        "arguments": _pairs(options.argument, "argument"),
+    }
+
+
+def _pairs(texts: list[str], name: str) -> dict[str, str]:
+    pairs = {}
+    for text in texts:
+        key, sign, value = text.partition("=")
+        if not sign or not key:
+            raise ScenarioError(name, text, "must be NAME=VALUE")
+        pairs[key] = value
+    return pairs

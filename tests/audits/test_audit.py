@@ -1,0 +1,388 @@
+"""An audit from end to end, on a robot whose seizure is known, and what it is given."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.__main__ import main
+from crawler2d.audits import audit as audit_module
+from crawler2d.audits.beside import belt_of
+from crawler2d.audits.candidates import candidates_of, wheel_count
+from crawler2d.audits.obstacles import standard_obstacles
+from crawler2d.audits.plain import plain_of
+from crawler2d.audits.population import unknown_of_file
+from crawler2d.audits.runs import raised, scenario_of
+from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
+
+SEIZING = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+STEP: Any = {"step of 75 mm": c2d.terrains.step(0.075)}
+QUIET: Any = {"progress": False}
+
+
+@pytest.fixture(scope="module")
+def found() -> c2d.Audit:
+    """Four touching wheels on a step of 75 mm, everything known but the start."""
+    return c2d.audit(SEIZING, STEP, unknown={}, repeats=20, **QUIET)
+
+
+def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) -> None:
+    (verdict,) = found.verdicts
+    assert found.seizes
+    assert (verdict.word, verdict.outcome, verdict.belt_outcome) == ("seizes", "seized", "cleared")
+    assert (verdict.seized.rate, verdict.belt_cleared.rate) == (1.0, 1.0)
+    assert (verdict.where, verdict.carrier) == ("1-2", "chassis")
+    assert found.belt.reason == "BeltTrack, along the outline"
+
+
+def test_what_freed_it_was_tried(found: c2d.Audit) -> None:
+    freed = {each.trial: each.freed for each in found.verdicts[0].freed}
+    assert freed["closed track"] == freed["friction x 2"] == 20
+    assert freed["torque x 2"] == 0
+
+
+def test_a_fifth_wheel_is_the_smallest_repair(found: c2d.Audit) -> None:
+    best = found.repairs[0]
+    assert (best.kind, best.confirmed, best.change, best.wheels) == ("wheels", True, 1, 5)
+    assert best.robot.track == c2d.LineOfWheels(5, wheel_radius=0.0608)
+    assert replace(best.robot, track=SEIZING.track) == SEIZING
+    assert best.seized["step of 75 mm"].rate == 0.0
+
+
+def test_a_belt_is_a_repair_and_gears_are_tried(found: c2d.Audit) -> None:
+    by_kind = {each.kind: each for each in found.repairs}
+    assert set(by_kind) == {"wheels", "gears", "belt"}
+    assert by_kind["belt"].confirmed
+    assert by_kind["belt"].wheels == 0
+    assert by_kind["gears"].seized["step of 75 mm"].rate == 0.0
+    assert all(each.speed > 0.0 for each in found.repairs)
+
+
+def test_repairs_are_confirmed_by_runs_that_the_search_has_not_had(found: c2d.Audit) -> None:
+    assert found.repaired is not None
+    assert found.repaired.before["step of 75 mm"].rate == 1.0
+    fresh = set(found.repaired.table["scenario"].values.ravel().tolist())
+    assert fresh.isdisjoint(found.table["scenario"].values.ravel().tolist())
+
+
+def test_the_runs_are_there(found: c2d.Audit) -> None:
+    assert dict(found.table.sizes) == {"model": 2, "terrain": 1, "sample": 20, "repeat": 1}
+    assert "start.approach" in found.table.attrs["vary"]
+    ends = found.table["outcome"].sel(model="model")
+    assert (ends == "seized").mean().item() == found.verdicts[0].seized.rate
+
+
+def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
+    text = repr(found)
+    for part in (
+        "step of 75 mm  0 % (0-16)  100 % (84-100)  100 %        seized      seizes",
+        "step of 75 mm  1-2 of the chassis  20/20",
+        "It seizes on 1 of 1 obstacles that the belt clears: step of 75 mm.",
+        "confirmed: chassis: 5 wheels in place of 4",
+        "Lint: nothing found",
+        "no verdict",
+    ):
+        assert part in text
+    assert text == str(found) == found.in_words
+    assert max(map(len, text.splitlines())) <= 120
+
+
+def test_as_plain_data_it_is_json(found: c2d.Audit) -> None:
+    plain = json.loads(json.dumps(plain_of(found), allow_nan=False))
+    assert plain["seizes"] is True
+    assert plain["verdicts"][0]["word"] == "seizes"
+    assert plain["repairs"][0]["robot"]["track"]["count"] == 5
+    assert plain["pockets"][0]["depth"] is None  # a slot has no bottom
+
+
+def test_a_robot_that_does_not_seize_is_not_repaired() -> None:
+    good = SEIZING.with_track(c2d.LineOfWheels(5, wheel_radius=0.0608))
+    found = c2d.audit(good, STEP, unknown={}, repeats=40, **QUIET)
+    assert not found.seizes
+    assert found.repaired is None
+    assert found.repairs == ()
+    assert found.verdicts[0].word == "does not seize"
+    assert "It was not found to seize" in found.in_words
+
+
+def test_repairs_can_be_left_out() -> None:
+    found = c2d.audit(SEIZING, STEP, unknown={}, repeats=10, repair=False, **QUIET)
+    assert found.seizes
+    assert found.repaired is None
+
+
+def test_a_robot_on_belts_is_its_own_belt() -> None:
+    found = c2d.audit(c2d.robots.engineer(flippers=None), STEP, samples=2, repeats=1, **QUIET)
+    assert found.belt.robot == found.robot
+    assert found.pockets == ()
+    own, belt = (found.table["final_x"].sel(model=name).values for name in ("model", "belt"))
+    assert np.array_equal(own, belt)
+
+
+def test_equal_calls_give_equal_audits() -> None:
+    pair = [c2d.audit(SEIZING, STEP, samples=3, repeats=1, repair=False, **QUIET) for _ in "ab"]
+    assert pair[0].verdicts == pair[1].verdicts
+    assert pair[0].table["final_x"].identical(pair[1].table["final_x"])
+
+
+def test_what_a_user_says_is_unknown_counts() -> None:
+    unknown = {"robot.mass": c2d.scaled(0.9, 1.1)}
+    found = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repeats=1, repair=False, **QUIET)
+    assert "unknown_mass" in found.table
+    assert "unknown_friction" not in found.table
+
+
+def test_terrains_of_a_users_own_keep_their_friction() -> None:
+    found = c2d.audit(SEIZING, STEP, samples=2, repeats=1, repair=False, **QUIET)
+    assert "terrain.friction" not in found.unknown
+    assert "robot.center_of_mass[0]" in found.unknown
+
+
+def test_the_floor_of_the_standard_obstacles_is_not_known(monkeypatch: Any) -> None:
+    monkeypatch.setattr(audit_module, "standard_obstacles", lambda *_: STEP)
+    found = c2d.audit(SEIZING, samples=2, repeats=1, repair=False, **QUIET)
+    assert "terrain.friction" in found.unknown
+
+
+def test_a_store_keeps_the_runs(tmp_path: Path) -> None:
+    made: list[int] = []
+    how: Any = {"samples": 2, "repeats": 1, "repair": False, "store": tmp_path / "runs.sqlite"}
+    for _ in range(2):
+        c2d.audit(SEIZING, STEP, **how, progress=lambda done, _: made.append(done))
+    assert made[-2:] == [4, 4] or made.count(4) >= 2
+    assert len(c2d.table(tmp_path / "runs.sqlite")["outcome"]) == 4
+
+
+# Standard obstacles
+
+
+def test_standard_obstacles_grow_with_the_robot() -> None:
+    small = standard_obstacles(SEIZING, 0.8)
+    outline = SEIZING.outline
+    large = replace(
+        SEIZING, outline=replace(outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
+    )
+    for a, b in zip(small.values(), standard_obstacles(large, 0.8).values(), strict=True):
+        for name in ("height", "rise", "width", "thickness", "post", "edge_radius"):
+            if hasattr(a, name):
+                assert getattr(b, name) == pytest.approx(10.0 * getattr(a, name))
+        assert getattr(a, "friction") == getattr(b, "friction") == 0.8  # noqa: B009
+
+
+def test_with_flippers_there_is_a_higher_step() -> None:
+    assert (
+        len(standard_obstacles(c2d.robots.absolem(), 0.8))
+        == len(standard_obstacles(SEIZING, 0.8)) + 1
+    )
+
+
+def test_a_closed_track_clears_them() -> None:
+    """The highest are near what a rigid belt climbs; without flippers it is none too strong."""
+    robot = c2d.robots.absolem()
+    ends = []
+    for ground in standard_obstacles(robot, 0.9).values():
+        scenario = scenario_of(robot, ground, None, None)
+        ends.append(str(c2d.simulate(scenario, record="summary").outcome))
+    assert ends == ["cleared"] * len(ends)
+
+
+# What is not known
+
+
+def test_of_a_file_what_is_stated_has_a_narrow_range(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS))
+    found = unknown_of_file(reading, {0.5: 0.5, 1.0: 1.0})
+    assert found["robot.drivetrain.max_torque"] == c2d.scaled(0.9, 1.1)
+    assert found["terrain.friction"] == c2d.uniform(0.5, 1.0)
+    assert "cart.urdf" in found.sources["robot.drivetrain.max_torque"]
+
+
+def test_of_a_file_an_estimate_has_a_wide_range(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS.replace('<limit effort="5" velocity="10"/>', "")))
+    found = unknown_of_file(reading, None)
+    assert found["robot.drivetrain.max_torque"] == c2d.scaled(0.5, 2.0)
+    assert found.sources["robot.drivetrain.max_torque"].startswith("estimate")
+
+
+def test_a_floor_that_is_given_is_known(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS), ground_friction=0.7)
+    assert unknown_of_file(reading, None)["terrain.friction"] == c2d.scaled(0.9, 1.1)
+
+
+# The belt beside it
+
+
+def test_the_belt_follows_the_outlines_where_these_are_the_models_own() -> None:
+    belt = belt_of(c2d.robots.absolem(track="public")).robot
+    assert belt.track == c2d.BeltTrack()
+    assert belt.flippers is not None
+    assert belt.flippers.track == c2d.BeltTrack()
+
+
+@pytest.mark.parametrize("track", [c2d.HybridWheels(((-0.18, 0, 0.06), (0.18, 0, 0.06)))])
+def test_round_placed_wheels_it_is_closed(track: c2d.HybridWheels) -> None:
+    belt = belt_of(SEIZING.with_track(track))
+    assert belt.robot.track == c2d.ClosedTrack(track)
+    assert "placed one by one" in belt.reason
+
+
+def test_a_motor_a_wheel_becomes_one_a_belt() -> None:
+    own = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, torque_sharing="wheel"))
+    assert belt_of(own).robot.drivetrain.torque_sharing == "track"
+
+
+# Candidates
+
+
+def test_candidates_keep_what_does_not_seize() -> None:
+    robot = c2d.robots.absolem(track="public")
+    for each in candidates_of(robot, ["flippers"]):
+        assert each.robot.track == robot.track
+        assert each.what.startswith("flippers: ")
+    for each in candidates_of(robot, ["chassis"]):
+        assert each.robot.flippers == robot.flippers
+
+
+def test_wheels_of_both_ends_count_as_changed() -> None:
+    robot = c2d.robots.absolem(track="public")
+    one_more = candidates_of(robot, ["flippers"])[0]
+    assert (one_more.change, wheel_count(one_more.robot) - wheel_count(robot)) == (2, 2)
+
+
+def test_arms_that_take_the_robots_track_keep_their_wheels() -> None:
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3))
+    for each in candidates_of(robot, ["chassis"]):
+        assert each.robot.flippers is not None
+        assert each.robot.flippers.track == c2d.LineOfWheels(3)
+
+
+def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
+    placed = c2d.HybridWheels(((-0.18, 0, 0.064), (-0.06, 0, 0.064), (0.18, 0, 0.064)))
+    (first, *_) = candidates_of(SEIZING.with_track(placed), ["chassis"])
+    assert first.what == "chassis: one wheel more, between wheels 1 and 2"
+    assert first.robot.track.placements[2] == pytest.approx((0.06, 0.0, 0.064))  # type: ignore[union-attr]
+
+
+def test_belts_have_no_candidates() -> None:
+    assert candidates_of(c2d.robots.engineer(), ["chassis", "flippers"]) == []
+
+
+# How it is driven
+
+
+def test_flippers_are_raised_before_the_obstacle() -> None:
+    robot = c2d.robots.engineer()
+    scenario = scenario_of(robot, c2d.terrains.step(0.1), None, None)
+    assert scenario.robot.flippers is not None
+    assert scenario.robot.flippers.angle == c2d.Climb().reach_angle
+    held = c2d.Drive(gait=c2d.Hold(0.1))
+    assert raised(robot, held) == robot
+
+
+def test_the_speed_goes_with_the_size_and_the_limit() -> None:
+    scenario = scenario_of(SEIZING, c2d.terrains.step(0.05), None, None)
+    assert scenario.drive.speed == pytest.approx(0.2 * math.sqrt(9.81 * 0.365), abs=1e-3)
+    slow = replace(SEIZING, drivetrain=replace(SEIZING.drivetrain, max_speed=0.1))
+    assert scenario_of(slow, c2d.terrains.step(0.05), None, None).drive.speed == 0.1
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "how", "path"),
+    [
+        ((3.0,), {}, "robot"),
+        ((SEIZING, {}), {}, "obstacles"),
+        ((SEIZING, {"a": 1.0}), {}, "obstacles['a']"),
+        ((SEIZING, {1: c2d.terrains.step(0.1)}), {}, "obstacles"),
+        ((SEIZING, STEP), {"engine": "gz"}, "engine"),
+        ((SEIZING, STEP), {"samples": 0}, "samples"),
+        ((SEIZING, STEP), {"repeats": 0}, "repeats"),
+        ((SEIZING, STEP), {"seed": -1}, "seed"),
+        ((SEIZING, STEP), {"drive": 0.4}, "drive"),
+        ((SEIZING, STEP), {"duration": -1.0}, "duration"),
+        ((FILES / "cart.urdf",), {"engines": "gz"}, "audit"),
+        ((FILES / "cart.urdf",), {"engine": "ode"}, "engine"),
+        (("no_such_file.sdf",), {}, ""),
+    ],
+)
+def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.audit(*arguments, **{**QUIET, **how})
+    assert path in caught.value.path
+
+
+# The command
+
+
+def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
+    status = main(["audit", *arguments])
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+def test_the_command_prints_the_short_form(capsys: Any) -> None:
+    few = ("--samples", "2", "--repeats", "1", "--no-repairs")
+    status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
+    assert status in (0, 1)
+    assert out.startswith("cart: 3 round wheels in a line")
+    assert "Verdicts: 2 robots on floors, 1 run each" in out
+
+
+def test_the_command_writes_json(capsys: Any) -> None:
+    status, out, _ = run(capsys, str(FILES / "cart.urdf"), "--quick", "--samples", "1", "--json")
+    plain = json.loads(out)
+    assert (status == 1) is plain["seizes"]
+    assert plain["file"] == "cart.urdf"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["missing.sdf"],
+        [str(FILES / "cart.urdf"), "--samples", "0"],
+        [__file__],
+        ["x", "--package", "a"],
+    ],
+)
+def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[str]) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert len(err.strip().splitlines()) == 1
+
+
+def test_the_command_says_whether_it_seizes(
+    capsys: Any, monkeypatch: Any, found: c2d.Audit
+) -> None:
+    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+
+    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    status, out, _ = run(capsys, "any.sdf")
+    assert status == 1
+    assert out.strip() == found.in_words
+
+
+def test_the_command_ends_at_ctrl_c(capsys: Any, monkeypatch: Any) -> None:
+    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+
+    def interrupted(*_: Any, **__: Any) -> None:
+        raise c2d.BatchInterrupted([], "runs.sqlite")
+
+    monkeypatch.setattr(command, "audit", interrupted)
+    status, _, err = run(capsys, "any.sdf")
+    assert status == 130
+    assert "runs.sqlite keeps them" in err
+    monkeypatch.setattr(command, "audit", Mock(side_effect=KeyboardInterrupt))
+    assert run(capsys, "any.sdf")[::2] == (130, "interrupted\n")
+
+
+def test_reading_an_audited_file_is_quiet() -> None:
+    """What reading doubts is in the lint, not a warning: warnings are errors here."""
+    assert quietly(FILES / "cart.urdf").doubts == ()

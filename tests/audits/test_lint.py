@@ -1,0 +1,239 @@
+"""Every rule of lint fires on what it is for, and is silent on the same robot without it."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.finding import SEVERITIES, Finding
+from crawler2d.audits.lint import lint
+from tests.reading.carts import FILES, TENSOR, WHEEL_TENSOR, WHEELS, pair, quietly, read, urdf
+
+ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+BLOCK = '<transmission name="t"><joint name="{name}_joint"/></transmission>'
+NAMES = [f"{side}_{end}" for side in ("left", "right") for end in ("front", "rear")]
+MOTORS = "".join(BLOCK.format(name=name) for name in NAMES)
+
+
+def of_rule(found: tuple[Finding, ...], rule: str) -> list[Finding]:
+    return [each for each in found if each.rule == rule]
+
+
+def of_text(folder: Path, text: str, rule: str, **how: Any) -> list[Finding]:
+    reading = read(folder, text, **how)
+    return of_rule(lint(reading.robot, reading), rule)
+
+
+def of_robot(robot: c2d.Robot, rule: str) -> list[Finding]:
+    return of_rule(lint(robot), rule)
+
+
+def test_a_good_robot_has_none() -> None:
+    assert lint(ROBOT) == ()
+
+
+def test_a_good_file_has_none(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(WHEELS, MOTORS))
+    assert lint(reading.robot, reading) == ()
+
+
+def test_errors_stand_before_warnings_and_notes(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="9" ixy="0" ixz="0" iyy="9" iyz="0" izz="9"/>'
+    text = urdf(WHEELS, pair("middle", 0.0, limit="", radius="0.125"))
+    reading = read(tmp_path, text.replace(TENSOR, tensor))
+    order = [SEVERITIES.index(each.severity) for each in lint(reading.robot, reading)]
+    assert order == sorted(order)
+    assert len(set(order)) == 3
+
+
+def test_ten_times_too_large() -> None:
+    outline = replace(ROBOT.outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
+    (found,) = of_robot(replace(ROBOT, outline=outline), "size")
+    assert found.severity == "error"
+    assert found.what.endswith("is it ten times too large?")
+    assert of_robot(ROBOT, "size") == []
+
+
+def test_too_small_is_told_without_a_guess() -> None:
+    outline = replace(ROBOT.outline, axle_distance=0.03, front_radius=0.01, rear_radius=0.01)
+    (found,) = of_robot(replace(ROBOT, outline=outline), "size")
+    assert "ten times" not in found.what
+
+
+@pytest.mark.parametrize("mass", [0.02, 9000.0])
+def test_a_mass_that_does_not_go_with_the_size(mass: float) -> None:
+    assert len(of_robot(replace(ROBOT, mass=mass), "mass")) == 1
+    assert of_robot(ROBOT, "mass") == []
+
+
+def test_a_robot_whose_mass_is_farther_out_than_any_part() -> None:
+    (found,) = of_robot(replace(ROBOT, moment_of_inertia=12.0), "inertia")
+    assert found.severity == "error"
+
+
+def test_torque_that_no_floor_takes() -> None:
+    drivetrain = replace(ROBOT.drivetrain, max_torque=300.0)
+    (found,) = of_robot(replace(ROBOT, drivetrain=drivetrain), "effort")
+    assert "as good as no limit" in found.what
+    assert of_robot(ROBOT, "effort") == []
+
+
+def test_wheels_that_stand_for_no_track() -> None:
+    bare = ROBOT.with_track(c2d.LineOfWheels(2, as_track=False))
+    (found,) = of_robot(bare, "no track")
+    assert "237 mm are bare" in found.what
+    assert of_robot(ROBOT, "no track") == []
+
+
+def test_a_flipper_with_one_wheel() -> None:
+    arms = c2d.robots.engineer().flippers
+    assert arms is not None
+    for placements, count in ((((0.17, 0.0, 0.037),), 1), (((-0.17, 0, 0.06), (0.17, 0, 0.03)), 0)):
+        one = replace(arms, track=c2d.HybridWheels(placements))
+        robot = replace(c2d.robots.engineer(track=c2d.LineOfWheels(4)), flippers=one)
+        assert len(of_robot(robot, "no track")) == count
+
+
+def test_wheels_that_nothing_drives() -> None:
+    free = ROBOT.with_track(c2d.ForceTrack(support="wheels"))
+    assert of_robot(free, "not driven")[0].severity == "error"
+    assert of_robot(ROBOT.with_track(c2d.ForceTrack()), "not driven") == []
+
+
+def test_a_file_that_names_no_motor(tmp_path: Path) -> None:
+    (found,) = of_text(tmp_path, urdf(WHEELS), "not driven")
+    assert (found.severity, found.what.split(" (")[0]) == (
+        "note",
+        "the file names no motor for 4 of 4 wheels",
+    )
+    assert found.where.startswith("cart.urdf:")
+
+
+@pytest.mark.parametrize(("engine", "severity"), [("gz", "warning"), ("mujoco", "error")])
+def test_friction_above_two_counts_as_the_engine_combines_it(
+    tmp_path: Path, engine: str, severity: str
+) -> None:
+    text = (FILES / "cart.sdf").read_text(encoding="utf-8")
+    sticky = text.replace("<mu>0.75</mu><mu2>0.75</mu2>", "<mu>150</mu><mu2>150</mu2>")
+    found = of_text(tmp_path, sticky, "friction", name="cart.sdf", engine=engine)
+    assert [each.severity for each in found] == [severity]
+    assert of_text(tmp_path, text, "friction", name="cart.sdf", engine=engine) == []
+
+
+def test_effort_without_limit(tmp_path: Path) -> None:
+    free = pair("front", 0.2, limit="") + pair("rear", -0.2, limit="")
+    (found,) = of_text(tmp_path, urdf(free, MOTORS), "effort")
+    assert found.what.startswith("4 of 4 wheels have no effort limit")
+    assert of_text(tmp_path, urdf(WHEELS, MOTORS), "effort") == []
+
+
+def test_sides_that_differ_within_the_tolerance(tmp_path: Path) -> None:
+    skew = WHEELS.replace('xyz="0.2 0.15 0.0"', 'xyz="0.2005 0.15 0.0"')
+    (found,) = of_text(tmp_path, urdf(skew), "sides")
+    assert "by up to 0.5 mm" in found.what
+    assert of_text(tmp_path, urdf(WHEELS), "sides") == []
+
+
+def test_an_inertia_that_breaks_the_triangle(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.001"/>'
+    text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
+    (found,) = of_text(tmp_path, text, "inertia")
+    assert "exceeds the sum of the others" in found.what
+    assert of_text(tmp_path, urdf(WHEELS), "inertia") == []
+
+
+def test_an_inertia_larger_than_its_body(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.02"/>'
+    text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
+    (found,) = of_text(tmp_path, text, "inertia")
+    assert found.severity == "error"
+    assert "larger than the body" in found.what
+
+
+def test_of_links_that_weigh_nothing_it_is_a_note(tmp_path: Path) -> None:
+    light = '<mass value="0.0001"/>'
+    text = urdf(WHEELS, pair("middle", 0.0)).replace('<mass value="1"/>', light)
+    found = of_text(tmp_path, text, "inertia")
+    assert [each.severity for each in found] == ["note"]
+
+
+def test_placeholder_inertias(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/>'
+    text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))
+    (found,) = of_text(tmp_path, text, "placeholder")
+    assert found.severity == "warning"
+    assert of_text(tmp_path, urdf(WHEELS), "placeholder") == []
+
+
+def test_a_ball_has_three_equal_moments(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/>'
+    ball = '<sphere radius="0.08"/>'
+    wheels = pair("front", 0.2, geometry=ball) + pair("rear", -0.2, geometry=ball)
+    text = urdf(wheels.replace(WHEEL_TENSOR, tensor))
+    assert of_text(tmp_path, text, "placeholder") == []
+
+
+OVERLAPPING = (WHEELS, pair("middle", 0.1))
+
+
+def test_wheels_that_overlap(tmp_path: Path) -> None:
+    (found,) = of_text(tmp_path, urdf(*OVERLAPPING, pair("other", 0.0)), "overlap")
+    assert found.severity == "note"
+    assert "switch self-collision off" in found.what
+    assert of_text(tmp_path, urdf(WHEELS, pair("middle", 0.0)), "overlap") == []
+
+
+@pytest.mark.parametrize(("value", "severity"), [("1", "error"), ("0", "note")])
+def test_wheels_that_overlap_in_sdf_collide_if_the_file_says_so(
+    tmp_path: Path, value: str, severity: str
+) -> None:
+    text = (FILES / "cart.sdf").read_text(encoding="utf-8")
+    large = text.replace("<radius>0.125</radius>", "<radius>0.15</radius>")
+    collide = large.replace(
+        '<link name="left_middle">',
+        f'<link name="left_middle"><self_collide>{value}</self_collide>',
+    )
+    (found,) = of_text(tmp_path, collide, "overlap", name="cart.sdf")
+    assert found.severity == severity
+    assert of_text(tmp_path, text, "overlap", name="cart.sdf") == []
+
+
+@pytest.mark.parametrize(("filtered", "severity"), [("", "error"), (' contype="2"', "note")])
+def test_wheels_that_overlap_in_mjcf_collide_unless_filtered(
+    tmp_path: Path, filtered: str, severity: str
+) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text(encoding="utf-8")
+    large = text.replace('size="0.125 0.03125"', f'size="0.15 0.03125"{filtered}')
+    found = of_text(tmp_path, large, "overlap", name="cart.xml")
+    assert [each.severity for each in found] == [severity]
+
+
+def test_what_the_reader_doubts_is_told(tmp_path: Path) -> None:
+    wide = pair("front", 2.0) + pair("rear", -2.0)
+    reading = read(tmp_path, urdf(wide, mass="4000"))
+    found = of_rule(lint(reading.robot, reading), "doubt")
+    assert "is the file in metres?" in found[0].what
+
+
+def test_what_the_simulator_doubts_is_told() -> None:
+    (found,) = lint(ROBOT, doubts=["robot.x is usually less"])
+    assert (found.rule, found.severity) == ("doubt", "warning")
+
+
+def test_a_rule_about_the_robot_names_the_lines_of_the_file(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(pair("front", 2.0), pair("rear", -2.0), mass="4000"))
+    (found,) = of_rule(lint(reading.robot, reading), "size")
+    assert found.where == reading.sources["robot.outline.axle_distance"]
+
+
+def test_the_public_files_are_told_what_they_lack() -> None:
+    robots = FILES.parent.parent / "robots"
+    marv = quietly(robots / "marv.sdf")
+    rules = {(each.rule, each.severity) for each in lint(marv.robot, marv)}
+    assert {("no track", "error"), ("overlap", "error"), ("friction", "warning")} <= rules
+    engineer = quietly(robots / "eng.urdf", mesh="leave_out")
+    rules = {(each.rule, each.severity) for each in lint(engineer.robot, engineer)}
+    assert {("size", "error"), ("mass", "warning"), ("placeholder", "warning")} <= rules

@@ -1,0 +1,152 @@
+"""Verdicts follow their written rule, on tables made for it."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crawler2d.audits.share import Share, share_of
+from crawler2d.audits.verdicts import BELT, OWN, Verdict, verdict_word, verdicts_of
+from crawler2d.sweeps.statistics import wilson
+
+SAMPLES, REPEATS = 40, 2
+
+
+def table(own: list[str], belt: list[str], **columns: Any) -> xr.Dataset:
+    """One obstacle: how the runs of each sample end, both repeats alike."""
+    ends = np.array([[[[end] * REPEATS for end in ends]] for ends in (own, belt)])
+    dims = ("model", "terrain", "sample", "repeat")
+    usual: dict[str, Any] = {
+        "stop_carrier": "chassis",
+        "stop_bodies": "1-2",
+        "tried_closed_track": True,
+        "freed_by_closed_track": True,
+        "tried_closed_track_clear_of_the_ground": False,
+        "freed_by_closed_track_clear_of_the_ground": False,
+        "tried_torque_x2": True,
+        "freed_by_torque_x2": False,
+        "tried_friction_x2": True,
+        "freed_by_friction_x2": True,
+    }
+    filled = {name: (dims, np.full(ends.shape, value)) for name, value in usual.items()}
+    coordinates = {"model": [OWN, BELT], "terrain": ["step"]}
+    return xr.Dataset({"outcome": (dims, ends), **filled, **columns}, coordinates)
+
+
+def ends(**counts: int) -> list[str]:
+    found = [name for name, count in counts.items() for _ in range(count)]
+    assert len(found) == SAMPLES
+    return found
+
+
+def verdict(own: list[str], belt: list[str]) -> Verdict:
+    return verdicts_of(table(own, belt), ["step"])[0]
+
+
+CLEARED = ["cleared"] * SAMPLES
+
+
+@pytest.mark.parametrize(
+    ("seized", "word"),
+    [(0, "does not seize"), (1, "not certain"), (4, "not certain"), (5, "seizes")],
+)
+def test_it_seizes_where_the_lower_bound_is_above_5_percent(seized: int, word: str) -> None:
+    assert (wilson(seized, SAMPLES).low > 0.05) is (word == "seizes")
+    assert (wilson(seized, SAMPLES).high < 0.10) is (word == "does not seize")
+    assert verdict(ends(seized=seized, cleared=SAMPLES - seized), CLEARED).word == word
+
+
+@pytest.mark.parametrize(("clears", "word"), [(38, "seizes"), (37, "belt fails, too")])
+def test_it_does_so_where_the_belt_clears_in_95_percent(clears: int, word: str) -> None:
+    belt = ends(cleared=clears, hung_up=SAMPLES - clears)
+    assert verdict(ends(seized=20, cleared=20), belt).word == word
+
+
+def test_where_the_model_clears_the_belt_may_fail() -> None:
+    belt = ends(slipping=SAMPLES)
+    assert verdict(CLEARED, belt).word == "does not seize"
+    assert verdict(ends(hung_up=SAMPLES), belt).word == "belt fails, too"
+
+
+def test_a_model_that_hangs_where_the_belt_clears_does_not_seize() -> None:
+    found = verdict(ends(hung_up=SAMPLES), CLEARED)
+    assert (found.word, found.outcome, found.belt_outcome) == (
+        "does not seize",
+        "hung_up",
+        "cleared",
+    )
+
+
+def test_without_any_result_nothing_is_certain() -> None:
+    found = verdict(ends(diverged=SAMPLES), CLEARED)
+    assert found.word == "not certain"
+    assert (found.seized.runs, found.seized.low, found.seized.high) == (0, 0.0, 1.0)
+
+
+def test_a_verdict_tells_where_and_what_frees() -> None:
+    found = verdict(ends(seized=20, cleared=20), CLEARED)
+    assert (found.where, found.carrier, found.there) == ("1-2", "chassis", (40, 40))
+    freed = {each.trial: (each.freed, each.made) for each in found.freed}
+    assert freed == {
+        "closed track": (40, 40),
+        "torque x 2": (0, 40),
+        "friction x 2": (40, 40),
+    }
+
+
+def test_a_verdict_tells_on_which_floors() -> None:
+    dims = ("model", "terrain", "sample", "repeat")
+    friction = np.broadcast_to(np.linspace(0.5, 1.0, SAMPLES)[:, None], (2, 1, SAMPLES, REPEATS))
+    rows = table(ends(seized=10, cleared=30), CLEARED, unknown_friction=(dims, friction))
+    low, high = verdicts_of(rows, ["step"])[0].friction
+    assert low == 0.5
+    assert high == pytest.approx(0.5 + 0.5 * 9 / 39)
+
+
+def test_without_a_seizure_there_is_no_place() -> None:
+    found = verdict(CLEARED, CLEARED)
+    assert (found.where, found.carrier, found.there, found.freed) == ("", "", (0, 0), ())
+    assert np.isnan(found.friction).all()
+
+
+def test_repeats_of_a_sample_count_once() -> None:
+    """Ten robots that always seize of twenty are no more certain for being run a hundred times."""
+    made = np.ones((20, 100), dtype=bool)
+    happened = np.arange(20)[:, None] < 10
+    share = share_of(np.broadcast_to(happened, made.shape), made)
+    assert (share.low, share.high) == wilson(10, 20)[1:]
+    assert (share.runs, share.samples, share.rate) == (2000, 20, 0.5)
+    assert (share.band_low, share.band_median, share.band_high) == (0.0, 0.5, 1.0)
+
+
+def test_the_interval_holds_the_rate_when_samples_differ_in_part() -> None:
+    """Robots seize with chances of their own: the interval holds the mean in 95 % or more."""
+    rng = np.random.default_rng(0)
+    inside = 0
+    for _ in range(400):
+        chances = rng.beta(0.3, 2.0, size=40)  # mean 0.3 / 2.3
+        happened = rng.random((40, 2)) < chances[:, None]
+        share = share_of(happened, np.ones((40, 2), dtype=bool))
+        inside += share.low <= 0.3 / 2.3 <= share.high
+    assert inside >= 0.95 * 400
+
+
+def test_runs_without_a_result_are_not_counted() -> None:
+    made = np.array([[True, False], [False, False], [True, True]])
+    share = share_of(np.array([[True, True], [True, True], [False, False]]), made)
+    assert (share.runs, share.samples) == (3, 2)
+    assert share.rate == pytest.approx(1 / 3)
+
+
+def test_the_rule_asks_in_the_order_of_its_words() -> None:
+    def of(rate: float, low: float, high: float) -> Share:
+        band = {"band_low": 0.0, "band_median": rate, "band_high": 1.0}
+        return Share(rate=rate, low=low, high=high, runs=80, samples=40, **band)
+
+    often, never = of(0.5, 0.3, 0.7), of(0.0, 0.0, 0.09)
+    always = of(1.0, 0.9, 1.0)
+    assert verdict_word(often, often, always) == "seizes"
+    assert verdict_word(often, often, often) == "belt fails, too"
+    assert verdict_word(always, never, often) == "does not seize"
+    assert verdict_word(often, of(0.06, 0.02, 0.2), always) == "not certain"
