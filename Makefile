@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks paper picture soak tools
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -101,6 +101,17 @@ mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and s
 		--output $(CARGO_TARGET_DIR)/mutants $(ARGS) || [ $$? = 3 ]
 	$(BIN)/python tests/mutants.py
 
+# One wheel for every Python from 3.11 on.
+wheel: $(VENV)/.dependencies ## build the wheel into dist/
+	@rm -f dist/*.whl
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin build --release --locked --out dist
+
+# Nothing is on the PATH there: neither cargo nor a compiler.
+test-wheel: wheel ## the wheel in a fresh environment without a compiler
+	@rm -rf $(VENV)/fresh && $(PYTHON) -m venv $(VENV)/fresh
+	PATH=$(CURDIR)/$(VENV)/fresh/bin python -m pip install --quiet --disable-pip-version-check --only-binary :all: "$$(ls dist/*.whl)[models,analysis,sensitivity]"
+	cd $(VENV)/fresh && PATH=$(CURDIR)/$(VENV)/fresh/bin python $(CURDIR)/tests/fresh_wheel.py
+
 tools:
 	@if [ -z "$(PYTHON)" ]; then \
 		echo "crawler2d needs Python 3.11 or newer: no such python3 was found (set PYTHON=...)" >&2; exit 1; fi
@@ -139,5 +150,5 @@ $(VENV)/.browser: $(VENV)/.dependencies
 # An old core of another kind (abi3 or not) would be preferred silently: it goes first.
 $(VENV)/.built: $(VENV)/.dependencies $(SOURCES)
 	@rm -f python/crawler2d/_core*.so python/crawler2d/_core*.pyd
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask,sensitivity
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras plot,animation,analysis,progress,files,dask,models,sensitivity
 	@touch $@

@@ -14,6 +14,14 @@ SOAK = "CRAWLER2D_SOAK" in os.environ
 """Set by make soak: a hundred times the cases."""
 
 ROBOT = c2d.robots.engineer(flippers=None)
+TRAPEZOID = dataclasses.replace(
+    ROBOT,
+    outline=dataclasses.replace(
+        ROBOT.outline,
+        discs=((-0.28, 0.09, 0.05), (-0.17, 0.0, 0.064), (0.17, 0.0, 0.064), (0.29, 0.1, 0.045)),
+    ),
+)
+"""The same with a raised sprocket and a raised idler."""
 POINTS = [[-3.0, 0.0], [0.0, 0.0], [0.0, 0.05], [3.0, 0.05]]
 PLACEMENTS: Any = [[-0.1875, 0.0, 0.0625], [0.0, -0.03125, 0.03125], [0.1875, 0.0, 0.0625]]
 GEAR = c2d.GearWheel(
@@ -43,6 +51,11 @@ def with_flippers(track: Track, arms: Track | None = None, ends: Any = "both") -
 
 VARIANTS = {
     "belt-step": Scenario(ROBOT, c2d.terrains.step(0.05, edge_radius=0.01)),
+    "belt-on-discs-step": Scenario(TRAPEZOID, c2d.terrains.step(0.05)),
+    "wheels-on-discs-ridge": Scenario(
+        TRAPEZOID.with_track(c2d.CircumferentialWheels(40, wheel=c2d.GearWheel())),
+        c2d.terrains.ridge(0.03, 1.5),
+    ),
     "line-flat": Scenario(
         ROBOT.with_track(c2d.LineOfWheels(4, wheel_radius=0.06)), c2d.terrains.flat(), goal=1.0
     ),

@@ -78,7 +78,7 @@ impl Scene {
     /// its length at the commanded speed.
     pub fn in_the_climb(&self) -> f64 {
         let scenario = self.scenario();
-        let way = scenario.start.approach + scenario.robot.outline.axle_distance / 3.0;
+        let way = scenario.start.approach + scenario.robot.outline.axle_distance() / 3.0;
         1.0 + way / scenario.drive.speed
     }
 }

@@ -10,9 +10,10 @@ Units are SI, angles radians, x forward, y up.
 'cleared'
 """
 
-from crawler2d import studies
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from crawler2d._core import build_info
-from crawler2d.audits.audit import Audit, audit
 from crawler2d.common.bodies import BodyKind, Lane
 from crawler2d.errors import (
     Crawler2dError,
@@ -42,7 +43,6 @@ from crawler2d.parameters.track import (
     SegmentalTrack,
 )
 from crawler2d.presets import robots, terrains, unknowns
-from crawler2d.reading.reading import Reading, read_robot
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -59,6 +59,11 @@ from crawler2d.sweeps.sweep import sweep
 from crawler2d.sweeps.table import table
 from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
+
+if TYPE_CHECKING:
+    from crawler2d import studies
+    from crawler2d.audits.audit import Audit, audit
+    from crawler2d.reading.reading import Reading, read_robot
 
 __all__ = [
     "Audit",
@@ -127,6 +132,34 @@ __all__ = [
 ]
 
 __version__ = str(build_info()["version"])
+
+# Rooms that not every user enters are imported when they are first named: they take as long as half
+# of the rest.
+_WHEN_NAMED = {
+    "Audit": "crawler2d.audits.audit",
+    "audit": "crawler2d.audits.audit",
+    "Reading": "crawler2d.reading.reading",
+    "read_robot": "crawler2d.reading.reading",
+    "studies": "crawler2d.studies",
+}
+
+
+if not TYPE_CHECKING:  # which would let any name pass
+
+    def __getattr__(name: str) -> object:
+        """Import what has not been named before."""
+        if name not in _WHEN_NAMED:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        module = import_module(_WHEN_NAMED[name])
+        found = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
+        globals()[name] = found
+        return found
+
+
+def __dir__() -> list[str]:
+    """List all public names, imported or not."""
+    return sorted({*globals(), *__all__})
+
 
 if build_info()["profile"] == "debug":
     import warnings

@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from crawler2d.errors import Crawler2dError
 from crawler2d.reports import audit, study
 from crawler2d.reports.paper import command as paper
 
@@ -22,7 +23,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         own = programs.add_parser(name, help=text, description=module.__doc__)
         module.add_arguments(own)
     options = parser.parse_args(arguments)
-    status: int = named[options.program].run(options)
+    try:
+        status: int = named[options.program].run(options)
+    except Crawler2dError as error:
+        print(f"{parser.prog} {options.program}: {error}", file=sys.stderr)  # noqa: T201
+        return 2
     return status
 
 

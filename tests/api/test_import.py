@@ -5,6 +5,8 @@ import subprocess
 import sys
 from collections.abc import Callable
 
+import pytest
+
 import crawler2d as c2d
 
 MEASURE = """
@@ -22,6 +24,17 @@ import sys
 import crawler2d
 heavy = {"matplotlib", "pandas", "xarray", "scipy", "tqdm"} & set(sys.modules)
 assert not heavy, heavy
+"""
+
+WHEN_NAMED = """
+import sys
+import crawler2d
+rooms = {"crawler2d.audits", "crawler2d.reading", "crawler2d.studies"}
+assert not rooms & set(sys.modules)
+assert set(crawler2d.__all__) <= set(dir(crawler2d))
+for name in crawler2d.__all__:
+    getattr(crawler2d, name)
+assert rooms <= set(sys.modules)
 """
 
 SHADOWED = """
@@ -54,6 +67,12 @@ def test_the_import_costs_less_than_that_of_numpy(say: Callable[[str], None]) ->
 
 def test_the_import_brings_no_optional_package() -> None:
     python(LAZY)
+
+
+def test_rooms_that_not_every_user_enters_are_imported_when_they_are_named() -> None:
+    python(WHEN_NAMED)
+    with pytest.raises(AttributeError, match="'crawler2d' has no attribute 'nothing'"):
+        c2d.nothing  # type: ignore[attr-defined] # noqa: B018 - read for its error
 
 
 def test_the_core_is_a_release_build() -> None:

@@ -32,6 +32,7 @@ SIGNED = (
     "goal",
     "terrain.goal",
     *(f"robot.track.placements[{wheel}][{axis}]" for wheel in range(3) for axis in range(2)),
+    *(f"robot.outline.discs[{disc}][{axis}]" for disc in range(4) for axis in range(2)),
 )
 
 

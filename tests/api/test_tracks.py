@@ -1,6 +1,5 @@
 """Track models: which wheels can be, and what is refused."""
 
-import dataclasses
 import math
 from collections.abc import Callable
 from functools import partial
@@ -103,8 +102,8 @@ def test_the_wheel_that_is_too_small_for_its_grousers_is_named() -> None:
 
 @pytest.mark.parametrize("field", ["grouser_height", "grouser_thickness"])
 def test_a_robot_without_grousers_gives_a_gear_none(field: str) -> None:
-    outline = dataclasses.replace(OUTLINE, **{field: 0.0})
-    smooth = dataclasses.replace(ROBOT, outline=outline)
+    base = Scenario(ROBOT, c2d.terrains.flat())
+    smooth = base.replace({f"robot.outline.{field}": 0.0}).robot
     error = refusal(smooth.with_track(c2d.LineOfWheels(3, wheel=c2d.GearWheel())))
     assert error.path.startswith("robot.track.wheel.")
     assert error.rule.startswith("must be given")

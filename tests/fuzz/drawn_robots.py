@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import crawler2d as c2d
+from crawler2d.common.ends import Disc, ends_of
 from crawler2d.parameters.track import OpenTrack, Track
 
 TINY = 1e-20
@@ -48,7 +49,7 @@ class Draw(random.Random):
 
 
 def smallest_end(outline: c2d.TrackOutline) -> float:
-    return min(outline.front_radius, outline.rear_radius)
+    return min(radius for _, _, radius in outline.discs)
 
 
 def drawn_outline(draw: Draw) -> c2d.TrackOutline:
@@ -58,17 +59,36 @@ def drawn_outline(draw: Draw) -> c2d.TrackOutline:
     rear = front
     if draw.random() < 0.5:
         rear = draw.size(max(1e-3, front - 0.999 * axles), min(100.0, front + 0.999 * axles), usual)
-    smallest = min(front, rear)
+    discs = None if draw.random() < 0.7 else drawn_discs(draw, axles, rear, front)
+    smallest = min(front, rear) if discs is None else min(radius for _, _, radius in discs)
     around = 2.0 * axles + 2.0 * math.pi * max(front, rear)
     pitch = draw.size(max(1e-3, around / 200.0), 100.0, (around / 60.0, around / 8.0))
+    ends: Any = {"axle_distance": axles, "front_radius": front, "rear_radius": rear}
     return c2d.TrackOutline(
-        axle_distance=axles,
-        front_radius=front,
-        rear_radius=rear,
+        **(ends if discs is None else {"discs": discs}),
         grouser_height=draw.size_or_zero(1e-9, 0.999 * smallest, (0.01 * smallest, 0.2 * smallest)),
         grouser_pitch=pitch,
         grouser_thickness=draw.size_or_zero(1e-9, 0.999 * pitch, (0.05 * pitch, 0.3 * pitch)),
     )
+
+
+def drawn_discs(draw: Draw, axles: float, rear: float, front: float) -> list[Disc] | None:
+    """Ends at any heights with discs below and above, in any order; most bend the track."""
+    half = 0.5 * axles
+
+    def height(share: float) -> float:
+        # Beyond 100 m are no coordinates.
+        return min(100.0, draw.size_or_zero(1e-12, 100.0, (0.1 * share * axles, share * axles)))
+
+    discs = [(-half, height(0.4), rear), (half, height(0.4), front)]
+    for side in draw.sample((-1, -1, -1, 1), draw.whole(0, 4, (1, 3))):
+        x = draw.uniform(-0.7, 0.7) * half
+        radius = draw.size(1e-3, 100.0, (0.1 * axles, 0.3 * axles))
+        discs.append((x, max(-100.0, side * height(0.3) if side < 0 else height(0.9)), radius))
+    draw.shuffle(discs)
+    rear_end, front_end = ends_of(discs)
+    # One disc may reach farthest both ways.
+    return discs if front_end[0] > rear_end[0] else None
 
 
 def drawn_wheel(draw: Draw, radius: float) -> c2d.RoundWheel | c2d.GearWheel:
@@ -91,12 +111,12 @@ def drawn_wheel(draw: Draw, radius: float) -> c2d.RoundWheel | c2d.GearWheel:
 
 
 def drawn_chain(draw: Draw, outline: c2d.TrackOutline) -> c2d.SegmentalTrack:
-    """Shoes that are short enough to go round the smaller end."""
+    """Shoes that are short enough to go round the smallest disc."""
     radius = smallest_end(outline) - outline.grouser_height
-    larger = max(outline.front_radius, outline.rear_radius) - outline.grouser_height
+    larger = max(radius for _, _, radius in outline.discs) - outline.grouser_height
     around = 2.0 * outline.axle_distance + 2.0 * math.pi * larger
     fewest = min(400, math.ceil(1.2 * around / min(2.0 * radius, 0.5 * outline.axle_distance)) + 1)
-    sprocket = draw.random() < 0.5
+    sprocket = draw.random() < 0.5 and len(outline.discs) == 2
     return c2d.SegmentalTrack(
         shoe_count=draw.maybe_whole(0.9, draw.whole(fewest, 400, (fewest, min(400, fewest + 25)))),
         mechanism="sprocket" if sprocket else "guide",
@@ -124,9 +144,10 @@ def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) 
     def force() -> OpenTrack:
         friction = draw.size_or_zero(1e-12, 100.0, (0.05, 1.0))
         count = draw.whole(2, 200, (2, 9))
-        return c2d.ForceTrack(
-            support=draw.choice(("skids", "wheels")), skid_friction=friction, wheel_count=count
-        )
+        support: Any = draw.choice(("skids", "wheels"))
+        if len(outline.discs) > 2:
+            support = "skids"
+        return c2d.ForceTrack(support=support, skid_friction=friction, wheel_count=count)
 
     wheels: tuple[Callable[[], OpenTrack], ...] = (
         lambda: c2d.LineOfWheels(draw.whole(2, 200, (2, 12)), wheel_radius=given, wheel=wheel),
@@ -147,7 +168,10 @@ def drawn_track(draw: Draw, outline: c2d.TrackOutline, *, on_arm: bool = False) 
         *(wheels[0], force),
         *(lambda: drawn_chain(draw, outline),) * 2,
     )
-    return draw.choice((*wheels, *belts, *(() if on_arm else of_robots)))()
+    models = (*wheels, *belts, *(() if on_arm else of_robots))
+    if len(outline.discs) > 2:
+        models = tuple(model for model in models if model is not wheels[0])
+    return draw.choice(models)()
 
 
 def drawn_flippers(
@@ -204,7 +228,7 @@ def drawn_belly(draw: Draw, outline: c2d.TrackOutline) -> list[tuple[float, floa
 def drawn_robot(draw: Draw) -> c2d.Robot:
     """A robot that keeps most rules that join its fields."""
     outline = drawn_outline(draw)
-    axles, radius = outline.axle_distance, max(outline.front_radius, outline.rear_radius)
+    axles, radius = outline.axle_distance, max(radius for _, _, radius in outline.discs)
     mass = draw.size(2e-3, 1e6, (1.0, 400.0))
     track_mass = draw.size(1e-3, 0.99 * mass, (0.03 * mass, 0.3 * mass))
     least = 1.001 * track_mass * radius**2

@@ -12,7 +12,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.parameters import gaits, settings, terrain
-from tests.shared import ROBOT, VARIANTS
+from tests.shared import ROBOT, TRAPEZOID, VARIANTS
 
 HOSTILE = "</td><script>alert(1)</script> & \" ' \u2028 \ud800"
 
@@ -55,13 +55,18 @@ def test_a_card_has_the_figures_that_matter_with_their_units() -> None:
     assert scenario["goal"] == "x = 0 m"
 
 
-def test_the_drawing_of_a_card_has_the_outline_of_the_belt() -> None:
-    (drawing,) = parsed(ROBOT).iter("{http://www.w3.org/2000/svg}svg")
+@pytest.mark.parametrize("robot", [ROBOT, TRAPEZOID])
+def test_the_drawing_of_a_card_has_the_outline_of_the_belt(robot: c2d.Robot) -> None:
+    (drawing,) = parsed(robot).iter("{http://www.w3.org/2000/svg}svg")
     paths = [path.get("d") or "" for path in drawing.iter("{http://www.w3.org/2000/svg}path")]
     steps = [path.rstrip("Z").replace("M", "").split("l") for path in paths if "Z" in path]
     corners = max((np.array([p.split() for p in s], float).cumsum(0) for s in steps), key=len)
-    outline = ROBOT.outline
-    length, height = outline.axle_distance + 2 * outline.front_radius, 2 * outline.front_radius
+    discs = np.array(robot.outline.discs)
+    low, high = (
+        (discs[:, :2].T - discs[:, 2]).min(axis=1),
+        (discs[:, :2].T + discs[:, 2]).max(axis=1),
+    )
+    length, height = (high - low).tolist()
     # A twenty-fifth of the width is margin; corners are rounded to tenths of a pixel.
     scale = 360.0 / (1.04 * length)
     assert np.ptp(corners, axis=0) == pytest.approx([scale * length, scale * height], abs=0.2)

@@ -12,7 +12,7 @@ from matplotlib.text import Text
 import crawler2d as c2d
 from crawler2d.drawings.plane import closed, placed, relative
 from crawler2d.parameters.track import Track
-from tests.shared import GEAR, ROBOT, VARIANTS, refused
+from tests.shared import GEAR, ROBOT, TRAPEZOID, VARIANTS, refused
 
 ROBOTS = {
     **{name: getattr(c2d.robots, name)() for name in c2d.robots.__all__},
@@ -103,6 +103,27 @@ def test_a_robot_shows_its_dimensions_and_its_centre_of_mass() -> None:
     bare = robot.without_flippers()
     (center,) = [line[0] for line in lines(bare.plot()) if line.shape == (1, 2)]
     assert center == pytest.approx(bare.center_of_mass, abs=1e-12)
+
+
+def test_a_robot_on_discs_shows_every_axle_and_each_radius_once() -> None:
+    ax = TRAPEZOID.plot()
+    told = [text.get_text() for text in words(ax)]
+    assert [text for text in told if text.startswith("axle")] == ["axle distance 0.57 m"]
+    radii = sorted(text for text in told if text.startswith("radius"))
+    assert radii == ["radius 0.045 m", "radius 0.05 m", "radius 0.064 m"]
+    discs = np.array(TRAPEZOID.outline.discs)
+    (axles,) = [line for line in lines(ax) if line.shape == (4, 2) and same(line, discs[:, :2])]
+    (belt,) = [line for line in lines(ax) if len(line) > 100 and not inside_all(line, discs)]
+    away = np.linalg.norm(belt[:, None] - axles, axis=2) - discs[:, 2]
+    # On the hull of the discs: none reaches out, and the arcs lie on them.
+    assert away.min() == pytest.approx(0.0, abs=1e-9)
+    assert np.abs(away.min(axis=0)).max() < 1e-9
+
+
+def inside_all(line: Any, discs: Any) -> bool:
+    """Whether a line is the circle of one of the discs."""
+    away = np.linalg.norm(line[:, None] - discs[:, :2], axis=2) - discs[:, 2]
+    return bool((np.abs(away).max(axis=0) < 1e-9).any())
 
 
 def test_the_track_as_built_is_drawn_where_the_model_leaves_it() -> None:

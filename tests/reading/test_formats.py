@@ -274,3 +274,10 @@ def test_a_mesh_in_mjcf_is_read_as_its_hull(tmp_path: Path) -> None:
         read(tmp_path, text, "cart.xml")
     belly = read(tmp_path, text, "cart.xml", mesh="hull").robot.belly
     assert belly == ((-0.2, 0.0), (0.2, 0.0), (0.2, 0.1), (-0.2, 0.1))
+
+
+def test_the_torque_of_a_robot_acts_at_its_rear_end(tmp_path: Path) -> None:
+    reading = read(tmp_path, urdf(pair("front", 0.2, radius="0.12") + pair("rear", -0.2)))
+    outline, motors = reading.robot.outline, reading.robot.drivetrain
+    force = 5.0 / 0.12 + 5.0 / 0.08  # [N] of one side
+    assert motors.max_torque / outline.rear_radius == pytest.approx(force)

@@ -213,7 +213,7 @@ def test_drums_between_the_end_drums_are_within_the_belt(tmp_path: Path) -> None
 
 def test_a_trapezoid_of_drums_is_refused_for_now(tmp_path: Path) -> None:
     text = tracked(((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.1)))
-    refused(tmp_path, text, "an outline has two discs", "tank.sdf")
+    refused(tmp_path, text, "tracks round more are not read", "tank.sdf")
 
 
 def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:

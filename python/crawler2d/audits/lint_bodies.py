@@ -10,11 +10,11 @@ import numpy as np
 
 from crawler2d.audits.finding import Finding, named
 from crawler2d.audits.lint_model import wheel_links
-from crawler2d.reading.elements import Where
+from crawler2d.models.tree import Link, Shape
+from crawler2d.models.where import Where
 from crawler2d.reading.parts import corners_of
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.sources import lines
-from crawler2d.reading.tree import Link, Shape
 
 __all__ = ["of_bodies"]
 

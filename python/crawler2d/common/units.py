@@ -7,11 +7,11 @@ __all__ = ["FIELDS", "METRICS", "unit_of"]
 _FIELDS_BY_UNIT = {
     "m": (
         "accuracy approach axle_distance barrier_height barrier_thickness base_thickness belly"
-        " center_of_mass cycling_distance depth edge_radius escape_distance front_radius gauge goal"
-        " grouser_height grouser_pitch grouser_thickness height intrusion_depth length placements"
-        " plate_thickness points post prediction_distance"
-        " radius rear_radius rise root_radius run stationary_distance thickness tip_radius"
-        " tip_thickness track_phase wheel_radius width"
+        " center_of_mass cycling_distance depth discs edge_radius escape_distance front_radius"
+        " gauge goal grouser_height grouser_pitch grouser_thickness height intrusion_depth"
+        " length placements plate_thickness points post prediction_distance radius rear_radius"
+        " rise root_radius run stationary_distance thickness tip_radius tip_thickness"
+        " track_phase wheel_radius width"
     ),
     "s": "clear_time duration escape_time stop_window time_step",
     "rad": (

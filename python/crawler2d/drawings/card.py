@@ -6,6 +6,7 @@ import json
 import warnings
 from typing import Any
 
+from crawler2d.common.ends import discs_in, ends_of, is_short
 from crawler2d.common.markup import escaped, table
 from crawler2d.drawings.extents import course, robot_box
 from crawler2d.drawings.robot_view import robot_alone
@@ -77,13 +78,15 @@ def _card(title: str, drawing: str, rows: list[tuple[str, str]]) -> str:
 def _robot_rows(robot: dict[str, Any]) -> list[tuple[str, str]]:
     outline, drivetrain, flippers = robot["outline"], robot["drivetrain"], robot["flippers"]
     x, y = robot["center_of_mass"]
-    radii = {outline["rear_radius"], outline["front_radius"]}
+    discs = discs_in(outline)
+    (rear, _, _), (front, _, _) = ends_of(discs)
+    origin = "midway between the axles" if is_short(discs) else "the origin of the discs"
     rows = [
         ("mass", f"{robot['mass']:.4g} kg, of which tracks {robot['track_mass']:.3g} kg"),
-        ("centre of mass", f"({x:.3f}, {y:.3f}) m from midway between the axles"),
+        ("centre of mass", f"({x:.3f}, {y:.3f}) m from {origin}"),
         ("moment of inertia", f"{robot['moment_of_inertia']:.3g} kg m²"),
-        ("axle distance", f"{outline['axle_distance']:.4g} m"),
-        ("radius", f"{_listed(radii)} m"),
+        ("axle distance", f"{front - rear:.4g} m"),
+        ("radius", f"{_listed({radius for _, _, radius in discs})} m"),
     ]
     if outline["grouser_height"] > 0.0:
         height, pitch = outline["grouser_height"], outline["grouser_pitch"]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crawler2d import _core
+from crawler2d.common.ends import discs_in, ends_of
 from crawler2d.drawings.canvas import Canvas
 from crawler2d.drawings.dimensions import radius, span
 from crawler2d.drawings.extents import robot_box
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_robot", "robot_alone"]
 
-# Of the width of the view: room round the robot, and below it for dimensions.
-_ROUND, _BELOW = 0.04, 0.11
+# Of the width of the view: room round the robot, and for each row of dimensions below it.
+_ROUND, _BELOW = 0.04, 0.04
 
 
 def robot_alone(text: str) -> Scene:
@@ -47,7 +48,8 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     plain = json.loads(text)
     scene, outline = robot_alone(text), _outline(plain)
     left, right, bottom, top = robot_box(scene)
-    margin, room = _ROUND * (right - left), _BELOW * (right - left)
+    margin, row = _ROUND * (right - left), _BELOW * (right - left)
+    room = (1 + _rows(plain["robot"]["outline"])) * row
     arms = _arms(scene, plain["robot"])
     reached = np.array([(left, bottom - room), (right, top), *(each.beside for each in arms)])
     (left, below), (right, top) = reached.min(axis=0).tolist(), reached.max(axis=0).tolist()
@@ -58,8 +60,7 @@ def draw_robot(text: str, title: str, ax: Axes | None) -> Axes:
     if not any(_is_same(scene.outline(body, 0), outline) for body, _ in scene.parts()):
         line: Any = {"color": GRAY, "linewidth": 0.8, "linestyle": "--", "zorder": 1.9}
         ax.plot(*outline.T, **line, label="track as built")
-    levels = bottom - 0.25 * room, bottom - 0.55 * room
-    _draw_dimensions(ax, plain["robot"], arms, levels)
+    _draw_dimensions(ax, plain["robot"], arms, (bottom - 0.7 * row, row))
     if any(look == Look.BELLY for _, look in scene.parts()):
         ax.fill([], [], facecolor=(GREEN, 0.25), edgecolor=GREEN, label="belly")
     ax.plot([], [], "+", color=BLACK, markersize=8, label="centre of mass")
@@ -88,9 +89,9 @@ class _Arm:
 
 def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
     """Find the flippers at each end, the front first."""
-    half, found = 0.5 * robot["outline"]["axle_distance"], []
+    (rear, front), found = ends_of(discs_in(robot["outline"])), []
     for carrier in scene.carriers[1:]:
-        pivot = np.array([half if carrier.name.startswith("front") else -half, 0.0])
+        pivot = np.array((front if carrier.name.startswith("front") else rear)[:2])
         tip = 2.0 * carrier.poses[0, :2] - pivot
         radii = robot["flippers"]["root_radius"], robot["flippers"]["tip_radius"]
         across = np.array([pivot[1] - tip[1], tip[0] - pivot[0]])
@@ -101,22 +102,38 @@ def _arms(scene: Scene, robot: dict[str, Any]) -> list[_Arm]:
     return found
 
 
-def _draw_dimensions(
-    ax: Axes, robot: dict[str, Any], arms: list[_Arm], levels: tuple[float, float]
-) -> None:
-    """Mark the axles, and draw their distances and radii; what is equal at both ends only once.
+def _rows(outline: dict[str, Any]) -> int:
+    """Count the rows of dimensions: radii of discs between the ends, those of the ends, lengths."""
+    discs = discs_in(outline)
+    of_ends = {radius for _, _, radius in ends_of(discs)}
+    return 2 + any(radius not in of_ends for _, _, radius in discs)
 
-    `levels` [m] are those of the labels of radii and of the distance of the end axles.
+
+def _draw_dimensions(
+    ax: Axes, robot: dict[str, Any], arms: list[_Arm], below: tuple[float, float]
+) -> None:
+    """Mark the axles, and draw their distances and radii; what is equal on several only once.
+
+    `below` [m] are the level of the first row of labels and the height of a row.
     """
-    outline = robot["outline"]
-    front = np.array([0.5 * outline["axle_distance"], 0.0])
-    axles = np.array([-front, front, *(point for arm in arms for point in (arm.pivot, arm.tip))])
+    discs = discs_in(robot["outline"])
+    rear, front = ends_of(discs)
+    of_arms = [point for arm in arms for point in (arm.pivot, arm.tip)]
+    axles = np.array([*(disc[:2] for disc in discs), *of_arms])
     ax.plot(*axles.T, "o", color=BLACK, markersize=2.5, zorder=2.5)
-    half, (label, line) = front[0], levels
-    span(ax, (-front, front), np.array([-half, line]), "axle distance")
-    radius(ax, -front, outline["rear_radius"], np.array([-0.8 * half, label]))
-    if outline["front_radius"] != outline["rear_radius"]:
-        radius(ax, front, outline["front_radius"], np.array([0.8 * half, label]))
+    first, height = below
+    *_, label, line = (first - row * height for row in range(_rows(robot["outline"])))
+    # At one level, because it is measured along the chassis.
+    ends = np.array(rear[:2]), np.array([front[0], rear[1]])
+    span(ax, ends, np.array([rear[0], line]), "axle distance")
+    middle, inwards = 0.5 * (rear[0] + front[0]), 0.1 * (front[0] - rear[0])
+    drawn: set[float] = set()
+    for disc in (rear, front, *discs):
+        if disc[2] not in drawn:
+            aside = inwards if disc[0] <= middle else -inwards
+            level = label if disc in (rear, front) else first
+            radius(ax, np.array(disc[:2]), disc[2], np.array([disc[0] + aside, level]))
+        drawn.add(disc[2])
     for arm in arms[:1]:
         shift = arm.beside - arm.tip
         span(ax, (arm.pivot, arm.tip), arm.pivot + shift, "flipper")

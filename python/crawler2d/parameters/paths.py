@@ -123,7 +123,7 @@ def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
         if not isinstance(node, Parameters):
             rule = f"must be a known field: {place} = {reprlib.repr(node)} has no fields"
             raise ScenarioError(path, value, rule)
-        if step not in field_hints(type(node)):
+        if step not in _names(type(node)):
             raise ScenarioError(path, value, _rule(type(node), step))
         return getattr(node, step)
     if not isinstance(node, tuple):
@@ -135,10 +135,14 @@ def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
     return node[step]
 
 
+def _names(cls: type[Parameters]) -> list[str]:
+    return [*field_hints(cls), *cls.besides]
+
+
 def _rule(cls: type[Parameters], name: str) -> str:
     import difflib  # noqa: PLC0415 - only a failure needs it
 
-    fields = list(field_hints(cls))
+    fields = _names(cls)
     nearest = difflib.get_close_matches(name, fields, n=1)
     hint = f" (did you mean {nearest[0]}?)" if nearest else ""
     listed = ", ".join(fields) if fields else "no fields"

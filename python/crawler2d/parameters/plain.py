@@ -45,6 +45,14 @@ class Parameters:
     either: ClassVar[tuple[str, ...]] = ()
     """Fields of which only one may be set: a path that sets one takes the others off."""
 
+    besides: ClassVar[tuple[str, ...]] = ()
+    """Properties that paths name like fields."""
+
+    @property
+    def in_place_of(self) -> dict[str, tuple[str, ...]]:
+        """What texts have in place of a field: numbers that are properties."""
+        return {}
+
     def __init_subclass__(cls) -> None:
         """Keep `dataclass` from giving the class a repr of its own."""
         super().__init_subclass__()
@@ -58,10 +66,11 @@ class Parameters:
         """
         given = []
         for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            value = getattr(self, field.name)
-            # Texts can be compared whatever a field holds.
-            if repr(value) != repr(field.default) or _is_model(value):
-                given.append(f"{field.name}={value!r}")
+            for name in self.in_place_of.get(field.name, (field.name,)):
+                value = getattr(self, name)
+                # Texts can be compared whatever a field holds.
+                if repr(value) != repr(field.default) or _is_model(value):
+                    given.append(f"{name}={value!r}")
         return f"{type(self).__name__}({', '.join(given)})"
 
     def __post_init__(self) -> None:
@@ -124,8 +133,10 @@ def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
     cls = type(parameters)
     plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
     for name, hint in field_hints(cls).items():
-        inner = f"{path}.{name}" if path else name
-        plain[name] = _plain_field(getattr(parameters, name), hint, inner)
+        numbers = parameters.in_place_of.get(name)
+        for each in numbers or (name,):
+            inner = f"{path}.{each}" if path else each
+            plain[each] = _plain_field(getattr(parameters, each), float if numbers else hint, inner)
     return plain
 
 
@@ -165,7 +176,8 @@ def _plain_number(value: float) -> float | str:
 def from_plain(cls: type[P], plain: dict[str, Any]) -> P:
     """Rebuild a parameter object from plain data that has been validated."""
     hints = field_hints(cls)
-    return cls(**{name: _rebuilt(plain[name], hint) for name, hint in hints.items()})
+    given = {name: value for name, value in plain.items() if name != "kind"}
+    return cls(**{name: _rebuilt(value, hints.get(name)) for name, value in given.items()})
 
 
 def _rebuilt(value: Any, hint: Any) -> Any:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from crawler2d import _core
-from crawler2d.common.arrays import real_number
+from crawler2d.common.arrays import frozen_rows, real_number
+from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.flippers import Flippers
@@ -32,32 +34,123 @@ _HOLDING_SLOPE = math.radians(45.0)
 _HOLDING_MARGIN = 1.6
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class TrackOutline(Parameters):
-    """Side view of the track: two arcs about the end axles and their outer tangents.
+    """Side view of the track: a taut belt round discs, measured to the grouser tips.
+
+    Two discs are given by their `axle_distance`, `front_radius` and `rear_radius`, with the chassis
+    frame midway between their axles; any number of them by `discs`. Then the chassis frame is that
+    of `discs`, with its origin between the end axles, x forward along the chassis and y up.
 
     Parameters
     ----------
+    discs : array_like, shape (n, 3)
+        [m] Centre x and y in the chassis frame and radius of each disc, in any order. The track
+        must bend round each: a disc inside the hull of the others is refused, and so are more than
+        64 discs.
     axle_distance : float
-        [m] Distance between the end axles.
+        [m] Distance of the end axles along the chassis. The end axles are those of the discs that
+        reach farthest back and forwards, of two that reach equally far the higher one; the rear one
+        is the sprocket's.
     front_radius, rear_radius : float
-        [m] Radius of each end, to the grouser tips.
+        [m] Radius of the disc on each end axle.
     grouser_height : float
         [m] Height of the grousers above the belt; 0 for a smooth belt.
     grouser_pitch : float
         [m] Spacing of the grousers along the belt.
     grouser_thickness : float
         [m] Thickness of a grouser along the belt, less than the pitch.
+
+    Raises
+    ------
+    ScenarioError
+        If `discs` does not hold real numbers, is masked or has another shape, or is given beside a
+        distance or a radius that follows from it; if one of the three is missing or not a number.
+
+    Notes
+    -----
+    `axle_distance`, `front_radius` and `rear_radius` can be read of any outline, and replaced, by
+    `dataclasses.replace` or by path, in one that could have been given by them.
+
+    Examples
+    --------
+    >>> grousers = {"grouser_height": 0.01, "grouser_pitch": 0.05, "grouser_thickness": 0.006}
+    >>> two = TrackOutline(axle_distance=0.4, front_radius=0.06, rear_radius=0.05, **grousers)
+    >>> two == TrackOutline(discs=[(-0.2, 0, 0.05), (0.2, 0, 0.06)], **grousers)
+    True
+
+    With a raised idler in front:
+
+    >>> raised = TrackOutline(discs=[*two.discs, (0.3, 0.08, 0.04)], **grousers)
+    >>> raised.axle_distance, raised.front_radius
+    (0.5, 0.04)
     """
 
     place: ClassVar[str] = "robot.outline"
+    besides: ClassVar[tuple[str, ...]] = ("axle_distance", "front_radius", "rear_radius")
 
-    axle_distance: float
-    front_radius: float
-    rear_radius: float
+    discs: tuple[Disc, ...]
+    if TYPE_CHECKING:
+        # For `dataclasses.replace`; they are properties.
+        axle_distance: float
+        front_radius: float
+        rear_radius: float
     grouser_height: float
     grouser_pitch: float
     grouser_thickness: float
+
+    def __init__(
+        self,
+        *,
+        discs: Any = None,
+        axle_distance: float | None = None,
+        front_radius: float | None = None,
+        rear_radius: float | None = None,
+        grouser_height: float,
+        grouser_pitch: float,
+        grouser_thickness: float,
+    ) -> None:
+        ends = dict(zip(self.besides, (axle_distance, front_radius, rear_radius), strict=True))
+        is_plain = discs is not None and all(number is None for number in ends.values())
+        fields = {
+            "discs": discs if is_plain else _two(discs, ends),
+            "grouser_height": grouser_height,
+            "grouser_pitch": grouser_pitch,
+            "grouser_thickness": grouser_thickness,
+        }
+        for name, value in fields.items():
+            object.__setattr__(self, name, value)
+        self.__post_init__()
+
+    if not TYPE_CHECKING:
+
+        @property
+        def axle_distance(self) -> float:
+            """[m] Distance of the end axles along the chassis."""
+            rear, front = self.ends
+            return front[0] - rear[0]
+
+        @property
+        def front_radius(self) -> float:
+            """[m] Radius of the disc on the front end axle."""
+            return self.ends[1][2]
+
+        @property
+        def rear_radius(self) -> float:
+            """[m] Radius of the disc on the rear end axle."""
+            return self.ends[0][2]
+
+    @property
+    def ends(self) -> tuple[Disc, Disc]:
+        """[m] Centre (x, y) and radius of the disc on the rear and on the front end axle."""
+        if not self.discs:
+            raise ScenarioError("robot.outline.discs", self.discs, "must have at least 2 discs")
+        return ends_of(self.discs)
+
+    @property
+    def in_place_of(self) -> dict[str, tuple[str, ...]]:
+        """What texts have in place of discs, if three numbers say it all."""
+        return {"discs": self.besides} if is_short(self.discs) else {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +193,7 @@ class Robot(Parameters):
     mass : float
         [kg] Of the whole robot, including both tracks and all flippers.
     center_of_mass : array_like, shape (2,)
-        [m] In the chassis frame: origin midway between the end axles, x forward, y up.
+        [m] In the chassis frame: that of the outline, x forward, y up.
     moment_of_inertia : float
         [kg m^2] Of the whole robot about its centre of mass, with the flippers at angle 0.
     track_mass : float
@@ -273,6 +366,157 @@ class Robot(Parameters):
 
         return draw_robot(self._alone(), self.in_words, ax)
 
+    def to_sdf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as a model in SDF 1.6, as Gazebo reads it.
+
+        In three dimensions, with both sides: wheels on joints that turn, gear wheels as cylinders
+        with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
+        joints, the belly. `read_robot` finds this robot in all that the file states; the robot
+        itself is in a comment. ``docs/conventions.md``, "Writing a model file", says what each
+        format holds and which figures are estimates.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: in Gazebo the smaller one of two
+            surfaces counts.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot (chains of shoes, travelling grousers, a pushing
+            force), or its masses leave none for the chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> text = c2d.robots.engineer().to_sdf()  # a belt
+        >>> text.count("gz::sim::systems::TrackController")
+        4
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "sdf", path, friction=friction, **widths)
+
+    def to_urdf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as URDF, as ROS and most simulators read it.
+
+        As `to_sdf`, but URDF holds neither belts nor motors: wheels have the limits of theirs.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: each simulator combines two
+            surfaces in its own way.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot (belts, too), or its masses leave none for the
+            chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> robot.with_track(c2d.LineOfWheels(4)).to_urdf().count('type="continuous"')
+        8
+        >>> robot.to_urdf()
+        Traceback (most recent call last):
+        ...
+        crawler2d.errors.ScenarioError: robot.track.kind must be wheels: URDF has no surface ...
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "urdf", path, friction=friction, **widths)
+
+    def to_mjcf(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        friction: float = 0.9,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot as MJCF, as MuJoCo reads it.
+
+        As `to_sdf`. Wheels have servos of their speed, flippers of their rate. The surfaces of
+        belts move at the largest speed; at run time ``MjModel.geom_surfacevel`` sets another one.
+        Gear wheels and belly may have any shape. The file has no ground.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            File to write; None writes none.
+        friction : float
+            [-] Coefficient of all of its surfaces: it holds whatever the ground
+            has.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file.
+
+        Raises
+        ------
+        ScenarioError
+            If the format cannot hold the robot, or its masses leave none for the chassis.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> text = robot.to_mjcf(friction=0.7, track_width=0.08)
+        >>> text.count("<velocity "), text.count('friction="0.7"')
+        (8, 9)
+        """
+        from crawler2d.writing.export import written  # noqa: PLC0415 - costs nothing until used
+
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written(self._alone(), "mjcf", path, friction=friction, **widths)
+
     @property
     def in_words(self) -> str:
         """Its name and what its tracks are, for titles."""
@@ -383,12 +627,40 @@ class Robot(Parameters):
         return robot if track is None else robot.with_track(track)
 
 
+def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
+    """Make two discs of their distance and radii, those of other discs where one is not given."""
+    given = {name: value for name, value in given.items() if value is not None}
+    values = given
+    if discs is not None:
+        # So does `dataclasses.replace` change one of the three.
+        held = frozen_rows(discs, "robot.outline.discs", rows=True, columns=3)
+        if not is_short(held):
+            name, value = next(iter(given.items()))
+            rule = "must not be given beside discs, which it follows from"
+            raise ScenarioError(f"robot.outline.{name}", value, rule)
+        (_, _, rear), (half, _, front) = held
+        own = {"axle_distance": 2.0 * half, "front_radius": front, "rear_radius": rear}
+        values = {**own, **given}
+    numbers = {}
+    for name in TrackOutline.besides:
+        path = f"robot.outline.{name}"
+        if name not in values:
+            raise ScenarioError(path, None, "must be given, or discs in its place")
+        numbers[name] = real_number(values[name], path)
+    if not numbers["axle_distance"] > 0.0:  # two discs do not show it
+        path = "robot.outline.axle_distance"
+        raise ScenarioError(path, numbers["axle_distance"], "must be > 0 m")
+    return two_discs(numbers["axle_distance"], numbers["rear_radius"], numbers["front_radius"])
+
+
 def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     """Add (+1) or subtract (-1) the mass of arms, as uniform rods at angle 0."""
     length = real_number(flippers.length, "robot.flippers.length")
     pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
-    reach = 0.5 * robot.outline.axle_distance + 0.5 * length
-    places = {"front": (reach,), "rear": (-reach,), "both": (reach, -reach)}
+    rear_axle, front_axle = robot.outline.ends
+    front = (front_axle[0] + 0.5 * length, front_axle[1])
+    rear = (rear_axle[0] - 0.5 * length, rear_axle[1])
+    places = {"front": (front,), "rear": (rear,), "both": (front, rear)}
     if flippers.ends not in places:
         rule = f"must be one of {', '.join(places)}"
         raise ScenarioError("robot.flippers.ends", flippers.ends, rule)
@@ -397,12 +669,15 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     if not mass > 0.0:
         raise ScenarioError("robot.flippers.mass", flippers.mass, "must leave mass for the chassis")
     x, y = robot.center_of_mass
-    center = ((robot.mass * x + pair * sum(ends)) / mass, robot.mass * y / mass)
+    center = (
+        (robot.mass * x + pair * sum(end[0] for end in ends)) / mass,
+        (robot.mass * y + pair * sum(end[1] for end in ends)) / mass,
+    )
     inertia = robot.moment_of_inertia
     inertia += robot.mass * ((x - center[0]) ** 2 + (y - center[1]) ** 2)
-    for place in ends:
+    for end in ends:
         inertia += pair * length**2 / 12.0
-        inertia += pair * ((place - center[0]) ** 2 + center[1] ** 2)
+        inertia += pair * ((end[0] - center[0]) ** 2 + (end[1] - center[1]) ** 2)
     return replace(robot, mass=mass, center_of_mass=center, moment_of_inertia=inertia)
 
 

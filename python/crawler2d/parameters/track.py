@@ -84,6 +84,8 @@ Wheel = RoundWheel | GearWheel
 class LineOfWheels(Parameters):
     """Driven wheels on the straight line between the end axles, evenly spaced (LWA, Figs. 1 to 3).
 
+    An outline of more than two discs is refused.
+
     Parameters
     ----------
     count : int
@@ -131,10 +133,10 @@ class CircumferentialWheels(Parameters):
     Parameters
     ----------
     count : int
-        Wheels per side, at least 3. The radius of tight wheels must not exceed half the smaller
+        Wheels per side, at least 3. The radius of tight wheels must not exceed half the smallest
         radius of the outline; on the Servosila Engineer that takes at least 14 wheels.
     wheel_radius : float, optional
-        [m] Radius of every wheel, less than the smaller radius of the outline. None: tight wheels.
+        [m] Radius of every wheel, less than the smallest radius of the outline. None: tight wheels.
     wheel : RoundWheel or GearWheel
         The shape of each wheel.
 
@@ -249,12 +251,12 @@ class SegmentalTrack(Parameters):
     the shoes round the rear end, and the chassis takes the reaction: a sprocket without teeth, to
     whose travel each shoe adds a pitch as it goes round.
 
-    *Sprocket*: the full mechanism. At the rear a toothed wheel with its own speed, inertia and
-    torque limit, at the front an idler, between them road wheels and return rollers. The chain is
-    driven only by the flanks of the teeth, which act on its pins. The sprocket has the number of
-    teeth that comes closest to the outline, and the radius that follows; it turns evenly, so the
-    chain does not. The teeth take the pins beside the plates. Idler, road wheels and rollers turn
-    with what they touch.
+    *Sprocket*: the full mechanism, on an outline of two discs. At the rear a toothed wheel with its
+    own speed, inertia and torque limit, at the front an idler, between them road wheels and return
+    rollers. The chain is driven only by the flanks of the teeth, which act on its pins. The
+    sprocket has the number of teeth that comes closest to the outline, and the radius that follows;
+    it turns evenly, so the chain does not. The teeth take the pins beside the plates. Idler, road
+    wheels and rollers turn with what they touch.
 
     In both, the front end sits on a tensioner, a spring with a damper, which follows the small
     changes of length that the polygon of shoes needs as it runs.
@@ -268,8 +270,8 @@ class SegmentalTrack(Parameters):
     shoe_count : int, optional
         Shoes per chain, 3 to 400; None takes the whole number that comes closest to the outline's
         `grouser_pitch`: 22 for the Engineer. A shoe must not be longer than the diameter of the
-        smaller end, half the axle distance or a straight run, and must weigh at least 1/3000 of the
-        rest of the robot.
+        smallest disc, half the axle distance or a straight run, and must weigh at least 1/3000 of
+        the rest of the robot.
     mechanism : {"guide", "sprocket"}
         What the chain runs on and what drives it.
     shoe_shape : {"rectangle", "trapezoid"}
@@ -322,7 +324,7 @@ class SegmentalTrack(Parameters):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceTrack(Parameters):
-    """No moving surface: the drive pushes the chassis along its axis at axle height.
+    """No moving surface: the drive pushes the chassis along its axis, x of the chassis frame.
 
     The force follows the speed command and is limited like the traction of a track. It acts in the
     air, too: a known flaw of this model, kept on purpose.
@@ -331,7 +333,7 @@ class ForceTrack(Parameters):
     ----------
     support : {"skids", "wheels"}
         What carries the robot: skids in the shape of the outline, or a line of round wheels that
-        turn freely and independently.
+        turn freely and independently, for an outline of two discs only.
     skid_friction : float
         [-] Friction of the skids; the smaller of this and the terrain's friction applies.
     wheel_count : int

@@ -9,12 +9,12 @@ from typing import NoReturn
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Array
+from crawler2d.models.where import Where
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
 from crawler2d.reading.belly import silhouette
 from crawler2d.reading.belts import belt_ends
-from crawler2d.reading.elements import Where
 from crawler2d.reading.parts import Arm, Runner
-from crawler2d.reading.poses import Array
 from crawler2d.reading.sides import Pair, paired
 from crawler2d.reading.tracks import Base, wheels_of
 from crawler2d.reading.view import SideView
@@ -186,7 +186,10 @@ def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> At
     has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= tolerance)
     if pair.is_belt:
         bars = [bar for arm in pair.arms for bar in arm.bars]
-        ends = belt_ends(list(pair.pairs), bars, at=pair.at)
+        # Along the arm: a steep one has its tip above its root.
+        away = np.array([tip.x, tip.y]) - pair.pivot
+        along = away / max(math.hypot(*away), 1e-9)
+        ends = belt_ends(list(pair.pairs), bars, along=along, at=pair.at)
         if not has_root or {root, tip} != set(ends):
             pair.refuse("a belt beside the pivot", "must have a belt from the pivot to the tip")
     out = places[-1] - (places[0] if has_root else pivot)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
@@ -22,7 +23,6 @@ from crawler2d.reading.sides import Pair, middle_of, paired
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base, wheels_of
-from crawler2d.reading.tree import Tree
 from crawler2d.reading.view import SideView, side_view
 
 __all__ = ["Assembly", "assembled"]
@@ -93,8 +93,10 @@ class Assembly:
         self.told.note("robot.moment_of_inertia", of_links)
         outline = outline_of(self.told, base, rear[2], front[2])
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
-        torque = _holding_torque(total.mass, max(rear[2], front[2]))
-        drivetrain = drivetrain_of(tree, driven, track, torque=torque, note=self.told.note)
+        torque = _holding_torque(total.mass, rear[2])
+        drivetrain = drivetrain_of(
+            tree, driven, track, radius=rear[2], torque=torque, note=self.told.note
+        )
         flippers = flippers_of(self.told, by_end, total.mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import TrackOutline
 from crawler2d.reading.arms import ArmPair
@@ -25,7 +27,7 @@ def end_axles(
     if pairs:
         rear, front = pairs[0], pairs[-1]
         if is_belt:
-            rear, front = belt_ends(pairs, gear.bars, at=told.at)
+            rear, front = belt_ends(pairs, gear.bars, along=np.array([1.0, 0.0]), at=told.at)
         found = rear, front
     else:
         # Nothing runs between the flippers: the robot stands on their roots.

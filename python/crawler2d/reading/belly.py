@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Link, Shape
 from crawler2d.reading.parts import corners_of
-from crawler2d.reading.poses import Array
 from crawler2d.reading.tracks import Base
-from crawler2d.reading.tree import Link, Shape
 from crawler2d.reading.view import SideView
 
 __all__ = ["belly_of", "silhouette"]

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Where
-from crawler2d.reading.poses import Array
+from crawler2d.models.poses import Array
+from crawler2d.models.where import Where
 from crawler2d.reading.sides import Pair
 
 __all__ = ["belt_ends"]
@@ -21,7 +21,9 @@ _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
 _NORMALS = np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
 
 
-def belt_ends(drums: list[Pair], bars: list[Array], *, at: Where) -> tuple[Pair, Pair]:
+def belt_ends(
+    drums: list[Pair], bars: list[Array], *, along: Array, at: Where
+) -> tuple[Pair, Pair]:
     """Return the rearmost and the foremost drum, if the belt round all is one round these two.
 
     Parameters
@@ -30,6 +32,8 @@ def belt_ends(drums: list[Pair], bars: list[Array], *, at: Where) -> tuple[Pair,
         From the rear to the front, at least one.
     bars : list of ndarray, shape (n, 3)
         [m] Corners of what else is moved.
+    along : ndarray, shape (2,)
+        Direction from the rear end to the front end, roughly.
     at : Where
         Line of the model, for errors.
 
@@ -38,20 +42,20 @@ def belt_ends(drums: list[Pair], bars: list[Array], *, at: Where) -> tuple[Pair,
     ScenarioError
         If there is one drum only, or something reaches out.
     """
-    rear = min(drums, key=lambda drum: drum.x - drum.radius)
-    front = max(drums, key=lambda drum: drum.x + drum.radius)
+    places = {drum: float(np.array([drum.x, drum.y]) @ along) for drum in drums}
+    rear = min(drums, key=lambda drum: places[drum] - drum.radius)
+    front = max(drums, key=lambda drum: places[drum] + drum.radius)
     if rear is front:
         raise ScenarioError(str(at), "one drum", "must have a drum at either end of a track")
     reach = np.maximum(_reach(rear), _reach(front))
     tolerance = _BEYOND * max(rear.radius, front.radius)
     out = [drum for drum in drums if (_reach(drum) - reach).max() > tolerance]
     if out:
-        # An outline of more than two discs would hold these.
         runner = out[0].left[0]
         raise ScenarioError(
             f"{runner.shape.at}: drum[{runner.name}]",
             f"{len(out)} beyond the belt round the end drums",
-            "must lie within the belt round the end drums: an outline has two discs",
+            "must lie within the belt round the end drums: tracks round more are not read",
         )
     for corners in bars:
         beyond = float((corners[:, :2] @ _NORMALS - reach).max())

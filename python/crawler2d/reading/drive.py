@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from crawler2d.models.tree import Tree
+from crawler2d.models.where import Where
 from crawler2d.parameters.robot import Drivetrain
 from crawler2d.parameters.track import LineOfWheels, Track
-from crawler2d.reading.elements import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines
-from crawler2d.reading.tree import Tree
 
 __all__ = ["drivetrain_of"]
 
@@ -21,7 +21,7 @@ Note = Callable[[str, str], None]
 
 
 def drivetrain_of(
-    tree: Tree, pairs: list[Pair], track: Track, *, torque: float, note: Note
+    tree: Tree, pairs: list[Pair], track: Track, *, radius: float, torque: float, note: Note
 ) -> Drivetrain:
     """Return speed and torque of the tracks.
 
@@ -33,6 +33,8 @@ def drivetrain_of(
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     track : Track
         The model of the track of the chassis.
+    radius : float
+        [m] Of the rear end, at which the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
     note : callable
@@ -47,9 +49,8 @@ def drivetrain_of(
     sharing = "track"
     if wheels and len(efforts) == len(wheels):
         # Every wheel has its own motor; the robot's figure is that of one side.
-        largest = max(pair.radius for pair in pairs)
         torque = 0.5 * sum(
-            effort * largest / wheel.radius for effort, wheel in zip(efforts, wheels, strict=True)
+            effort * radius / wheel.radius for effort, wheel in zip(efforts, wheels, strict=True)
         )
         note(
             "robot.drivetrain.max_torque",
@@ -76,6 +77,12 @@ def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:
         for pair in pairs
         for wheel in pair.both
         if wheel.joint is not None and wheel.joint.velocity
+    ]
+    found += [
+        (drum.shape.surface_speed, drum.shape.at)
+        for pair in pairs
+        for drum in pair.both
+        if drum.joint is None and drum.shape.surface_speed
     ]
     for plugin in tree.plugins:
         if "track" in plugin.name.lower() or "diff" in plugin.name.lower():

@@ -5,42 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NoReturn
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.where import Where
 
-__all__ = ["Element", "Where", "real"]
+__all__ = ["Element", "real"]
 
 # [m, kg, ...] No robot has a larger figure; an effort or a limit of an angle that is, is none.
 _LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _LONGEST_NUMBER = 60
-
-
-@dataclass(frozen=True, slots=True)
-class Where:
-    """A line of a file.
-
-    Parameters
-    ----------
-    file : str
-        Its name.
-    line : int
-        Number of the line, from 1.
-
-    Examples
-    --------
-    >>> print(Where("robot.sdf", 12))
-    robot.sdf:12
-    """
-
-    file: str
-    line: int
-
-    def __str__(self) -> str:
-        """Return file and line as compilers write them."""
-        return f"{self.file}:{self.line}"
 
 
 class Element:

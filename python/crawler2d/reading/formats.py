@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.tree import Tree
 from crawler2d.reading.elements import Element
 from crawler2d.reading.meshes import Meshes, MeshRule
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import LARGEST_FILE, parsed
 from crawler2d.reading.sdf import read_sdf
-from crawler2d.reading.tree import Tree
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.xacro import expanded
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from crawler2d.models.poses import Pose, from_quaternion, from_rpy
 from crawler2d.reading.elements import Element
-from crawler2d.reading.poses import Pose, from_quaternion, from_rpy
 
 __all__ = ["MODEL", "Frames", "pose_of"]
 

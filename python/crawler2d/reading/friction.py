@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Where
+from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 from crawler2d.reading.view import SideView
 

@@ -8,9 +8,10 @@ from typing import NoReturn
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.reading.parts import Arm, Gear, Runner, corners_of
 from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.poses import Array
 from crawler2d.reading.rounds import (
     below,
     is_moved,
@@ -18,7 +19,6 @@ from crawler2d.reading.rounds import (
     radius_about,
     wheel_of,
 )
-from crawler2d.reading.tree import Joint, Link, Shape, Tree
 from crawler2d.reading.view import SideView
 
 __all__ = ["gear_of"]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Tree
 from crawler2d.reading.arms import AtEnd
-from crawler2d.reading.poses import Array
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.tracks import Base
-from crawler2d.reading.tree import Tree
 from crawler2d.reading.view import SideView
 
 __all__ = ["Sum", "circulating", "summed"]

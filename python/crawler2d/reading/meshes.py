@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Shape
 from crawler2d.reading.elements import Element
-from crawler2d.reading.poses import Array
-from crawler2d.reading.tree import Shape
 
 __all__ = ["MeshRule", "Meshes"]
 

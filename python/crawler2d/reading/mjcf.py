@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Pose, from_quaternion, unit
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
+from crawler2d.models.where import Where
 from crawler2d.reading.child import answered
-from crawler2d.reading.elements import Element, Where
+from crawler2d.reading.elements import Element
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
-from crawler2d.reading.poses import Pose, from_quaternion, unit
-from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
 
 __all__ = ["read_mjcf"]
 
@@ -221,8 +222,17 @@ class _Model:
                 first_at=at,
                 second_at=at,
             ),
-            surface_speed=plain["moved"],
+            surface_speed=_surface_speed(kind, sizes, plain["moved"]),
             at=at,
             pose_at=at,
             size_at=at,
         )
+
+
+def _surface_speed(kind: str, sizes: list[float], moved: list[float]) -> float:
+    """[m/s] Return the speed of a surface: as given, or by its turning at the radius it has.
+
+    A box or hull has none; it is moved, and how fast, its drums tell.
+    """
+    lever = sizes[0] if kind in ("cylinder", "capsule", "sphere") else 1.0
+    return max(math.hypot(*moved[:3]), math.hypot(*moved[3:]) * lever)

@@ -14,6 +14,7 @@ from crawler2d.reading.limits import serve
 _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
 _SHAPES = {0: "plane", 1: "hfield", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder"}
 _SHAPES |= {6: "box", 7: "mesh"}
+_INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is a position
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
@@ -97,7 +98,7 @@ def _shape(model: Any, geom: Any) -> dict[str, Any]:
         "friction": float(model.geom_friction[i, 0]) if model.geom_condim[i] > 1 else 0.0,
         "priority": int(model.geom_priority[i]),
         "collides": bool(model.geom_contype[i] or model.geom_conaffinity[i]),
-        "moved": bool(abs(geom.surfacevel).max() > 0.0) if hasattr(geom, "surfacevel") else False,
+        "moved": geom.surfacevel.tolist() if hasattr(geom, "surfacevel") else [0.0] * 6,
         "line": _line(geom),
     }
 
@@ -113,8 +114,10 @@ def _motor(model: Any, actuator: Any) -> dict[str, Any]:
         effort = float(model.actuator_forcerange[i, 1]) * gear
     elif most is not None and not bias.any():  # a motor: its force is its control
         effort = most * gain * gear
-    # A servo of speed holds control / gear; one of position has a bias on the position, too.
-    is_servo = bias[2] < 0.0 and bias[1] == 0.0
+    # A servo of speed holds control / gear; one of position has a bias on the position, too, and
+    # holds a speed if it integrates its control.
+    is_integrator = int(model.actuator_dyntype[i]) == _INTEGRATOR
+    is_servo = is_integrator or (bias[2] < 0.0 and bias[1] == 0.0)
     return {
         "joint": actuator.target,
         "effort": effort,

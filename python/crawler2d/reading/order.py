@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Where
+from crawler2d.models.where import Where
 
 __all__ = ["checked"]
 

@@ -11,7 +11,8 @@ import re
 from xml.parsers import expat
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Element, Where
+from crawler2d.models.where import Where
+from crawler2d.reading.elements import Element
 
 __all__ = ["LARGEST_FILE", "parsed"]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from crawler2d.reading.poses import Array
-from crawler2d.reading.tree import Joint, Link, Shape
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Joint, Link, Shape
 
 __all__ = ["Arm", "Gear", "Runner", "corners_of"]
 

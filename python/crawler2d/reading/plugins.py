@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from crawler2d.reading.elements import Element, Where
-from crawler2d.reading.tree import Plugin, Tree
+from crawler2d.models.tree import Plugin, Tree
+from crawler2d.models.where import Where
+from crawler2d.reading.elements import Element
 
 __all__ = ["driven_by", "moved_links", "plugin_of"]
 

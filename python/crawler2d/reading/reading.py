@@ -13,13 +13,13 @@ from crawler2d.common.arrays import real_number
 from crawler2d.common.markup import table
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.assembly import Assembly, assembled
 from crawler2d.reading.formats import tree_of
 from crawler2d.reading.friction import ENGINES, Engine
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.sources import Sources
-from crawler2d.reading.tree import Tree
 
 __all__ = ["Reading", "read_robot"]
 

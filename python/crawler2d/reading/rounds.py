@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from crawler2d.reading.elements import Where
-from crawler2d.reading.poses import Array
-from crawler2d.reading.tree import Joint, Link, Shape, Tree
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Joint, Link, Shape, Tree
+from crawler2d.models.where import Where
 
 __all__ = [
     "PARALLEL",
@@ -84,4 +84,4 @@ def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tu
 
 def is_moved(link: Link, shape: Shape, moved: dict[str, Where]) -> bool:
     """Whether the surface of a shape moves."""
-    return shape.surface_speed or link.name in moved
+    return shape.surface_speed > 0.0 or link.name in moved

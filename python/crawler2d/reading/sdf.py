@@ -6,14 +6,15 @@ import math
 import re
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Element, Where, real
+from crawler2d.models.poses import Pose, unit
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
+from crawler2d.models.where import Where
+from crawler2d.reading.elements import Element, real
 from crawler2d.reading.frames import MODEL, Frames
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 from crawler2d.reading.plugins import driven_by, plugin_of
-from crawler2d.reading.poses import Pose, unit
 from crawler2d.reading.shapes import inertia, shape_of
-from crawler2d.reading.tree import Friction, Joint, Link, Shape, Tree
 
 __all__ = ["read_sdf"]
 

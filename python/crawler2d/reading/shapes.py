@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from crawler2d.models.poses import Pose
+from crawler2d.models.tree import Friction, Shape
 from crawler2d.reading.elements import Element
 from crawler2d.reading.meshes import Meshes
-from crawler2d.reading.poses import Pose
-from crawler2d.reading.tree import Friction, Shape
 
 __all__ = ["inertia", "shape_of"]
 

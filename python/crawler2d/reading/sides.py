@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.elements import Where
+from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
 __all__ = ["Pair", "middle_of", "paired"]

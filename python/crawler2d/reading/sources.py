@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from crawler2d.reading.elements import Where
+from crawler2d.models.where import Where
 
 __all__ = ["Sources", "estimate", "lines"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from crawler2d.reading.elements import Where
+from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
 __all__ = ["Telling", "place_of"]

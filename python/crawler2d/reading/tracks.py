@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crawler2d.models.poses import Array
 from crawler2d.parameters.track import HybridWheels, LineOfWheels
-from crawler2d.reading.poses import Array
 from crawler2d.reading.sides import Pair
 
 __all__ = ["FIT", "Base", "wheels_of"]

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Tree
 from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.poses import Array
 from crawler2d.reading.rounds import PARALLEL, below, is_moved, is_parallel, wheel_of
-from crawler2d.reading.tree import Tree
 
 __all__ = ["SideView", "side_view"]
 

@@ -5,7 +5,7 @@ use super::*;
 use crate::contact::{Contact, TrackEnvelope};
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{Model, Mount};
-use crate::scenario::{LineOfWheels, Scenario, Terrain, Track, Wheel};
+use crate::scenario::{LineOfWheels, Scenario, Terrain, Track, TrackOutline, Wheel};
 use crate::terrain::Ground;
 
 /// [m] Half the distance between the end axles.
@@ -34,9 +34,7 @@ impl Stage {
             wheel: Wheel::Round,
             as_track: true,
         });
-        let outline = &mut scenario.robot.outline;
-        outline.axle_distance = 2.0 * HALF;
-        (outline.front_radius, outline.rear_radius) = (RADIUS, RADIUS);
+        scenario.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, RADIUS]);
         let post = |x: f64| {
             let (from, to) = (x - 0.005, x + 0.005);
             [[from, 0.0], [from, POST], [to, POST], [to, 0.0]]

@@ -43,7 +43,7 @@ impl Push {
     }
 }
 
-/// Direction of a force along the chassis at axle height, at a chassis angle [rad].
+/// Direction of a force along the x axis of the chassis frame, at a chassis angle [rad].
 pub(crate) fn push_axis(model: &Model, angle: f64) -> Direction {
     let rotation = Rotation::new(angle);
     let (axis, up) = (rotation * Vector::X, rotation * Vector::Y);

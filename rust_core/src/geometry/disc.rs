@@ -22,19 +22,29 @@ impl Disc {
     }
 }
 
+impl From<[f64; 3]> for Disc {
+    fn from([x, y, radius]: [f64; 3]) -> Self {
+        Self {
+            center: Vector::new(x, y),
+            radius,
+        }
+    }
+}
+
 /// The end discs of an outline, the rear one first.
 pub(crate) fn end_discs(outline: &TrackOutline) -> [Disc; 2] {
-    let half = 0.5 * outline.axle_distance;
-    [
-        Disc {
-            center: Vector::new(-half, 0.0),
-            radius: outline.rear_radius,
-        },
-        Disc {
-            center: Vector::new(half, 0.0),
-            radius: outline.front_radius,
-        },
-    ]
+    outline.end_discs().map(Disc::from)
+}
+
+/// The discs of an outline: the rear end, the front end, and those between them from the rear to the front.
+pub(crate) fn outline_discs(outline: &TrackOutline) -> Vec<Disc> {
+    let between = outline.discs_between();
+    outline
+        .end_discs()
+        .into_iter()
+        .chain(between)
+        .map(Disc::from)
+        .collect()
 }
 
 /// The lower outer tangent of two discs as a segment from the left disc to the right one.

@@ -167,6 +167,24 @@ impl Envelope {
         self.stretches.iter().filter_map(arc).collect()
     }
 
+    /// The ends of its straight runs.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = [Vector; 2]> {
+        let is_run = |stretch: &&Stretch| matches!(stretch.shape, Form::Run { .. });
+        let ends = |stretch: &Stretch| [0.0, stretch.length].map(|way| stretch.point_at(way));
+        self.stretches.iter().filter(is_run).map(ends)
+    }
+
+    /// [rad] How far the hull bends round each of the first `count` discs; 0 if it does not touch it.
+    pub(crate) fn bends(&self, count: usize) -> Vec<f64> {
+        let mut bends = vec![0.0; count];
+        for stretch in &self.stretches {
+            if let Form::Arc { disc, sweep, .. } = stretch.shape {
+                bends[disc] += sweep;
+            }
+        }
+        bends
+    }
+
     /// Points along the hull, arcs divided every `turn` [rad]; the first point is not repeated at the end.
     pub(crate) fn polyline(&self, turn: f64) -> Vec<Vector> {
         let points = self.cuts(turn);
@@ -371,6 +389,25 @@ mod tests {
             disc(0.3, 0.0, 0.1),
         ]);
         assert!((belt.length() - stadium().length()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_hull_bends_once_round_and_only_round_discs_that_it_touches() {
+        let discs = [
+            disc(-0.2, 0.0, 0.1),
+            disc(0.0, 0.02, 0.05),
+            disc(0.3, 0.0, 0.1),
+            disc(0.4, 0.2, 0.05),
+        ];
+        let belt = Envelope::new(&discs);
+        let bends = belt.bends(discs.len());
+        assert!((bends.iter().sum::<f64>() - TAU).abs() < 1e-12);
+        assert!(bends[1].abs() < 1e-12 && [0, 2, 3].iter().all(|i| bends[*i] > 0.1));
+        assert_eq!(belt.runs().count(), 3);
+        for [from, to] in belt.runs() {
+            let middle = (from + to) * 0.5;
+            assert!(belt.depth(middle).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod travel;
 
 pub(crate) use bounds::{plausible, plausible_vectors};
 pub use disc::Disc;
-pub(crate) use disc::{end_discs, lower_tangent};
+pub(crate) use disc::{end_discs, lower_tangent, outline_discs};
 pub(crate) use envelope::Envelope;
 pub use gear::Gear;
 pub use grouser::Grouser;

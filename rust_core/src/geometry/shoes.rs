@@ -1,11 +1,12 @@
-//! A closed chain of shoes round the ends of a track: the path of its pins.
+//! A closed chain of shoes round the discs of a track: the path of its pins.
 //!
-//! The pins of a taut chain lie on the straight runs. Round the ends, the middle of each shoe touches the end, so
-//! the pins run on a larger circle, whose chords of one pitch touch the end. A run meets that circle half a pitch
+//! The pins of a taut chain lie on the straight runs. Round a disc, the middle of each shoe touches the disc, so
+//! the pins run on a larger circle, whose chords of one pitch touch the disc. A run meets that circle half a pitch
 //! before its own end.
 
 use std::f64::consts::{PI, TAU};
 
+use super::hull::arcs_round;
 use super::search::zero;
 use super::stretch::Form;
 use super::{Disc, Envelope, Motion, Teeth, lower_tangent};
@@ -22,8 +23,8 @@ const LIFT: f64 = 0.5;
 /// The closed path of a chain, and the chain on it.
 #[derive(Clone, Debug)]
 pub struct ShoeLoop {
-    /// Discs to whose hull the pin lines are tangent, rear first.
-    discs: [Disc; 2],
+    /// Discs to whose hull the pin lines are tangent: the rear end, the front end, and those between them.
+    discs: Vec<Disc>,
     /// Number of shoes.
     pub count: usize,
     /// [m] Distance between the pins of a shoe.
@@ -33,15 +34,15 @@ pub struct ShoeLoop {
 }
 
 impl ShoeLoop {
-    /// A chain of `count` shoes that is taut round the discs, averaged over its positions. `None` if a shoe would be
-    /// longer than half the distance of the discs, than the diameter of the smaller one or than a straight run, because
-    /// it could not go round.
-    pub(crate) fn new(discs: [Disc; 2], count: usize) -> Option<Self> {
+    /// A chain of `count` shoes that is taut round the discs, of which the first two are the rear and the front end,
+    /// averaged over its positions. `None` if a shoe would be longer than half the distance of the ends, than the
+    /// diameter of the smallest disc or than a straight run, because it could not go round.
+    pub(crate) fn new(discs: Vec<Disc>, count: usize) -> Option<Self> {
         let least = Envelope::new(&discs).length() / count as f64;
         let most = LENGTHENED * least;
-        let [rear, front] = discs;
-        let half_way = 0.5 * (front.center - rear.center).length();
-        if most > half_way.min(2.0 * rear.radius.min(front.radius)) {
+        let half_way = 0.5 * (discs[1].center - discs[0].center).length();
+        let radii = discs.iter().map(|disc| disc.radius);
+        if most > half_way.min(2.0 * radii.fold(f64::INFINITY, f64::min)) {
             return None;
         }
         let chain = Self {
@@ -68,20 +69,39 @@ impl ShoeLoop {
         if ![least, most].into_iter().all(|pitch| self.has_runs(pitch)) {
             return None;
         }
-        let taut = |phase: u32| {
-            let share = f64::from(phase) / f64::from(PHASES);
-            zero(least, most, |p: f64| self.excess(p, share * p, 0.0))
+        let share = |phase: u32| f64::from(phase) / f64::from(PHASES);
+        // Shoes that bend round many small discs may make it longer still.
+        let is_between = |phase: u32| {
+            let excess = |p: f64| self.excess(p, share(phase) * p, 0.0);
+            excess(least) < 0.0 && 0.0 < excess(most)
         };
+        if self.discs.len() > 2 && !(0..PHASES).all(is_between) {
+            return None;
+        }
+        let taut = |phase: u32| zero(least, most, |p: f64| self.excess(p, share(phase) * p, 0.0));
         let pitch = (0..PHASES).map(taut).sum::<f64>() / f64::from(PHASES);
         Some(Self { pitch, ..self })
     }
 
-    /// Whether a shoe of a pitch [m] fits on the runs, even with the front end as far in as `travel` searches.
+    /// Whether a shoe of a pitch [m] fits on the runs between all discs, even with the front end as far in or out as
+    /// `travel` searches.
     fn has_runs(&self, pitch: f64) -> bool {
-        let [rear, mut front] = self.ends(pitch);
-        front.center.x -= 0.5 * pitch;
-        let (apart, step) = (front.center - rear.center, front.radius - rear.radius);
-        apart.length_squared() - step * step >= pitch * pitch
+        [-0.5, 0.5].into_iter().all(|share| {
+            let mut discs = self.ends(pitch);
+            discs[1].center.x += share * pitch;
+            let arcs = arcs_round(&discs);
+            let fits = |[from, to]: [&Disc; 2]| {
+                let (apart, step) = (to.center - from.center, to.radius - from.radius);
+                apart.length_squared() - step * step >= pitch * pitch
+            };
+            let next = arcs.iter().cycle().skip(1);
+            let mut runs = arcs
+                .iter()
+                .zip(next)
+                .map(|(a, b)| [&discs[a.disc], &discs[b.disc]]);
+            let has = |disc: usize| arcs.iter().any(|arc| arc.disc == disc);
+            (0..discs.len()).all(has) && runs.all(fits)
+        })
     }
 
     /// The teeth of its sprocket, if any; if possible they reach no farther out than `most` [m].
@@ -101,17 +121,17 @@ impl ShoeLoop {
     ///
     /// A sprocket is as large as its teeth need, and its axle is where the lower run stays in place, apart from the
     /// room for its polygon.
-    pub(crate) fn ends(&self, pitch: f64) -> [Disc; 2] {
-        let [rear, front] = self.discs;
+    pub(crate) fn ends(&self, pitch: f64) -> Vec<Disc> {
         let Some(teeth) = self.teeth else {
-            return self.discs;
+            return self.discs.clone();
         };
+        let (rear, front) = (self.discs[0], self.discs[1]);
         let radius = 0.5 * pitch / libm::tan(PI / teeth as f64);
         let [from, to] = lower_tangent(rear, front);
         let down = right_of((to - from).normalize());
         let rise = radius / libm::cos(PI / teeth as f64) - radius;
         let center = rear.center + down * (rear.radius - radius - LIFT * rise);
-        [Disc { center, radius }, front]
+        vec![Disc { center, radius }, front]
     }
 
     /// [m] How far out the front end must be to keep the chain taut when it has run so far [m].
@@ -218,12 +238,12 @@ impl ShoeLoop {
 mod tests {
     use super::*;
 
-    fn ends(rear: f64, front: f64) -> [Disc; 2] {
+    fn ends(rear: f64, front: f64) -> Vec<Disc> {
         let disc = |x, radius| Disc {
             center: Vector::new(x, 0.0),
             radius,
         };
-        [disc(-0.1825, rear), disc(0.1825, front)]
+        vec![disc(-0.1825, rear), disc(0.1825, front)]
     }
 
     #[test]
@@ -239,9 +259,9 @@ mod tests {
                 for (i, place) in places.iter().enumerate() {
                     let gap = pin(place, 1.0) - pin(&places[(i + 1) % count], -1.0);
                     assert!(gap.length() < 1e-9, "{count} shoes at {run}: {gap}");
-                    let [rear_end, mut front_end] = ends(rear, front);
-                    front_end.center.x += chain.travel(run);
-                    for disc in [rear_end, front_end] {
+                    let mut discs = ends(rear, front);
+                    discs[1].center.x += chain.travel(run);
+                    for disc in discs {
                         let local = place.inverse_transform_point(disc.center);
                         if local.x.abs() < 0.5 * chain.pitch {
                             assert!(-local.y > disc.radius - 1e-9, "shoe {i} cuts an end");
@@ -282,7 +302,7 @@ mod tests {
         let discs = ends(0.06, 0.04);
         let length = Envelope::new(&discs).length();
         for (count, longer) in [(23, 0.03), (46, 0.01), (368, 2e-4)] {
-            let chain = ShoeLoop::new(discs, count).unwrap();
+            let chain = ShoeLoop::new(discs.clone(), count).unwrap();
             let excess = chain.pitch * count as f64 / length - 1.0;
             assert!(0.0 < excess && excess < longer, "{count} shoes: {excess}");
         }

@@ -9,7 +9,7 @@ use super::seen::{Anchor, LOOK, Seen};
 use super::{Event, Load, Outcome, Reading, Signals, Stance, bearing};
 use crate::contact::TrackEnvelope;
 use crate::dynamics::{ChainReading, DriveState, Effort, LoadedContact};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Vector, end_discs};
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
 use crate::terrain::Ground;
@@ -22,6 +22,8 @@ pub(crate) struct Monitor {
     /// [m] Height one metre below all of the ground.
     floor: f64,
     half_length: f64,
+    /// End axles in the chassis frame, the rear one first.
+    axles: [Vector; 2],
     rear_radius: f64,
     grouser_pitch: f64,
     /// The parts of the robot.
@@ -44,8 +46,9 @@ impl Monitor {
             ground: Arc::clone(ground),
             goal: ground.goal_of(scenario),
             floor: ground.lowest() - 1.0,
-            half_length: 0.5 * outline.axle_distance,
-            rear_radius: outline.rear_radius,
+            half_length: 0.5 * outline.axle_distance(),
+            axles: end_discs(outline).map(|disc| disc.center),
+            rear_radius: outline.rear_radius(),
             grouser_pitch: outline.grouser_pitch,
             envelopes: (0..ground.tracks)
                 .flat_map(|lane| model.mounts_of_tracks().map(move |mount| (lane, mount)))
@@ -134,9 +137,16 @@ impl Monitor {
             return Some(Outcome::TippedOver);
         }
         let (sine, cosine) = libm::sincos(now.chassis_angle);
-        let rear = now.position.x - cosine * self.half_length;
-        let front = now.position.x + cosine * self.half_length;
-        let lower_axle = now.position.y - (sine * self.half_length).abs();
+        let place = |axle: Vector| {
+            let turned = Vector::new(
+                cosine * axle.x - sine * axle.y,
+                sine * axle.x + cosine * axle.y,
+            );
+            now.position + turned
+        };
+        let [rear_axle, front_axle] = self.axles.map(place);
+        let (rear, front) = (rear_axle.x, front_axle.x);
+        let lower_axle = rear_axle.y.min(front_axle.y);
         let (low, high) = self.ground.extent();
         if rear.min(front) < low || rear.max(front) > high || lower_axle < self.floor {
             return Some(Outcome::LeftTerrain);

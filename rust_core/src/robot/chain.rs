@@ -15,8 +15,8 @@ pub struct ChainOfShoes {
     pub path: ShoeLoop,
     /// The ends of the guide that the plates slide on, or sprocket drum and idler; rear first.
     pub ends: [Disc; 2],
-    /// Road wheels and return rollers between them.
-    pub wheels: Vec<Disc>,
+    /// The other discs of the guide, or road wheels and return rollers.
+    pub between: Vec<Disc>,
     /// What drives it; `None`: the drive pulls on the shoes at the rear end of a guide.
     pub sprocket: Option<Sprocket>,
     /// [m] Thickness of the plates; the pins lie in their middle.
@@ -27,7 +27,7 @@ pub struct ChainOfShoes {
     pub shoe_inertia: f64,
     /// What holds the front end out.
     pub tensioner: Tensioner,
-    /// The hull of its ends.
+    /// The guide, or the hull of sprocket and idler.
     pub(crate) hull: Envelope,
 }
 

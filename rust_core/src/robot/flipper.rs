@@ -1,6 +1,6 @@
 //! Flippers of a robot: arms that pivot on its end axles.
 
-use crate::geometry::{Pose, Rotation, Vector};
+use crate::geometry::{Pose, Rotation, Vector, end_discs};
 use crate::scenario::{End, Robot};
 
 /// The arms at one end of a robot, both sides together.
@@ -43,10 +43,14 @@ impl Flipper {
         let Some(flippers) = &robot.flippers else {
             return Vec::new();
         };
+        let [rear, front] = end_discs(&robot.outline);
         let arm = |end: End| {
             let (sign, mass) = (end.sign(), 2.0 * flippers.mass);
             Self {
-                pivot: Vector::new(0.5 * sign * robot.outline.axle_distance, 0.0),
+                pivot: match end {
+                    End::Rear => rear.center,
+                    End::Front => front.center,
+                },
                 arm: Vector::new(0.5 * sign * flippers.length, 0.0),
                 mass,
                 moment_of_inertia: mass * flippers.length * flippers.length / 12.0,

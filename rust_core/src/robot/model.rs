@@ -57,7 +57,7 @@ impl Model {
                 mount: Mount::Chassis,
             });
         }
-        let radius = robot.outline.rear_radius;
+        let radius = robot.outline.rear_radius();
         let flippers = Flipper::of(robot);
         // A chain has all of the track's mass and force; only flippers have drives besides.
         let has_chain = !track.chains.is_empty();

@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// The two wheels inside a belt, or inside a chain on a guide.
+    /// The wheels inside a belt, or inside a chain on a guide.
     fn within(&self, part: &Part) -> Vec<Body> {
         let drive = match part.kind {
             BodyKind::Belt => part.drive,

@@ -1,7 +1,7 @@
 //! Position of the robot at time 0.
 
 use super::{Model, Part, Shape};
-use crate::geometry::{Disc, Pose, Vector, end_discs, lower_tangent};
+use crate::geometry::{Disc, Envelope, Pose, Vector, lower_tangent, outline_discs};
 use crate::scenario::{Scenario, ScenarioError};
 use crate::terrain::{Ground, Profile};
 
@@ -18,15 +18,20 @@ pub(crate) fn start_position(
         ..d
     };
     let running = model.running_at_start(scenario.start.track_phase);
+    // Then the lower run need not join discs that are neighbours in the list.
+    let has_more = scenario.robot.outline.discs.len() > 2;
     // The shapes above each lane: discs, and segments between points.
     let mut touching = vec![Touching::default(); ground.lanes.len()];
     for part in model.parts.iter().filter(|part| !part.kind.is_in_chain()) {
         let mount = running.mounted(part.mount, Pose::IDENTITY);
         let placed = |p: Vector| turned(mount.transform_point(p));
         touching[part.lane].add(part, part.run(&running), placed);
+        if has_more {
+            touching[part.lane].add_runs(part, placed);
+        }
     }
     // The outline counts for where the robot begins, even if the model does not touch there.
-    let outline = end_discs(&scenario.robot.outline).into_iter();
+    let outline = outline_discs(&scenario.robot.outline).into_iter();
     let tips = model.parts.iter().flat_map(|part| {
         let mount = running.mounted(part.mount, Pose::IDENTITY);
         part.discs().map(move |(tip, _)| Disc {
@@ -109,6 +114,15 @@ impl Touching {
                 let corners: Vec<Vector> = corners.iter().map(|c| placed(*c)).collect();
                 segments.extend(closed(&corners));
             }
+        }
+    }
+
+    /// Adds the straight runs of a hull.
+    fn add_runs(&mut self, part: &Part, placed: impl Fn(Vector) -> Vector) {
+        if let Shape::Hull { discs, .. } = &part.shape {
+            let hull = Envelope::new(discs);
+            let runs = hull.runs().map(|run| run.map(&placed));
+            self.segments.extend(runs);
         }
     }
 

@@ -7,13 +7,16 @@ use serde_json::Value;
 use super::needs;
 use super::simulation::FARTHEST_TURN;
 use crate::error::Error;
-use crate::geometry::Vector;
+use crate::geometry::{Vector, end_discs};
 use crate::robot::{Model, Part, start_position};
 use crate::scenario::{Doubt, Scenario, ScenarioError, parse};
 use crate::terrain::Ground;
 
 /// Longest text that is read, in bytes; three lanes with the largest number of points take half of it.
 const LONGEST_TEXT: usize = 64 << 20;
+
+/// Where the discs of an outline are.
+const DISCS: &str = "/robot/outline/discs";
 
 /// A valid scenario, with the robot and the ground that were built to check it.
 #[derive(Clone, Debug)]
@@ -76,6 +79,10 @@ impl Checked {
         rows: impl IntoIterator<Item = &'a [f64]>,
     ) -> Vec<Result<Self, Error>> {
         let mut value = plain(&self.scenario);
+        // Texts have another form for two discs.
+        if fields.iter().any(|(pointer, _)| pointer.starts_with(DISCS)) {
+            value["robot"]["outline"] = self.scenario.robot.outline.with_discs();
+        }
         let vary = |row: &[f64]| {
             for ((pointer, whole), number) in fields.iter().zip(row) {
                 let Some(place) = value.pointer_mut(pointer) else {
@@ -137,9 +144,10 @@ impl Checked {
             _ => Arc::new(Model::on(robot, &ground)?),
         };
         let position = start_position(&scenario, &model, &ground)?;
-        let outline = &robot.outline;
-        let rear = position.x - 0.5 * outline.axle_distance * libm::cos(scenario.start.angle);
-        let to_goal = ground.goal_of(&scenario) + outline.rear_radius - rear;
+        let [rear, _] = end_discs(&robot.outline);
+        let (sine, cosine) = libm::sincos(scenario.start.angle);
+        let axle = position.x + (cosine * rear.center.x - sine * rear.center.y);
+        let to_goal = ground.goal_of(&scenario) + rear.radius - axle;
         let doubts = scenario.doubts(to_goal);
         Ok(Self {
             scenario,

@@ -250,7 +250,7 @@ impl Simulation {
             gravity: self.scenario.gravity,
             command: self.command,
             set_point: self.set_point,
-            half_length: 0.5 * self.scenario.robot.outline.axle_distance,
+            half_length: 0.5 * self.scenario.robot.outline.axle_distance(),
             running,
         };
         Some(diagnosis::examine(&scene, &self.monitor.stance(), &seen))

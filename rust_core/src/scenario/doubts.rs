@@ -128,7 +128,7 @@ impl Robot {
     /// [m] Length of its track.
     fn length(&self) -> f64 {
         let o = &self.outline;
-        o.axle_distance + o.front_radius + o.rear_radius
+        o.axle_distance() + o.front_radius() + o.rear_radius()
     }
 
     fn add_doubts(&self, doubts: &mut Doubts) {
@@ -146,8 +146,8 @@ impl Robot {
             most,
             what,
         );
-        let radii = [o.front_radius, o.rear_radius];
-        add_doubts_of_wheels(&self.track, "robot.track", radii, o.axle_distance, doubts);
+        let size = (o.largest_radius(), o.axle_distance());
+        add_doubts_of_wheels(&self.track, "robot.track", size, doubts);
         if let Some(flippers) = &self.flippers {
             flippers.add_doubts(self, doubts);
         }
@@ -157,13 +157,13 @@ impl Robot {
 impl Flippers {
     fn add_doubts(&self, robot: &Robot, doubts: &mut Doubts) {
         doubts.angle("robot.flippers.angle".into(), self.angle);
-        let radii = [self.root_radius, self.tip_radius];
+        let size = (self.root_radius.max(self.tip_radius), self.length);
         let (path, track) = match &self.track {
             Some(track) => ("robot.flippers.track", track),
             None => ("robot.track", robot.track.open()),
         };
         if self.track.is_some() {
-            add_doubts_of_wheels(track, path, radii, self.length, doubts);
+            add_doubts_of_wheels(track, path, size, doubts);
         }
         let Track::Line(line) = track else { return };
         let Some(radius) = line.wheel_radius else {
@@ -179,15 +179,13 @@ impl Flippers {
     }
 }
 
-/// Doubts wheels that do not fit a track of this size: `radii` of its ends and `length` between its axles.
+/// Doubts wheels that do not fit a track of this size [m]: its largest radius, and the length between its axles.
 fn add_doubts_of_wheels(
     track: &Track,
     path: &str,
-    radii: [f64; 2],
-    length: f64,
+    (built, length): (f64, f64),
     doubts: &mut Doubts,
 ) {
-    let built = radii[0].max(radii[1]);
     let most = ((2.0 * built).max(0.5 * length), "m");
     let what = "twice the outline's radius or half its axle distance";
     match track {
@@ -208,7 +206,7 @@ fn add_doubts_of_wheels(
         }
         Track::Closed(closed) => {
             let path = joined(path, "of");
-            add_doubts_of_wheels(&closed.of, &path, radii, length, doubts);
+            add_doubts_of_wheels(&closed.of, &path, (built, length), doubts);
         }
         Track::Belt(_) | Track::GrouserBelt(_) | Track::Segmental(_) | Track::Force(_) => {}
     }

@@ -108,6 +108,11 @@ impl<'a> Fields<'a> {
             .ok_or_else(|| ScenarioError::new(self.path(name), "nothing", "must be given"))
     }
 
+    /// Whether the object has a field, which need not be known.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.map.contains_key(name)
+    }
+
     pub(crate) fn number(
         &mut self,
         name: &'static str,

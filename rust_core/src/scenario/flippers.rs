@@ -106,14 +106,12 @@ impl Flippers {
 
     /// Outline of the track of an arm at an end, in a frame midway between its axles.
     pub(crate) fn outline(&self, end: End, robot: &TrackOutline) -> TrackOutline {
-        let (rear_radius, front_radius) = match end {
-            End::Front => (self.root_radius, self.tip_radius),
-            End::Rear => (self.tip_radius, self.root_radius),
+        let radii = match end {
+            End::Front => [self.root_radius, self.tip_radius],
+            End::Rear => [self.tip_radius, self.root_radius],
         };
         TrackOutline {
-            axle_distance: self.length,
-            front_radius,
-            rear_radius,
+            discs: TrackOutline::two_discs(self.length, radii),
             ..robot.clone()
         }
     }

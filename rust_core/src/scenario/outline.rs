@@ -1,6 +1,7 @@
-//! The outline of a track in side view.
+//! The outline of a track in side view: the discs that it runs round.
 
-use serde::Serialize;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+use serde_json::{Value, json};
 
 use super::ScenarioError;
 use super::fields::{Fields, Range};
@@ -8,16 +9,22 @@ use super::fields::{Fields, Range};
 /// [m] Plausible sizes of a tracked robot; a micrometre or a kilometre is a mistake of units.
 pub(super) const LENGTH: Range = Range::between(1e-3, 100.0, "m");
 const LENGTH_OR_ZERO: Range = Range::between(0.0, 100.0, "m");
+const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
+/// [m] Least distance of the end axles along the chassis: the least that `LENGTH` has.
+const LEAST_DISTANCE: f64 = 1e-3;
+/// What texts have in place of two discs.
+const SHORT: [&str; 3] = ["axle_distance", "front_radius", "rear_radius"];
+/// Largest number of discs.
+const MOST: usize = 64;
 
-/// The closed outline of the track: two arcs and their outer tangents, at the grouser tips.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// The closed outline of the track: the taut belt round discs, at the grouser tips.
+///
+/// The rearmost and the foremost disc are those that reach farthest back and forwards. Their axles are the end axles;
+/// the rear one is the sprocket's.
+#[derive(Clone, Debug, PartialEq)]
 pub struct TrackOutline {
-    /// [m] Distance between the end axles.
-    pub axle_distance: f64,
-    /// [m] Front radius, measured to the grouser tips.
-    pub front_radius: f64,
-    /// [m] Rear radius, measured to the grouser tips.
-    pub rear_radius: f64,
+    /// [m] Centre (x, y) in the chassis frame and radius, measured to the grouser tips, of each disc, in any order.
+    pub discs: Vec<[f64; 3]>,
     /// [m] Height of the grousers above the belt.
     pub grouser_height: f64,
     /// [m] Spacing of the grousers along the belt.
@@ -27,9 +34,78 @@ pub struct TrackOutline {
 }
 
 impl TrackOutline {
+    /// [m] Two discs with their axles so far apart, the rear one first; the chassis frame is midway between them.
+    pub fn two_discs(axle_distance: f64, [rear, front]: [f64; 2]) -> Vec<[f64; 3]> {
+        let half = 0.5 * axle_distance;
+        vec![[-half, 0.0, rear], [half, 0.0, front]]
+    }
+
+    /// Indices of the rearmost and the foremost disc; of two that reach equally far the higher one.
+    fn ends(&self) -> [usize; 2] {
+        let reach = |i: usize, sign: f64| {
+            let [x, y, radius] = self.discs[i];
+            (sign * x + radius, y)
+        };
+        [-1.0, 1.0].map(|sign| {
+            (1..self.discs.len()).fold(0, |best, i| {
+                if reach(i, sign) > reach(best, sign) {
+                    i
+                } else {
+                    best
+                }
+            })
+        })
+    }
+
+    /// [m] The rearmost and the foremost disc.
+    pub fn end_discs(&self) -> [[f64; 3]; 2] {
+        self.ends().map(|end| self.discs[end])
+    }
+
+    /// [m] The discs between these two, from the rear to the front.
+    pub(crate) fn discs_between(&self) -> Vec<[f64; 3]> {
+        let ends = self.ends();
+        let between = (0..self.discs.len()).filter(|i| !ends.contains(i));
+        let mut between: Vec<[f64; 3]> = between.map(|i| self.discs[i]).collect();
+        // No two have the same centre, so their order does not depend on the one in which they are given.
+        let from_the_rear =
+            |a: &[f64; 3], b: &[f64; 3]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
+        between.sort_by(from_the_rear);
+        between
+    }
+
+    /// [m] Distance of the end axles along the chassis.
+    pub fn axle_distance(&self) -> f64 {
+        let [rear, front] = self.end_discs();
+        front[0] - rear[0]
+    }
+
+    /// [m] Radius of the rearmost disc.
+    pub fn rear_radius(&self) -> f64 {
+        self.end_discs()[0][2]
+    }
+
+    /// [m] Radius of the foremost disc.
+    pub fn front_radius(&self) -> f64 {
+        self.end_discs()[1][2]
+    }
+
+    /// [m] Radius of the smallest disc.
+    pub fn smallest_radius(&self) -> f64 {
+        self.discs
+            .iter()
+            .map(|disc| disc[2])
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// [m] Radius of the largest disc.
+    pub fn largest_radius(&self) -> f64 {
+        self.discs.iter().map(|disc| disc[2]).fold(0.0, f64::max)
+    }
+
     /// [m] Radius of the belt at the rear, where the sprocket's torque acts.
     pub fn belt_radius(&self) -> f64 {
-        self.rear_radius - self.grouser_height
+        self.rear_radius() - self.grouser_height
     }
 
     /// Number of grousers that comes closest to the pitch on a belt of this length [m], at least `least`.
@@ -50,19 +126,64 @@ impl TrackOutline {
         let path = "robot.outline.grouser_pitch";
         Err(ScenarioError::new(path, self.grouser_pitch, rule))
     }
+
+    /// Whether two numbers of [`Self::two_discs`] say all of its discs, as texts do then.
+    fn is_short(&self) -> bool {
+        match self.discs[..] {
+            [[rear, rear_y, _], [front, front_y, _]] => {
+                rear < 0.0 && rear + front == 0.0 && rear_y == 0.0 && front_y == 0.0
+            }
+            _ => false,
+        }
+    }
+
+    /// As JSON with its discs, even where texts have the short form.
+    pub(crate) fn with_discs(&self) -> Value {
+        json!({
+            "discs": self.discs,
+            "grouser_height": self.grouser_height,
+            "grouser_pitch": self.grouser_pitch,
+            "grouser_thickness": self.grouser_thickness,
+        })
+    }
+}
+
+impl Serialize for TrackOutline {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("TrackOutline", 6)?;
+        if self.is_short() {
+            fields.serialize_field("axle_distance", &self.axle_distance())?;
+            fields.serialize_field("front_radius", &self.discs[1][2])?;
+            fields.serialize_field("rear_radius", &self.discs[0][2])?;
+        } else {
+            fields.serialize_field("discs", &self.discs)?;
+        }
+        fields.serialize_field("grouser_height", &self.grouser_height)?;
+        fields.serialize_field("grouser_pitch", &self.grouser_pitch)?;
+        fields.serialize_field("grouser_thickness", &self.grouser_thickness)?;
+        fields.end()
+    }
 }
 
 impl TrackOutline {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let short = SHORT.into_iter().find(|name| f.has(name));
+        let discs = match short {
+            Some(name) if f.has("discs") => {
+                let rule = "must not be given beside discs, which it follows from";
+                let value = f.value(name)?;
+                return Err(f.error(name, value, rule));
+            }
+            Some(_) => read_ends(&mut f)?,
+            None => read_discs(&mut f)?,
+        };
         let outline = Self {
-            axle_distance: f.number("axle_distance", LENGTH)?,
-            front_radius: f.number("front_radius", LENGTH)?,
-            rear_radius: f.number("rear_radius", LENGTH)?,
+            discs,
             grouser_height: f.number("grouser_height", LENGTH_OR_ZERO)?,
             grouser_pitch: f.number("grouser_pitch", LENGTH)?,
             grouser_thickness: f.number("grouser_thickness", LENGTH_OR_ZERO)?,
         };
-        let smallest = outline.front_radius.min(outline.rear_radius);
+        let smallest = outline.smallest_radius();
         if outline.grouser_height >= smallest {
             let rule =
                 format!("must be less than the smaller radius, {smallest} m, to leave a belt");
@@ -75,11 +196,73 @@ impl TrackOutline {
             );
             return Err(f.error("grouser_thickness", outline.grouser_thickness, rule));
         }
-        if (outline.front_radius - outline.rear_radius).abs() >= outline.axle_distance {
-            let rule = "must differ from rear_radius by less than the axle distance: otherwise one end would enclose the other";
-            return Err(f.error("front_radius", outline.front_radius, rule));
+        match short {
+            Some(_) => outline.check_enclosure(&f)?,
+            None => outline.check_ends(&f)?,
         }
         f.finish()?;
         Ok(outline)
     }
+
+    /// Checks that neither of two ends encloses the other.
+    fn check_enclosure(&self, f: &Fields) -> Result<(), ScenarioError> {
+        let [rear, front] = [self.discs[0], self.discs[1]];
+        if (front[2] - rear[2]).abs() >= front[0] - rear[0] {
+            let rule = "must differ from rear_radius by less than the axle distance: otherwise one end would enclose the other";
+            return Err(f.error("front_radius", front[2], rule));
+        }
+        Ok(())
+    }
+
+    /// Checks that it has two ends, with the origin of the chassis frame between them.
+    fn check_ends(&self, f: &Fields) -> Result<(), ScenarioError> {
+        let [rear, front] = self.end_discs().map(|disc| disc[0]);
+        if self.axle_distance() < LEAST_DISTANCE {
+            let rule = format!(
+                "must have its rearmost and its foremost disc, those that reach farthest, at least {LEAST_DISTANCE} m apart along x"
+            );
+            let value = format!("discs at x = {rear} and {front} m");
+            return Err(f.error("discs", value, rule));
+        }
+        if rear >= 0.0 || front <= 0.0 {
+            let rule = "must have the origin of the chassis frame between its end axles: the rear one at x < 0, the front one at x > 0";
+            let value = format!("end axles at x = {rear} and {front} m");
+            return Err(f.error("discs", value, rule));
+        }
+        Ok(())
+    }
+}
+
+/// Reads the short form of two discs.
+fn read_ends(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
+    let axle_distance = f.number("axle_distance", LENGTH)?;
+    let front = f.number("front_radius", LENGTH)?;
+    let rear = f.number("rear_radius", LENGTH)?;
+    Ok(TrackOutline::two_discs(axle_distance, [rear, front]))
+}
+
+/// Reads discs of which none lies in another.
+fn read_discs(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
+    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", LENGTH)];
+    let discs = f.rows("discs", columns, MOST)?;
+    if discs.len() < 2 {
+        let value = format!("{} discs", discs.len());
+        return Err(f.error("discs", value, "must have at least 2 discs"));
+    }
+    for (i, inner) in discs.iter().enumerate() {
+        for (k, outer) in discs.iter().enumerate() {
+            let apart = libm::hypot(inner[0] - outer[0], inner[1] - outer[1]);
+            if i != k && apart <= outer[2] - inner[2] {
+                let rule =
+                    format!("must not lie in another disc, discs[{k}]: no track would touch it");
+                return Err(f.error(&format!("discs[{i}]"), written(inner), rule));
+            }
+        }
+    }
+    Ok(discs)
+}
+
+/// A disc as a text has it.
+fn written([x, y, radius]: &[f64; 3]) -> String {
+    format!("[{x}, {y}, {radius}]")
 }

@@ -60,6 +60,9 @@ impl Robot {
         };
         robot.check(&f)?;
         robot.track.check(robot.drivetrain.torque_sharing)?;
+        robot
+            .track
+            .check_discs("robot.track", robot.outline.discs.len())?;
         if let Some(flippers) = &robot.flippers {
             robot.check_flippers(flippers)?;
         }
@@ -76,8 +79,7 @@ impl Robot {
                 format!("must be less than robot.mass = {} kg", self.mass),
             ));
         }
-        let o = &self.outline;
-        let radius = o.front_radius.max(o.rear_radius);
+        let radius = self.outline.largest_radius();
         let circulating = self.track_mass * radius * radius;
         if circulating >= self.moment_of_inertia {
             return Err(f.error(

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::TorqueSharing;
-use super::fields::{Fields, Range, one_of};
+use super::fields::{Fields, Range, joined, one_of};
 use super::wheel::{MAX_GROUSERS, Wheel};
 
 /// Largest number of wheels per side.
@@ -127,7 +127,7 @@ pub enum ShoeShape {
     Trapezoid,
 }
 
-/// The drive acts on the chassis as a force along its axis at axle height, in the air, too.
+/// The drive acts on the chassis as a force along its axis, x of the chassis frame, in the air, too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ForceTrack {
     /// What the robot slides or rolls on.
@@ -271,6 +271,44 @@ impl Track {
         match self {
             Self::Closed(closed) => &closed.of,
             open => open,
+        }
+    }
+
+    /// Checks that it can stand at `path` for a track round so many discs.
+    pub(super) fn check_discs(&self, path: &str, count: usize) -> Result<(), ScenarioError> {
+        let refused = |field: &str, value: &str, [instead, why]: [&str; 2]| {
+            let rule =
+                format!("must be {instead} round {count} discs (robot.outline.discs): {why}");
+            Err(ScenarioError::new(joined(path, field), value, rule))
+        };
+        match self {
+            _ if count <= 2 => Ok(()),
+            Self::Line(_) => refused(
+                "kind",
+                "line",
+                [
+                    "another model",
+                    "a line has two ends, and leaves out the others; circumferential wheels go all round",
+                ],
+            ),
+            Self::Force(force) if force.support == ForceSupport::Wheels => refused(
+                "support",
+                "wheels",
+                [
+                    "\"skids\"",
+                    "a line of wheels has two ends, and leaves out the others",
+                ],
+            ),
+            Self::Segmental(chain) if chain.mechanism == ChainMechanism::Sprocket => refused(
+                "mechanism",
+                "sprocket",
+                [
+                    "\"guide\"",
+                    "sprocket, idler and the wheels on two runs hold a chain round two",
+                ],
+            ),
+            Self::Closed(closed) => closed.of.check_discs(&joined(path, "of"), count),
+            _ => Ok(()),
         }
     }
 

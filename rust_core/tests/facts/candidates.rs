@@ -1,6 +1,6 @@
 //! The poses in which three sliding contacts may hold a row of equal wheels before a step, by plane statics.
 
-use crawler2d_core::Scenario;
+use crawler2d_core::{Scenario, TrackOutline};
 
 use crate::common::*;
 
@@ -170,8 +170,7 @@ impl Row {
         let mut scenario = slow_and_strong();
         let length = f64::from(self.count - 1) * self.spacing;
         let outline = &mut scenario.robot.outline;
-        outline.axle_distance = length;
-        (outline.front_radius, outline.rear_radius) = (self.radius, self.radius);
+        outline.discs = TrackOutline::two_discs(length, [self.radius, self.radius]);
         scenario.robot.center_of_mass = [self.behind - 0.5 * length, self.above];
         scenario.robot.track = line(self.count);
         scenario.terrain = step(self.height, self.friction);

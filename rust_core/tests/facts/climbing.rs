@@ -1,7 +1,7 @@
 //! How high a slow, strong robot climbs, against plane quasi-statics.
 
 use crate::common::*;
-use crawler2d_core::{Outcome, Scenario, Terrain, TorqueSharing};
+use crawler2d_core::{Outcome, Scenario, Terrain, TorqueSharing, TrackOutline};
 
 /// Friction that holds a track on an edge up to 45 degrees and more. Far more friction would not be
 /// ampler: from about 3 on the nose sticks to the face and the track stalls at any torque.
@@ -41,11 +41,7 @@ fn highest_step_simulated(base: &Scenario, expected: f64) -> f64 {
 fn rigid_track(axle_distance: f64, radius: f64, behind_share: f64, above: f64) -> Scenario {
     let mut scenario = slow_and_strong();
     let outline = &mut scenario.robot.outline;
-    (
-        outline.axle_distance,
-        outline.front_radius,
-        outline.rear_radius,
-    ) = (axle_distance, radius, radius);
+    outline.discs = TrackOutline::two_discs(axle_distance, [radius, radius]);
     outline.grouser_height = 0.0;
     scenario.robot.center_of_mass = [(behind_share - 0.5) * axle_distance, above];
     scenario.robot.moment_of_inertia = scenario.robot.mass * axle_distance * axle_distance / 8.0;
@@ -144,7 +140,8 @@ fn nose_climbs_a_face_from_the_friction_of_the_balance_on() {
 /// One driven wheel that carries the whole weight: the other is too far away to help.
 fn single_wheel(height: f64, friction: f64) -> Scenario {
     let mut scenario = slow_and_strong();
-    scenario.robot.outline.axle_distance = 20.0;
+    let radius = scenario.robot.outline.rear_radius();
+    scenario.robot.outline.discs = TrackOutline::two_discs(20.0, [radius, radius]);
     scenario.robot.outline.grouser_height = 0.0;
     scenario.robot.center_of_mass = [10.0, 0.0];
     scenario.robot.moment_of_inertia = 100.0;
@@ -161,7 +158,7 @@ fn single_wheel(height: f64, friction: f64) -> Scenario {
 
 fn climbs(scenario: &Scenario) -> bool {
     summary(scenario).metrics.final_y
-        > scenario.robot.outline.rear_radius + 0.45 * height_of(scenario)
+        > scenario.robot.outline.rear_radius() + 0.45 * height_of(scenario)
 }
 
 fn height_of(scenario: &Scenario) -> f64 {

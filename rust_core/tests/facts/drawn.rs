@@ -1,15 +1,15 @@
 //! Legal scenarios anywhere in the space of robots, track models, grounds and settings.
 
 use crawler2d_core::{
-    ChainMechanism, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers, Gait,
-    GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack, ShoeShape,
-    Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ChainMechanism, Checked, CircumferentialWheels, Climb, Drive, Ends, FieldPattern, Flippers,
+    Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, Robot, Scenario, SegmentalTrack,
+    ShoeShape, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 
 use crate::common::*;
 
 fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
-    let smallest = outline.front_radius.min(outline.rear_radius);
+    let smallest = outline.smallest_radius();
     let wheel = if draw.unit() < 0.5 {
         Wheel::Round
     } else {
@@ -39,7 +39,7 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
             let mut placed = || {
                 let (x, y) = (draw.between(-0.5, 0.5), draw.between(-0.3, 0.3));
                 [
-                    x * outline.axle_distance,
+                    x * outline.axle_distance(),
                     y * smallest,
                     draw.between(0.25, 1.0) * smallest, // smaller ones turn too far in a step
                 ]
@@ -53,10 +53,10 @@ fn drawn_track(draw: &mut Draw, outline: &TrackOutline) -> Track {
 
 /// A chain on a guide or on wheels, with shoes that are short enough to go round the smaller end.
 fn drawn_chain(draw: &mut Draw, outline: &TrackOutline) -> Track {
-    let radii = [outline.front_radius, outline.rear_radius].map(|r| r - outline.grouser_height);
+    let radii = [outline.front_radius(), outline.rear_radius()].map(|r| r - outline.grouser_height);
     let [smaller, larger] = [radii[0].min(radii[1]), radii[0].max(radii[1])];
-    let around = 2.0 * outline.axle_distance + std::f64::consts::TAU * larger;
-    let fewest = 1.2 * around / (2.0 * smaller).min(0.5 * outline.axle_distance);
+    let around = 2.0 * outline.axle_distance() + std::f64::consts::TAU * larger;
+    let fewest = 1.2 * around / (2.0 * smaller).min(0.5 * outline.axle_distance());
     let mechanism = if draw.unit() < 0.5 {
         ChainMechanism::Guide
     } else {
@@ -87,7 +87,7 @@ fn drawn_chain(draw: &mut Draw, outline: &TrackOutline) -> Track {
 /// Arms that leave a chassis, with tracks of their own where the robot's do not suit every arm.
 fn drawn_flippers(draw: &mut Draw, robot: &Robot) -> Flippers {
     let outline = &robot.outline;
-    let smallest = outline.front_radius.min(outline.rear_radius);
+    let smallest = outline.smallest_radius();
     let suits = !matches!(robot.track, Track::Circumferential(_) | Track::Hybrid(_));
     let own = !matches!(robot.track, Track::Force(_)) && (!suits || draw.unit() < 0.3);
     let kinds = match robot.drivetrain.torque_sharing {
@@ -95,7 +95,7 @@ fn drawn_flippers(draw: &mut Draw, robot: &Robot) -> Flippers {
         TorqueSharing::Track => 3.0,
     };
     Flippers {
-        length: draw.between(0.3, 0.9) * outline.axle_distance,
+        length: draw.between(0.3, 0.9) * outline.axle_distance(),
         root_radius: draw.between(0.6, 1.0) * smallest,
         tip_radius: draw.between(0.5, 1.0) * smallest,
         mass: draw.between(0.001, 0.03) * robot.mass,
@@ -103,7 +103,7 @@ fn drawn_flippers(draw: &mut Draw, robot: &Robot) -> Flippers {
         angle: draw.between(-1.5, 3.0),
         rate_limit: libm::exp(draw.between(-2.0, 2.0)),
         // From a hundredth of what lifts the robot to ten times that.
-        torque_limit: libm::exp(draw.between(-4.0, 2.0)) * robot.mass * G * outline.axle_distance,
+        torque_limit: libm::exp(draw.between(-4.0, 2.0)) * robot.mass * G * outline.axle_distance(),
         track: own.then(|| match (draw.unit() * kinds) as u32 {
             0 => line_of(2 + (draw.unit() * 5.0) as u32, Wheel::Round),
             1 => belt(),
@@ -236,30 +236,79 @@ fn drawn_lane(draw: &mut Draw) -> Terrain {
     }
 }
 
-/// A legal scenario anywhere in the space of robots, grounds and settings.
+/// A legal scenario anywhere in the space of robots, grounds and settings, on two discs.
 pub(crate) fn drawn(draw: &mut Draw) -> Scenario {
+    drawn_round(draw, drawn_ends)
+}
+
+/// The same on three to six discs; the model is one that goes round them.
+pub(crate) fn drawn_on_discs(draw: &mut Draw) -> Scenario {
+    loop {
+        let mut scenario = drawn_round(draw, drawn_discs);
+        let track = &mut scenario.robot.track;
+        match track {
+            Track::Line(_) => *track = grouser_belt(),
+            Track::Force(_) => *track = force(),
+            Track::Segmental(chain) => {
+                chain.mechanism = ChainMechanism::Guide;
+                (chain.road_wheel_count, chain.return_roller_count) = (None, None);
+            }
+            _ => {}
+        }
+        if matches!(track, Track::GrouserBelt(_)) {
+            scenario.robot.drivetrain.torque_sharing = TorqueSharing::Track;
+        }
+        // A disc may lie within the others, and a shoe be too long for a short run.
+        if Checked::new(&scenario).is_ok() {
+            return scenario;
+        }
+    }
+}
+
+fn drawn_ends(draw: &mut Draw) -> Vec<[f64; 3]> {
+    let axle_distance = draw.between(0.1, 1.5);
+    let front_radius = draw.between(0.1, 0.45) * axle_distance;
+    let rear_radius = if draw.unit() < 0.5 {
+        front_radius
+    } else {
+        draw.between(0.1, 0.45) * axle_distance
+    };
+    TrackOutline::two_discs(axle_distance, [rear_radius, front_radius])
+}
+
+/// Ends at any height, discs between them below and perhaps one above, in any order.
+fn drawn_discs(draw: &mut Draw) -> Vec<[f64; 3]> {
+    let length = draw.between(0.1, 1.5);
+    let mut disc = |x: [f64; 2], y: [f64; 2]| {
+        let place = [draw.between(x[0], x[1]), draw.between(y[0], y[1])];
+        [place[0], place[1], draw.between(0.08, 0.25)].map(|part| part * length)
+    };
+    let mut discs = vec![
+        disc([-0.15, 0.0], [-0.25, 0.0]),
+        disc([-0.6, -0.5], [-0.1, 0.4]),
+        disc([0.5, 0.6], [-0.1, 0.4]),
+        disc([0.1, 0.35], [-0.25, 0.0]),
+        disc([-0.35, -0.2], [-0.2, 0.0]),
+        disc([-0.2, 0.2], [0.4, 0.8]),
+    ];
+    discs.truncate(3 + (draw.unit() * 4.0) as usize);
+    discs
+}
+
+fn drawn_round(draw: &mut Draw, discs: fn(&mut Draw) -> Vec<[f64; 3]>) -> Scenario {
     let mut s = engineer();
     let r = &mut s.robot;
-    r.outline.axle_distance = draw.between(0.1, 1.5);
-    r.outline.front_radius = draw.between(0.1, 0.45) * r.outline.axle_distance;
-    r.outline.rear_radius = if draw.unit() < 0.5 {
-        r.outline.front_radius
-    } else {
-        draw.between(0.1, 0.45) * r.outline.axle_distance
-    };
-    let smallest = r.outline.front_radius.min(r.outline.rear_radius);
+    r.outline.discs = discs(draw);
+    let (axle_distance, smallest) = (r.outline.axle_distance(), r.outline.smallest_radius());
     r.outline.grouser_height = draw.between(0.0, 0.3) * smallest;
     r.mass = libm::exp(draw.between(0.0, 6.0));
     r.track_mass = draw.between(0.01, 0.3) * r.mass;
-    r.moment_of_inertia = draw.between(0.35, 1.0) * r.mass * r.outline.axle_distance.powi(2);
+    r.moment_of_inertia = draw.between(0.35, 1.0) * r.mass * axle_distance.powi(2);
     r.center_of_mass = [
-        draw.between(-0.3, 0.3) * r.outline.axle_distance,
-        draw.between(-0.1, 0.3) * r.outline.axle_distance,
+        draw.between(-0.3, 0.3) * axle_distance,
+        draw.between(-0.1, 0.3) * axle_distance,
     ];
-    let (half, low) = (
-        0.5 * r.outline.axle_distance,
-        -draw.between(0.0, 0.9) * smallest,
-    );
+    let (half, low) = (0.5 * axle_distance, -draw.between(0.0, 0.9) * smallest);
     r.belly = (draw.unit() < 0.5).then(|| {
         vec![
             [-half, low],

@@ -75,7 +75,9 @@ pub(crate) fn follow(scenario: &Scenario, duration: f64) -> Account {
 /// [J] What errors of energy are measured by: that of the weight over the length of the robot, on Earth, and
 /// what goes round.
 pub(crate) fn scale(scenario: &Scenario, account: &Account) -> f64 {
-    scenario.robot.mass * G * scenario.robot.outline.axle_distance + account.moved + account.kinetic
+    scenario.robot.mass * G * scenario.robot.outline.axle_distance()
+        + account.moved
+        + account.kinetic
 }
 
 #[test]

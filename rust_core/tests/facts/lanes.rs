@@ -132,7 +132,7 @@ fn each_track_has_half_of_the_force() {
     scenario.robot.drivetrain.max_torque = 1.0;
     scenario.robot.drivetrain.max_acceleration = 1.0;
     let outline = &scenario.robot.outline;
-    let force = 1.0 / (outline.rear_radius - outline.grouser_height);
+    let force = 1.0 / (outline.rear_radius() - outline.grouser_height);
     for (friction, motors) in [(0.9, 2.0), (0.0, 1.0)] {
         scenario.terrain = lanes(level(0.0, 0.9), level(0.0, friction));
         for (share, forwards) in [(0.95, true), (1.05, false)] {

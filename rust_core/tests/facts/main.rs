@@ -18,6 +18,7 @@ mod belt;
 mod candidates;
 mod climbing;
 mod detracking;
+mod discs;
 mod drawn;
 mod drive;
 mod energy;

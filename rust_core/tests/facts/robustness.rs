@@ -8,7 +8,7 @@ use crawler2d_core::{
 use serde_json::{Value, json};
 
 use crate::common::*;
-use crate::drawn::drawn;
+use crate::drawn::{drawn, drawn_on_discs};
 
 /// More cases where time allows.
 fn cases(few: u64) -> u64 {
@@ -21,10 +21,18 @@ fn cases(few: u64) -> u64 {
 
 #[test]
 fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
-    let seed = 31;
+    run_finite_and_stay_out(31, cases(300), drawn);
+}
+
+#[test]
+fn drawn_scenarios_on_discs_run_finite_and_stay_out_of_the_ground() {
+    run_finite_and_stay_out(32, cases(150), drawn_on_discs);
+}
+
+fn run_finite_and_stay_out(seed: u64, cases: u64, drawn: fn(&mut Draw) -> Scenario) {
     let mut draw = Draw(seed);
     let mut deepest = 0.0_f64;
-    for case in 0..cases(300) {
+    for case in 0..cases {
         let scenario = drawn(&mut draw);
         let run = simulate(&checked(&scenario), Record::default())
             .unwrap_or_else(|e| panic!("seed {seed} case {case}: {e}\n{}", scenario.to_json()));
@@ -53,7 +61,7 @@ fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
                 "case {case}"
             );
         }
-        let depth = run.metrics.max_penetration / scenario.robot.outline.rear_radius;
+        let depth = run.metrics.max_penetration / scenario.robot.outline.rear_radius();
         deepest = deepest.max(depth);
     }
     println!("seed {seed}: deepest penetration {deepest:.4} of a radius");

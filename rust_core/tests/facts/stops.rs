@@ -46,7 +46,7 @@ fn energy(simulation: &Simulation) -> f64 {
         now.velocity.x - now.angular_velocity * arm[1],
         now.velocity.y + now.angular_velocity * arm[0],
     );
-    let radius = robot.outline.rear_radius;
+    let radius = robot.outline.rear_radius();
     let circulating = robot.track_mass * radius * radius;
     let spin = now.angular_velocity - now.track_speed / radius;
     0.5 * robot.mass * (vx * vx + vy * vy)

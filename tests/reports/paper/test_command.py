@@ -12,6 +12,7 @@ from crawler2d.__main__ import main
 from crawler2d.reports.paper import command, parts, performance, published
 from crawler2d.reports.paper.design import FULL, QUICK
 from crawler2d.reports.paper.figures import DRAWN
+from crawler2d.sweeps.store import Store
 
 TINY = replace(
     QUICK,
@@ -100,6 +101,16 @@ def test_ctrl_c_ends_it_with_its_own_exit_code(
     assert "Traceback" not in capsys.readouterr().err
     # What had been made before is there.
     assert "## Chosen beforehand" in (tmp_path / "paper.md").read_text(encoding="utf-8")
+
+
+def test_a_store_that_another_process_writes_is_told_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Store(tmp_path / "paper.sqlite"):
+        assert main(["paper", "--quick", "--out", str(tmp_path), "--table", "2"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("python -m crawler2d paper: ")
+    assert "is being written" in line
 
 
 def test_the_full_design_repeats_more_than_the_paper() -> None:

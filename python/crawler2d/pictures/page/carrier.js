@@ -81,13 +81,12 @@ class Carrier {
     if (belt && this.envelope) ctx.stroke(this.envelope.path);
   }
 
-  // The line between the two axles.
+  // The line between the end axles.
   drawBar(ctx, colors, pixel) {
     ctx.strokeStyle = colors.chassis;
     ctx.lineWidth = 1.3 * pixel;
     ctx.beginPath();
-    ctx.moveTo(-this.half, 0);
-    ctx.lineTo(this.half, 0);
+    for (const axle of this.axles) ctx.lineTo(...axle);
     ctx.stroke();
   }
 }

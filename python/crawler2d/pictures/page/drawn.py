@@ -63,13 +63,14 @@ class _Drawing:
 
     def _carrier(self, carrier: Carrier) -> dict[str, Any]:
         chassis, flippers = self.scene.carriers[0], self.robot.flippers
-        half = self.robot.outline.axle_distance / 2.0
+        axles = [end[:2] for end in self.robot.outline.ends]
         if carrier is not chassis and flippers is not None:
             half = flippers.length / 2.0
+            axles = [(-half, 0.0), (half, 0.0)]
         reach = float(np.hypot(*carrier.envelope.T).max())
         return {
             **self._pose(carrier.poses, chassis, reach),
-            "half": half,
+            "axles": axles,
             "bodies": self._bodies(carrier),
             "circuit": None if carrier.circuit is None else self._circuit(carrier.circuit),
             **self._belts(carrier),

@@ -142,9 +142,9 @@ mod tests {
         ChainOfShoes {
             number: 0,
             shoes: 0..22,
-            path: ShoeLoop::new(ends, 22).unwrap(),
+            path: ShoeLoop::new(ends.to_vec(), 22).unwrap(),
             ends,
-            wheels: Vec::new(),
+            between: Vec::new(),
             sprocket: None,
             plate_thickness: 0.003,
             shoe_mass: 0.1,

@@ -38,11 +38,12 @@ pub(in crate::dynamics) struct Stand {
     pub run: f64,
 }
 
-/// Number of possible rests of a shoe: on both ends of a guide, and with its front pin on the guide; or on
+/// Number of possible rests of a shoe: on each disc of a guide, and with its front pin on the guide; or on
 /// each wheel, with its front pin on each wheel, and on two teeth.
 pub(super) fn of_a_shoe(rule: &ChainOfShoes) -> usize {
+    let discs = 2 + rule.between.len();
     match rule.sprocket {
-        None => 3,
-        Some(_) => 2 * (2 + rule.wheels.len()) + 2,
+        None => discs + 1,
+        Some(_) => 2 * discs + 2,
     }
 }

@@ -40,12 +40,16 @@ impl Chain {
     ) -> bool {
         let rule = &self.rule;
         let (half, below) = (0.5 * rule.path.pitch, 0.5 * rule.plate_thickness);
-        let deepest = -0.5 * rule.ends[0].radius.min(rule.ends[1].radius);
+        let discs = || rule.ends.iter().chain(&rule.between);
+        let smallest = discs()
+            .map(|disc| disc.radius)
+            .fold(f64::INFINITY, f64::min);
+        let deepest = -0.5 * smallest;
         let mut is_off = false;
         for (shoe, [_, place]) in self.places.iter().enumerate() {
-            for (k, end) in rule.ends.iter().enumerate() {
+            for (k, disc) in discs().enumerate() {
                 let slides = if k == 1 { Vector::X } else { Vector::ZERO };
-                self.rest_on_disc((shoe, k), (*end, slides), stand, reach, found);
+                self.rest_on_disc((shoe, k), (*disc, slides), stand, reach, found);
             }
             let corner = place.transform_point(Vector::new(half, -below));
             let gap = -rule.hull.depth(corner);
@@ -55,7 +59,7 @@ impl Chain {
                     self,
                     Rest {
                         shoe,
-                        place: 2,
+                        place: 2 + rule.between.len(),
                         point: stand.chassis.transform_point(corner),
                         normal: stand.chassis.rotation * rule.hull.outward_at(corner),
                         gap,

@@ -20,7 +20,7 @@ impl Chain {
             center: front[0].center + Vector::X * stand.travel,
             ..front[0]
         };
-        let wheels = rear.iter().chain(&front).chain(&rule.wheels);
+        let wheels = rear.iter().chain(&front).chain(&rule.between);
         for shoe in 0..self.places.len() {
             for (k, wheel) in wheels.clone().enumerate() {
                 let slides = if k == 1 { Vector::X } else { Vector::ZERO };
@@ -59,7 +59,7 @@ impl Chain {
             self,
             Rest {
                 shoe,
-                place: 2 + self.rule.wheels.len() + wheel,
+                place: 2 + self.rule.between.len() + wheel,
                 point: stand.chassis.transform_point(place.transform_point(corner)),
                 normal: stand.chassis.rotation * (place.rotation * (away / length)),
                 gap: length - disc.radius,
@@ -95,7 +95,7 @@ impl Chain {
                     self,
                     Rest {
                         shoe,
-                        place: 2 * (2 + rule.wheels.len()) + side,
+                        place: 2 * (2 + rule.between.len()) + side,
                         point: stand.chassis.transform_point(pin),
                         normal: stand.chassis.rotation * (turned * flank.normal),
                         gap: flank.gap,

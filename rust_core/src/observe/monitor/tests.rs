@@ -12,7 +12,7 @@ use super::*;
 use crate::contact::Contact;
 use crate::dynamics::Grip;
 use crate::geometry::Vector;
-use crate::scenario::Terrain;
+use crate::scenario::{Terrain, TrackOutline};
 
 /// [s] Time between two readings, a tenth of that between two checks.
 const STEP: f64 = 0.001;
@@ -27,9 +27,7 @@ const END: f64 = 4.0;
 fn scenario() -> Scenario {
     let text = include_str!("../../../../tests/scenarios/engineer_belt_step.json");
     let mut scenario = Scenario::from_json(text).expect("the shared scenario is valid");
-    let outline = &mut scenario.robot.outline;
-    outline.axle_distance = 2.0 * HALF;
-    (outline.front_radius, outline.rear_radius) = (RADIUS, RADIUS);
+    scenario.robot.outline.discs = TrackOutline::two_discs(2.0 * HALF, [RADIUS, RADIUS]);
     scenario.terrain = ground(&[[-END, 0.0], [END, 0.0]]);
     scenario
 }

@@ -1,11 +1,11 @@
 //! A smooth closed belt: surface motion prescribed along the outline (Pecka et al., IROS 2017).
 
 use super::TrackModel;
-use crate::geometry::end_discs;
+use crate::geometry::outline_discs;
 use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::Robot;
 
-/// One hull round the end discs, with one speed all over its surface.
+/// One hull round the discs, with one speed all over its surface.
 pub(super) fn build(robot: &Robot) -> TrackModel {
     let part = hull(robot, BodyKind::Belt, Some(0), f64::INFINITY);
     TrackModel {
@@ -25,7 +25,7 @@ pub(super) fn hull(
     friction_limit: f64,
 ) -> Part {
     let shape = Shape::Hull {
-        discs: end_discs(&robot.outline).to_vec(),
+        discs: outline_discs(&robot.outline),
         grouser_height: 0.0,
     };
     Part {

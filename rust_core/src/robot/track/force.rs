@@ -4,7 +4,7 @@ use super::{TrackModel, belt, wheels};
 use crate::robot::BodyKind;
 use crate::scenario::{ForceSupport, ForceTrack, Robot, ScenarioError};
 
-/// The force acts along the chassis at axle height, in the air, too; skids or free wheels carry the robot.
+/// The force acts along the x axis of the chassis frame, in the air, too; skids or free wheels carry the robot.
 pub(super) fn build(robot: &Robot, force: &ForceTrack) -> Result<TrackModel, ScenarioError> {
     let parts = match force.support {
         ForceSupport::Skids => vec![belt::hull(robot, BodyKind::Skid, None, force.skid_friction)],

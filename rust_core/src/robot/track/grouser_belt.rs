@@ -1,16 +1,16 @@
 //! A closed belt with grousers that travel along it (Okada et al. 2020).
 //!
 //! The belt needs no bodies: the positions of its surface and grousers follow from how far the drive has run. A
-//! grouser moves with the belt on the straight runs, and turns with it round the ends.
+//! grouser moves with the belt on the straight runs, and turns with it round the discs.
 
 use std::sync::Arc;
 
 use super::TrackModel;
-use crate::geometry::{Disc, Envelope, Grouser, end_discs};
+use crate::geometry::{Disc, Envelope, Grouser, outline_discs};
 use crate::robot::{BodyKind, Mount, Part, Shape};
 use crate::scenario::{GrouserBeltTrack, Robot, ScenarioError};
 
-/// The belt, which is one hull round the end discs at the roots, and its grousers.
+/// The belt, which is one hull round the discs at the roots, and its grousers.
 pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel, ScenarioError> {
     let error = |field: &str, value: f64, rule: String| {
         Err(ScenarioError::new(format!("robot.{field}"), value, rule))
@@ -23,7 +23,7 @@ pub(super) fn build(robot: &Robot, belt: &GrouserBeltTrack) -> Result<TrackModel
             return error(&format!("outline.{field}"), value, rule);
         }
     }
-    let discs: Vec<Disc> = end_discs(outline)
+    let discs: Vec<Disc> = outline_discs(outline)
         .iter()
         .map(|disc| Disc {
             radius: disc.radius - height,

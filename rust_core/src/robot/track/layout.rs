@@ -1,7 +1,7 @@
 //! Where the wheels of a model are on the robot.
 
 use crate::geometry::search::zero;
-use crate::geometry::{Disc, Envelope, Vector, end_discs};
+use crate::geometry::{Disc, Envelope, Vector, end_discs, outline_discs};
 use crate::scenario::{
     CircumferentialWheels, ForceSupport, HybridWheels, LineOfWheels, Robot, ScenarioError, Track,
     TrackOutline,
@@ -60,7 +60,7 @@ fn circumferential(
     outline: &TrackOutline,
     wheels: &CircumferentialWheels,
 ) -> Result<Vec<Disc>, ScenarioError> {
-    let smallest = outline.front_radius.min(outline.rear_radius);
+    let smallest = outline.smallest_radius();
     let (radius, centers) = match wheels.wheel_radius {
         Some(radius) if radius < smallest => {
             let path = path_of_centers(outline, radius);
@@ -81,7 +81,7 @@ fn circumferential(
 /// Radius and centres of wheels that touch their neighbours all the way round.
 fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), ScenarioError> {
     // Larger wheels would touch those on the other run before their neighbours.
-    let largest = 0.5 * outline.front_radius.min(outline.rear_radius);
+    let largest = 0.5 * outline.smallest_radius();
     // Larger wheels leave a shorter path for their centres, and need more of it.
     let overlap = |radius: f64| {
         let path = path_of_centers(outline, radius);
@@ -107,8 +107,10 @@ fn tight(outline: &TrackOutline, count: u32) -> Result<(f64, Vec<Vector>), Scena
 
 /// The path of the centres of wheels that touch the outline from inside.
 fn path_of_centers(outline: &TrackOutline, radius: f64) -> Envelope {
-    Envelope::new(&end_discs(outline).map(|end| Disc {
-        radius: end.radius - radius,
-        ..end
-    }))
+    let inside = |disc: Disc| Disc {
+        radius: disc.radius - radius,
+        ..disc
+    };
+    let discs: Vec<Disc> = outline_discs(outline).into_iter().map(inside).collect();
+    Envelope::new(&discs)
 }

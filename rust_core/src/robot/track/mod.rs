@@ -1,6 +1,7 @@
 //! Track models: the shapes that meet the ground, and the drive that moves each of them.
 
 mod belt;
+mod discs;
 mod flipper;
 mod force;
 mod grouser_belt;
@@ -31,8 +32,9 @@ pub(crate) struct TrackModel {
 /// Builds the track model of a robot, including those of its flippers; of a closed track, the one that is to be closed.
 ///
 /// # Errors
-/// Wheels that do not fit the robot.
+/// Discs that no track would touch; wheels that do not fit the robot.
 pub(crate) fn build(robot: &Robot) -> Result<TrackModel, ScenarioError> {
+    discs::check(&robot.outline)?;
     let mut track = match &robot.track {
         Track::Line(LineOfWheels { wheel, .. })
         | Track::Circumferential(CircumferentialWheels { wheel, .. })

@@ -24,11 +24,12 @@ impl RunningGear {
     /// For the ends of a chain's path; road wheels follow the lower run of the `built` ends.
     pub(super) fn new(
         path: &ShoeLoop,
-        built: [Disc; 2],
+        built: &[Disc],
         plate_thickness: f64,
         track: &SegmentalTrack,
     ) -> Self {
-        let ends = path.ends(path.pitch).map(|end| Disc {
+        let of_path = path.ends(path.pitch);
+        let ends = [of_path[0], of_path[1]].map(|end| Disc {
             radius: end.radius - 0.5 * plate_thickness,
             ..end
         });
@@ -59,7 +60,7 @@ impl RunningGear {
         let upper = on_run(ends.map(upwards), rollers, ROLLER);
         Self {
             ends,
-            road_wheels: on_run(built, road_wheels, ROAD_WHEEL),
+            road_wheels: on_run([built[0], built[1]], road_wheels, ROAD_WHEEL),
             rollers: upper.into_iter().map(upwards).collect(),
         }
     }

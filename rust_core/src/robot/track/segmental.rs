@@ -5,7 +5,7 @@
 
 use super::TrackModel;
 use super::running_gear::RunningGear;
-use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, end_discs};
+use crate::geometry::{Disc, Envelope, ShoeLoop, Vector, outline_discs};
 use crate::robot::{BodyKind, ChainOfShoes, Mount, Part, Shape, Tensioner};
 use crate::scenario::{ChainMechanism, MAX_SHOES, Robot, ScenarioError, SegmentalTrack, ShoeShape};
 
@@ -23,13 +23,14 @@ const PRESSED_IN: f64 = 0.07;
 /// Shoes on a guide or on wheels.
 pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel, ScenarioError> {
     let outline = &robot.outline;
-    let ends = |inside: f64| {
-        end_discs(outline).map(|disc| Disc {
+    let discs = |inside: f64| -> Vec<Disc> {
+        let within = |disc: Disc| Disc {
             radius: disc.radius - inside,
             ..disc
-        })
+        };
+        outline_discs(outline).into_iter().map(within).collect()
     };
-    let roots = Envelope::new(&ends(outline.grouser_height));
+    let roots = Envelope::new(&discs(outline.grouser_height));
     let count = match track.shoe_count {
         Some(count) => count,
         None => outline.pitches_along(roots.length(), [3, MAX_SHOES])?,
@@ -40,11 +41,11 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         track.plate_thickness.unwrap_or(default)
     };
     let plate_thickness = plate(count);
-    let guide = ends(outline.grouser_height + plate_thickness);
-    if let Some(end) = guide.iter().find(|end| end.radius <= 0.0) {
+    let guide = discs(outline.grouser_height + plate_thickness);
+    if let Some(disc) = guide.iter().find(|disc| disc.radius <= 0.0) {
         let rule = format!(
             "must leave room for a guide, whose smaller end would have a radius of {} m",
-            end.radius
+            disc.radius
         );
         let value = plate_thickness;
         return Err(ScenarioError::new(
@@ -54,7 +55,7 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
         ));
     }
     let loop_of = |count: usize| {
-        let pins = ends(outline.grouser_height + 0.5 * plate(count));
+        let pins = discs(outline.grouser_height + 0.5 * plate(count));
         let on_guide = ShoeLoop::new(pins, count)?;
         match track.mechanism {
             ChainMechanism::Guide => Some(on_guide),
@@ -69,13 +70,13 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
     let pieces = shapes(robot, track.shoe_shape, path.pitch, plate_thickness);
     let mut parts: Vec<Part> = (0..count).flat_map(|shoe| of_shoe(shoe, &pieces)).collect();
     let beyond = plate_thickness + outline.grouser_height;
-    let (ends, wheels) = match track.mechanism {
+    let (ends, between) = match track.mechanism {
         ChainMechanism::Guide => {
-            parts.push(guide_of(guide, PRESSED_IN * path.pitch, beyond));
-            (guide, Vec::new())
+            parts.push(guide_of(&guide, PRESSED_IN * path.pitch, beyond));
+            ([guide[0], guide[1]], guide[2..].to_vec())
         }
         ChainMechanism::Sprocket => {
-            let gear = RunningGear::new(&path, guide, plate_thickness, track);
+            let gear = RunningGear::new(&path, &guide, plate_thickness, track);
             parts.extend(gear.parts(beyond));
             (gear.ends, [gear.road_wheels, gear.rollers].concat())
         }
@@ -93,10 +94,13 @@ pub(super) fn build(robot: &Robot, track: &SegmentalTrack) -> Result<TrackModel,
             shoe_mass,
             // A thin plate between its pins.
             shoe_inertia: shoe_mass * path.pitch * path.pitch / 12.0,
-            hull: Envelope::new(&ends),
+            hull: match track.mechanism {
+                ChainMechanism::Guide => Envelope::new(&guide),
+                ChainMechanism::Sprocket => Envelope::new(&ends),
+            },
             ends,
-            wheels,
-            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius),
+            between,
+            sprocket: RunningGear::sprocket(&path, shoe_mass, outline.rear_radius()),
             path,
         }],
     })
@@ -116,11 +120,11 @@ fn of_shoe(shoe: usize, pieces: &[(BodyKind, Vec<Vector>)]) -> impl Iterator<Ite
 
 /// The guide as the ground meets it: where it is built. Its front end may be pressed in, and it must not touch
 /// ground under plates that are in place, so it lies so far [m] `inside`.
-fn guide_of(ends: [Disc; 2], inside: f64, beyond: f64) -> Part {
+fn guide_of(discs: &[Disc], inside: f64, beyond: f64) -> Part {
     Part {
         kind: BodyKind::Guide,
         shape: Shape::Hull {
-            discs: ends.map(|end| shrunk(end, inside)).to_vec(),
+            discs: discs.iter().map(|disc| shrunk(*disc, inside)).collect(),
             grouser_height: beyond + inside,
         },
         drive: None,
@@ -162,7 +166,7 @@ fn too_long(count: usize, goes_round: impl Fn(usize) -> bool) -> ScenarioError {
         format!("must be more than {most} here, but that is the maximum")
     };
     let rule = format!(
-        "{allowed}: a shoe must not be longer than the diameter of the smaller end, half the axle distance or a straight run"
+        "{allowed}: a shoe must not be longer than the diameter of the smallest disc, half the axle distance or a straight run"
     );
     ScenarioError::new("robot.track.shoe_count", count, rule)
 }

@@ -124,7 +124,7 @@ impl Simulation {
 
     /// [m] Half the distance between the end axles.
     fn half_length(&self) -> f64 {
-        0.5 * self.scenario.robot.outline.axle_distance
+        0.5 * self.scenario.robot.outline.axle_distance()
     }
 }
 

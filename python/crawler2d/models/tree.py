@@ -1,7 +1,8 @@
-"""The neutral tree: links, joints and collision shapes of a robot, whatever format had them.
+"""The neutral tree: links, joints and collision shapes of a robot, whatever format has them.
 
-Everything is in the frame of the model, whose z axis points up, with all joints at zero; metres,
-kilograms, radians. What is None was not given.
+Readers make one of a file, writers make a file of one. Everything is in the frame of the model,
+whose z axis points up, with all joints at zero; metres, kilograms, radians. What is None was not
+given.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from crawler2d.reading.elements import Where
-from crawler2d.reading.poses import Array, Pose
+from crawler2d.models.poses import Array, Pose
+from crawler2d.models.where import MADE, Where
 
 __all__ = ["Friction", "Joint", "Link", "Plugin", "Shape", "Tree"]
 
@@ -38,8 +39,8 @@ class Friction:
     second: float
     direction: Array | None = None
     priority: int = 0
-    first_at: Where
-    second_at: Where
+    first_at: Where = MADE
+    second_at: Where = MADE
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -64,8 +65,8 @@ class Shape:
         [m] Of a hull, in the frame of the model.
     friction : Friction, optional
         Of its surface.
-    surface_speed : bool
-        Whether the file moves its surface.
+    surface_speed : float
+        [m/s] At which the file itself moves its surface; 0: it does not.
     at : Where
         Its own line.
     pose_at, size_at : Where
@@ -80,10 +81,10 @@ class Shape:
     size: Array = field(default_factory=lambda: np.zeros(3))
     points: Array = field(default_factory=lambda: np.zeros((0, 3)))
     friction: Friction | None = None
-    surface_speed: bool = False
-    at: Where
-    pose_at: Where
-    size_at: Where
+    surface_speed: float = 0.0
+    at: Where = MADE
+    pose_at: Where = MADE
+    size_at: Where = MADE
 
     @property
     def axis(self) -> Array:
@@ -120,9 +121,9 @@ class Link:
     center: Array
     inertia: Array
     shapes: tuple[Shape, ...]
-    at: Where
-    pose_at: Where
-    mass_at: Where
+    at: Where = MADE
+    pose_at: Where = MADE
+    mass_at: Where = MADE
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -164,9 +165,9 @@ class Joint:
     effort: float | None = None
     velocity: float | None = None
     stiffness: float = 0.0
-    at: Where
-    effort_at: Where
-    velocity_at: Where
+    at: Where = MADE
+    effort_at: Where = MADE
+    velocity_at: Where = MADE
 
     @property
     def is_locked(self) -> bool:
@@ -188,7 +189,7 @@ class Plugin:
     name: str
     filename: str
     settings: tuple[tuple[str, str, Where], ...]
-    at: Where
+    at: Where = MADE
 
     def values(self, *paths: str) -> list[tuple[str, Where]]:
         """Return text and line of every setting at one of these paths."""
@@ -229,7 +230,7 @@ class Tree:
     plugins: tuple[Plugin, ...] = ()
     driven: Mapping[str, Where] = field(default_factory=dict)
     tracks: tuple[str, ...] = ()
-    at: Where
+    at: Where = MADE
 
     @property
     def by_name(self) -> dict[str, Link]:

@@ -40,6 +40,33 @@ class Pose:
         """Return what is given in this frame, seen from where this one is."""
         return Pose(place=self.at(inner.place), turn=self.turn @ inner.turn)
 
+    def seen_from(self, frame: Pose) -> Pose:
+        """Return this frame, seen from another one that is given in the same frame."""
+        return Pose(place=frame.turn.T @ (self.place - frame.place), turn=frame.turn.T @ self.turn)
+
+    @property
+    def rpy(self) -> tuple[float, float, float]:
+        """[rad] Roll about x, then pitch about y, then yaw about z, all of them fixed axes."""
+        turn = self.turn
+        level = math.hypot(turn[0, 0], turn[1, 0])
+        pitch = math.atan2(-turn[2, 0], level)
+        if level < 1e-9:  # x points up or down: roll and yaw turn about one axis
+            return math.atan2(-turn[1, 2], turn[1, 1]), pitch, 0.0
+        roll = math.atan2(turn[2, 1], turn[2, 2])
+        return roll, pitch, math.atan2(turn[1, 0], turn[0, 0])
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """[-] The turn as a quaternion, its real part first."""
+        cr, cp, cy = (math.cos(0.5 * angle) for angle in self.rpy)
+        sr, sp, sy = (math.sin(0.5 * angle) for angle in self.rpy)
+        return (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+
     def at(self, point: Sequence[float] | Array) -> Array:
         """[m] Return a point of this frame, shape (3,), or several, shape (n, 3)."""
         moved: Array = np.asarray(point, dtype=float) @ self.turn.T + self.place

@@ -1,0 +1,273 @@
+"""From a robot in side view to a neutral tree in three dimensions, with both sides."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from crawler2d.common.ends import discs_in, ends_of
+from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Pose
+from crawler2d.models.tree import Joint, Link, Shape, Tree
+from crawler2d.models.where import MADE
+from crawler2d.writing.across import Across
+from crawler2d.writing.belly import belly_shapes
+from crawler2d.writing.belts import belt_shapes
+from crawler2d.writing.carriers import Carrier, Wheel, carriers_of, left_of
+from crawler2d.writing.gears import gear_shapes
+from crawler2d.writing.held import Format, refuse_tapering, refuse_unheld
+from crawler2d.writing.inertia import Part, tensor
+from crawler2d.writing.solids import Solids, in_space
+
+__all__ = ["model_of"]
+
+CHASSIS = "chassis"
+"""The root link; its frame is the chassis frame."""
+
+_SIDES = (("left", 1.0), ("right", -1.0))
+_AXLE = np.array([0.0, 1.0, 0.0])  # A wheel that turns about it by a positive angle drives forward.
+_HALF_TURN = math.pi  # [rad] by which a flipper may turn either way
+
+
+def model_of(
+    robot: dict[str, Any], text: str, across: Across, *, friction: float, form: Format
+) -> Tree:
+    """Make the tree of a robot.
+
+    Parameters
+    ----------
+    robot : dict
+        As in a scenario in JSON.
+    text : str
+        That scenario, with the robot on level ground.
+    across : Across
+        Widths and lateral places.
+    friction : float
+        [-] Of all surfaces.
+    form : Format
+        What the format can hold.
+
+    Raises
+    ------
+    ScenarioError
+        If the format cannot hold its tracks, or masses are left that no body can have.
+    """
+    carriers = carriers_of(robot, text)
+    refuse_unheld(robot, carriers, form)
+    return _Model(robot, carriers, across, friction, form).tree()
+
+
+class _Model:
+    """A tree in the making: links and joints are added from the chassis outwards."""
+
+    def __init__(
+        self,
+        robot: dict[str, Any],
+        carriers: list[Carrier],
+        across: Across,
+        friction: float,
+        form: Format,
+    ) -> None:
+        self.robot = robot
+        self.chassis, *self.arms = carriers
+        self.across = across
+        self.friction = friction
+        self.form = form
+        outline, drivetrain = robot["outline"], robot["drivetrain"]
+        self.speed = float(drivetrain["max_speed"])
+        # [N] Of one side; its torque acts at the radius of the belt round the rear end.
+        rear, front = ends_of(discs_in(outline))
+        self.force = drivetrain["max_torque"] / (rear[2] - outline["grouser_height"])
+        # [m] The end axles, on which flippers pivot, and what the track takes between them.
+        self.axles = {"rear": np.array(rear[:2]), "front": np.array(front[:2])}
+        self.length = front[0] - rear[0]
+        self.radius = max(rear[2], front[2])
+        self.links: list[Link] = []
+        self.joints: dict[str, Joint] = {}
+
+    def tree(self) -> Tree:
+        self.add_chassis()
+        for arm in self.arms:
+            self.add_arms(arm)
+        return Tree(
+            name=self.robot["name"] or "robot",
+            format=self.form.name,
+            file="",
+            links=tuple(self.links),
+            joints=self.joints,
+            driven={joint.name: MADE for joint in self.joints.values() if joint.kind == "hinge"},
+        )
+
+    def add_chassis(self) -> None:
+        """Add what is left of the masses without flippers and tracks, the belly, and the tracks."""
+        robot = self.robot
+        whole = Part(
+            mass=robot["mass"],
+            center=np.array(robot["center_of_mass"]),
+            inertia=robot["moment_of_inertia"],
+        )
+        arms = [self.rod(arm.end) for arm in self.arms for _ in _SIDES]
+        belt = self.belt()
+        tracks = [] if belt is None else [belt, belt]
+        left, is_hoop = left_of(whole, [*arms, *tracks], 2 * self.chassis.wheels)
+        if left is None:
+            rule = "must, as the mass, be more than that of tracks and flippers where they are"
+            raise ScenarioError("robot.moment_of_inertia", robot["moment_of_inertia"], rule)
+        belly = None if robot["belly"] is None else np.array(robot["belly"])
+        sizes = np.ptp(belly, axis=0) if belly is not None else (self.length, self.radius)
+        solids = Solids(
+            name=CHASSIS, across=0.0, width=self.across.chassis_width, friction=self.friction
+        )
+        has_hulls = self.form.has_hulls
+        self.links.append(
+            Link(
+                name=CHASSIS,
+                pose=Pose(),
+                mass=left.mass,
+                center=in_space(left.center, 0.0),
+                inertia=tensor(
+                    left, length=sizes[0], height=sizes[1], width=self.across.chassis_width
+                ),
+                shapes=() if belly is None else tuple(belly_shapes(belly, solids, hulls=has_hulls)),
+            )
+        )
+        for side, sign in _SIDES:
+            y = sign * 0.5 * self.across.gauge
+            if belt is not None:
+                self.add_track(f"{side}_track", y, belt)
+            for number, wheel in enumerate(self.chassis.wheels, 1):
+                name = f"{side}_wheel_{number}"
+                self.add_wheel(name, CHASSIS, self.chassis, wheel, y, is_hoop=is_hoop)
+
+    def belt(self) -> Part | None:
+        """Return the belt of one side as a loop; None if the chassis has wheels."""
+        loop, mass = self.chassis.loop, 0.5 * self.robot["track_mass"]
+        if loop is None:
+            return None
+        return Part(mass=mass, center=loop.center, inertia=mass * loop.inertia)
+
+    def rod(self, end: str) -> Part:
+        """Return a flipper at angle 0."""
+        flippers, sign = self.robot["flippers"], _sign(end)
+        mass, length = flippers["mass"], flippers["length"]
+        center = self.axles[end] + np.array([sign * 0.5 * length, 0.0])
+        return Part(mass=mass, center=center, inertia=mass * length**2 / 12.0)
+
+    def add_track(self, name: str, y: float, belt: Part) -> None:
+        """Add a belt: fixed to the chassis, while its surface moves."""
+        width = self.across.track_width
+        height = 2.0 * self.radius
+        self.add(
+            Link(
+                name=name,
+                pose=Pose(place=np.array([0.0, y, 0.0])),
+                mass=belt.mass,
+                center=in_space(belt.center, y),
+                inertia=tensor(belt, length=self.length + height, height=height, width=width),
+                shapes=self.belt_shapes(name, self.chassis, y, width),
+            ),
+            Joint(
+                name=f"{name}_joint",
+                kind="fixed",
+                parent=CHASSIS,
+                child=name,
+                place=np.array([0.0, y, 0.0]),
+                axis=_AXLE,
+            ),
+        )
+
+    def belt_shapes(self, name: str, carrier: Carrier, y: float, width: float) -> tuple[Shape, ...]:
+        solids = Solids(name=name, across=y, width=width, friction=self.friction, speed=self.speed)
+        return tuple(belt_shapes(carrier.discs, solids))
+
+    def add_arms(self, arm: Carrier) -> None:
+        """Add the flippers at one end, which are uniform rods with all that they carry."""
+        flippers, sign = self.robot["flippers"], _sign(arm.end)
+        rod = self.rod(arm.end)
+        turned = Part(mass=rod.mass, center=arm.middle, inertia=rod.inertia)
+        left, is_hoop = left_of(turned, [], arm.wheels)
+        if left is None:
+            rule = "must be such that a rod of that length has more inertia than the wheels on it"
+            raise ScenarioError("robot.flippers.length", flippers["length"], rule)
+        pivot, width = self.axles[arm.end], self.across.flipper_width
+        radius = max(flippers["root_radius"], flippers["tip_radius"])
+        moments = tensor(left, length=flippers["length"], height=radius, width=width)
+        (x, z) = arm.direction
+        turn = np.array([[x, 0.0, -z], [0.0, 1.0, 0.0], [z, 0.0, x]])
+        for side, lateral in _SIDES:
+            name, y = f"{arm.end}_{side}_flipper", lateral * self.across.flippers
+            has_belt = arm.loop is not None
+            self.add(
+                Link(
+                    name=name,
+                    pose=Pose(place=in_space(pivot, y)),
+                    mass=left.mass,
+                    center=in_space(left.center, y),
+                    inertia=turn @ moments @ turn.T,
+                    shapes=self.belt_shapes(name, arm, y, width) if has_belt else (),
+                ),
+                Joint(
+                    name=f"{name}_joint",
+                    kind="hinge",
+                    parent=CHASSIS,
+                    child=name,
+                    place=in_space(pivot, y),
+                    axis=-sign * _AXLE,  # upwards is positive
+                    lower=-_HALF_TURN,
+                    upper=_HALF_TURN,
+                    effort=flippers["torque_limit"],
+                    velocity=flippers["rate_limit"],
+                ),
+            )
+            for number, wheel in enumerate(arm.wheels, 1):
+                self.add_wheel(f"{name}_wheel_{number}", name, arm, wheel, y, is_hoop=is_hoop)
+
+    def add_wheel(
+        self, name: str, parent: str, carrier: Carrier, wheel: Wheel, y: float, *, is_hoop: bool
+    ) -> None:
+        """Add a wheel with a motor of its own: an equal share of the force of its side."""
+        part, place = wheel.part(is_hoop=is_hoop), in_space(wheel.center, y)
+        share = self.force / max(1, len(self.chassis.wheels))
+        width = self.across.flipper_width if carrier.end else self.across.track_width
+        self.add(
+            Link(
+                name=name,
+                pose=Pose(place=place),
+                mass=part.mass,
+                center=place,
+                inertia=tensor(part, length=1.0, height=1.0, width=width),
+                shapes=self.wheel_shapes(name, wheel, y, width, carrier.end),
+            ),
+            Joint(
+                name=f"{name}_joint",
+                kind="hinge",
+                parent=parent,
+                child=name,
+                place=place,
+                axis=_AXLE,
+                effort=share * wheel.radius,
+                velocity=self.speed / wheel.radius,
+            ),
+        )
+
+    def wheel_shapes(
+        self, name: str, wheel: Wheel, y: float, width: float, end: str
+    ) -> tuple[Shape, ...]:
+        solids = Solids(name=name, across=y, width=width, friction=self.friction)
+        if wheel.outline is None:
+            return (solids.cylinder(0, wheel.center, wheel.radius),)
+        hulls = self.form.has_hulls
+        shapes = gear_shapes(wheel.outline, solids, wheel.center, hulls=hulls)
+        if shapes is None:
+            refuse_tapering(self.robot, end, self.form)
+        return tuple(shapes)
+
+    def add(self, link: Link, joint: Joint) -> None:
+        self.links.append(link)
+        self.joints[link.name] = joint
+
+
+def _sign(end: str) -> float:
+    return 1.0 if end == "front" else -1.0

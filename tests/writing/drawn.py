@@ -1,0 +1,108 @@
+"""Robots drawn at random that model files can hold: round wheels and smooth belts of all kinds."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+
+import crawler2d as c2d
+from crawler2d.parameters.track import Track
+
+Generator = np.random.Generator
+
+
+def drawn(number: int, *, wheels_only: bool = False) -> c2d.Robot:
+    """Make a random robot: the same number makes the same one."""
+    rng = np.random.default_rng([23, number])
+    length = float(rng.uniform(0.25, 1.2))
+    rear = float(rng.uniform(0.12, 0.3)) * length
+    front = rear if rng.random() < 0.6 else rear * float(rng.uniform(0.7, 1.4))
+    robot = c2d.Robot.simple(
+        float(rng.uniform(4.0, 120.0)),
+        axle_distance=length,
+        radius=rear,
+        name=f"drawn {number}",
+        max_speed=float(rng.uniform(0.2, 3.0)),
+    )
+    robot = dataclasses.replace(
+        robot,
+        outline=dataclasses.replace(robot.outline, front_radius=front),
+        center_of_mass=(length * float(rng.uniform(-0.1, 0.1)), rear * float(rng.uniform(-0.3, 1))),
+        moment_of_inertia=robot.moment_of_inertia * float(rng.uniform(0.9, 1.6)),
+        track_mass=robot.mass * float(rng.uniform(0.02, 0.25)),
+        belly=_belly(rng, length, min(front, rear)),
+        gauge=length * float(rng.uniform(0.3, 1.0)),
+    )
+    torque = robot.drivetrain.max_torque * float(rng.uniform(0.3, 3.0))
+    motors = dataclasses.replace(robot.drivetrain, max_torque=torque)
+    track = _track(rng, length, rear, front, wheels_only=wheels_only)
+    robot = dataclasses.replace(robot, drivetrain=motors, track=track)
+    # Small wheels end beside the end axles, on which flippers pivot.
+    if rng.random() < 0.5 and not isinstance(track, c2d.CircumferentialWheels):
+        robot = _with_flippers(rng, robot, wheels_only=wheels_only)
+    return robot
+
+
+def _belly(rng: Generator, length: float, radius: float) -> Any:
+    """A rectangle, a trapezoid, a polygon with any corners, or none."""
+    kind = rng.integers(4)
+    low, high = -0.6 * radius, radius * float(rng.uniform(0.2, 2.0))
+    half, top = 0.5 * length, 0.5 * length * float(rng.uniform(0.4, 1.3))
+    if kind == 0:
+        return None
+    if kind == 1:
+        return ((-half, low), (half, low), (half, high), (-half, high))
+    if kind == 2:
+        return ((-half, low), (half, low), (top, high), (-top, high))
+    angles = np.sort(rng.uniform(0.0, 0.9, 6)) + np.arange(6)
+    turns = 2.0 * math.pi * angles / 6.0
+    return np.column_stack([half * np.cos(turns), 0.9 * radius * np.sin(turns)])
+
+
+def _track(rng: Generator, length: float, rear: float, front: float, *, wheels_only: bool) -> Track:
+    line = c2d.LineOfWheels(
+        int(rng.integers(2, 8)),
+        wheel_radius=None if rng.random() < 0.5 else rear * float(rng.uniform(0.5, 1.1)),
+        as_track=bool(rng.random() < 0.8),
+    )
+    inner = [
+        (x * length, y * rear, share * rear)
+        for x, y, share in zip(
+            np.sort(rng.uniform(-0.45, 0.45, 3)).tolist(),
+            rng.uniform(-0.5, 0.5, 3).tolist(),
+            rng.uniform(0.3, 0.6, 3).tolist(),
+            strict=True,
+        )
+    ]
+    ends = [(-0.5 * length, 0.0, rear)], [(0.5 * length, 0.0, front)]
+    small = 0.4 * min(front, rear)
+    around = 2.0 * length + math.pi * (front + rear)
+    models: list[Track] = [
+        line,
+        c2d.HybridWheels((*ends[0], *inner, *ends[1])),
+        c2d.CircumferentialWheels(int(around / small / 2.2), wheel_radius=small),
+    ]
+    if not wheels_only:
+        models += [c2d.BeltTrack(), c2d.ClosedTrack(c2d.LineOfWheels(4))]
+    return models[rng.integers(len(models))]
+
+
+def _with_flippers(rng: Generator, robot: c2d.Robot, *, wheels_only: bool) -> c2d.Robot:
+    radius = min(robot.outline.front_radius, robot.outline.rear_radius)
+    tracks: list[Track] = [c2d.LineOfWheels(int(rng.integers(2, 6)))]
+    if not wheels_only:
+        tracks.append(c2d.BeltTrack())
+    return robot.with_flippers(
+        c2d.Flippers(
+            length=radius * float(rng.uniform(2.0, 4.0)),
+            root_radius=radius,
+            tip_radius=radius * float(rng.uniform(0.4, 1.0)),
+            mass=robot.mass * float(rng.uniform(0.01, 0.05)),
+            ends=str(rng.choice(["front", "rear", "both"])),  # type: ignore[arg-type]
+            angle=float(rng.uniform(-1.5, 2.5)),
+            rate_limit=float(rng.uniform(0.2, 3.0)),
+            torque_limit=float(rng.uniform(5.0, 200.0)),
+            track=tracks[rng.integers(len(tracks))],
+        )
+    )
