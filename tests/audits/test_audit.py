@@ -15,6 +15,7 @@ from crawler2d.__main__ import main
 from crawler2d.audits import audit as audit_module
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
+from crawler2d.audits.names import names_of
 from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.population import unknown_of_file
@@ -271,6 +272,18 @@ def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
 
 def test_belts_have_no_candidates() -> None:
     assert candidates_of(c2d.robots.engineer(), ["chassis", "flippers"]) == []
+
+
+def test_wheels_have_the_names_of_the_file() -> None:
+    absolem = quietly(FILES.parent.parent / "robots" / "absolem.sdf")
+    names = names_of(absolem.robot, absolem)
+    assert (names[0], names[7]) == ("left_track_wheel8", "left_track_wheel1")
+    assert (names[8], names[9]) == ("front_left_flipper_wheel1", "front_left_flipper_wheel2")
+    places = dict(zip(absolem.wheels["name"], absolem.wheels["x"], strict=True))
+    bodies = absolem.robot.wheels()
+    for body, x, side in zip(bodies["body"], bodies["x"], bodies["side"], strict=True):
+        if side == "left":
+            assert x == pytest.approx(places[names[int(body)]], abs=0.002)
 
 
 # How it is driven

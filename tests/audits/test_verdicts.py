@@ -84,6 +84,12 @@ def test_without_any_result_nothing_is_certain() -> None:
     assert (found.seized.runs, found.seized.low, found.seized.high) == (0, 0.0, 1.0)
 
 
+def test_a_verdict_pairs_seized_runs_with_those_of_the_belt() -> None:
+    belt = ends(cleared=30, hung_up=10)
+    assert verdict(ends(seized=20, cleared=20), belt).instead == 20 * REPEATS
+    assert verdict(ends(cleared=20, seized=20), belt).instead == 10 * REPEATS
+
+
 def test_a_verdict_tells_where_and_what_frees() -> None:
     found = verdict(ends(seized=20, cleared=20), CLEARED)
     assert (found.where, found.carrier, found.there) == ("1-2", "chassis", (40, 40))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.audits.verdicts import SEIZES
+from crawler2d.audits.names import names_of
+from crawler2d.audits.verdicts import CLEARS, SEIZES
 from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform
 from crawler2d.variation.ranges import Ranges
@@ -17,7 +18,7 @@ from crawler2d.variation.ranges import Ranges
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
     from crawler2d.audits.pockets import Pocket
-    from crawler2d.audits.repairs import Repair
+    from crawler2d.audits.repairs import Repair, Repaired
     from crawler2d.audits.share import Share
     from crawler2d.audits.verdicts import Verdict
 
@@ -28,7 +29,7 @@ _WIDTH = 100
 
 def text_of(audit: Audited) -> str:
     """Write an audit for a terminal: robot, lint, pockets, verdicts, repairs, and what follows."""
-    parts = [_robot(audit), _lint(audit), _pockets(audit), _verdicts(audit), _repairs(audit)]
+    parts = [_robot(audit), _lint(audit), _pockets(audit), _verdicts(audit), _conclusion(audit)]
     return "\n\n".join("\n".join(part) for part in parts)
 
 
@@ -107,6 +108,7 @@ def _verdicts(audit: Audited) -> Iterator[str]:
     if jammed:
         yield "  where most of its seizures are, and how many a change frees there:"
         yield from _columns(_jams(jammed))
+        yield from _names(audit, jammed)
 
 
 _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
@@ -129,10 +131,21 @@ def _jams(jammed: Sequence[Verdict]) -> list[tuple[str, ...]]:
     return rows
 
 
-def _repairs(audit: Audited) -> Iterator[str]:
+def _names(audit: Audited, jammed: Sequence[Verdict]) -> Iterator[str]:
+    """Say what the file calls the wheels between which it is jammed."""
+    if audit.reading is None:
+        return
+    names = names_of(audit.robot, audit.reading)
+    bodies = {int(body) for each in jammed for body in each.where.split("-")}
+    called = [f"{body} is {names[body]}" for body in sorted(bodies) if body in names]
+    if called:
+        yield from _wrapped(f"on the left, wheel {', '.join(called)}")
+
+
+def _conclusion(audit: Audited) -> Iterator[str]:
     seizing = [each.obstacle for each in audit.verdicts if each.word == "seizes"]
     others = [
-        each.obstacle
+        f"{each.obstacle} ({each.instead} of {each.there[1]})"
         for each in audit.verdicts
         if each.word != "seizes" and each.seized.low > SEIZES
     ]
@@ -141,23 +154,30 @@ def _repairs(audit: Audited) -> Iterator[str]:
         text = f"It seizes on {len(seizing)} of {count} obstacles that the belt clears"
         yield from _wrapped(f"{text}: {', '.join(seizing)}.", 0)
     else:
-        yield f"It was not found to seize on any of {count} obstacles that the belt clears."
+        clears = sum(each.belt_cleared.rate >= CLEARS for each in audit.verdicts)
+        yield f"It was not found to seize where the belt clears, on {clears} of {count} obstacles."
     if others:
         text = (
-            f"It also seizes on {', '.join(others)}, but the belt clears too few of its runs there."
+            "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"
+            " of the seized runs the belt clears with the same draws)"
         )
-        yield from _wrapped(text, 0)
+        yield from _wrapped(f"{text}: {', '.join(others)}.", 0)
     unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
     if unsure:
         yield from _wrapped(f"Not certain, for want of runs: {', '.join(unsure)}.", 0)
-    if audit.repaired is None:
-        return
-    if any(each.confirmed for each in audit.repairs):
-        yield f"Repairs: the best of {audit.repaired.tried} candidates, in fresh runs"
+    if audit.repaired is not None:
+        yield from _repairs(audit.repaired, seizing)
+
+
+def _repairs(found: Repaired, seizing: Sequence[str]) -> Iterator[str]:
+    if any(each.confirmed for each in found.repairs):
+        yield f"Repairs: the best of {found.tried} candidates, in fresh runs"
     else:
-        yield f"Repairs: none of {audit.repaired.tried} candidates was confirmed in fresh runs"
-    for each in audit.repairs:
+        yield f"Repairs: none of {found.tried} candidates was confirmed in fresh runs"
+    for each in found.repairs:
         yield from _wrapped(_repair(each, seizing))
+    for kind in found.hopeless:
+        yield f"  {kind}: no candidate cleared most of three runs in which it seized"
 
 
 def _repair(repair: Repair, seizing: Sequence[str]) -> str:

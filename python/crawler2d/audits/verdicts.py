@@ -18,7 +18,17 @@ from crawler2d.sweeps.stops import short_name
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["BELT", "OWN", "SEIZES", "WORDS", "Freed", "Verdict", "verdict_word", "verdicts_of"]
+__all__ = [
+    "BELT",
+    "CLEARS",
+    "OWN",
+    "SEIZES",
+    "WORDS",
+    "Freed",
+    "Verdict",
+    "verdict_word",
+    "verdicts_of",
+]
 
 OWN, BELT = "model", "belt"
 """Names of the two in the table."""
@@ -26,7 +36,7 @@ OWN, BELT = "model", "belt"
 WORDS = ("seizes", "belt fails, too", "does not seize", "not certain")
 """The words of a verdict, in the order in which they are asked."""
 
-SEIZES, _SELDOM, _CLEARS = 0.05, 0.10, 0.95
+SEIZES, _SELDOM, CLEARS = 0.05, 0.10, 0.95
 
 _TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
 
@@ -70,6 +80,8 @@ class Verdict:
         Of these wheels: "chassis", "front flipper", "rear flipper"; "" without any.
     there : tuple of int, shape (2,)
         How many seized runs are jammed there, of how many.
+    instead : int
+        In how many seized runs the belt, with the same draws, clears.
     freed : tuple of Freed
         What trials came to in the seized runs.
     friction : tuple of float, shape (2,)
@@ -87,6 +99,7 @@ class Verdict:
     where: str
     carrier: str
     there: tuple[int, int]
+    instead: int
     freed: tuple[Freed, ...]
     friction: tuple[float, float]
 
@@ -105,9 +118,9 @@ def verdict_word(cleared: Share, seized: Share, belt: Share) -> str:
     belt : Share
         How often the belt clears.
     """
-    if seized.low > SEIZES and belt.rate >= _CLEARS:
+    if seized.low > SEIZES and belt.rate >= CLEARS:
         return "seizes"
-    if belt.rate < _CLEARS and cleared.rate < _CLEARS:
+    if belt.rate < CLEARS and cleared.rate < CLEARS:
         return "belt fails, too"
     return "does not seize" if seized.high < _SELDOM else "not certain"
 
@@ -129,6 +142,7 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
     belt_cleared, belt_seized = shares(table, BELT, obstacle)
     own = {"model": OWN, "terrain": obstacle}
     jammed = column(table, "outcome", **own) == Outcome.SEIZED
+    belt_ends = column(table, "outcome", model=BELT, terrain=obstacle)
     where, carrier, there = _where(table, own, jammed)
     return Verdict(
         obstacle=obstacle,
@@ -138,10 +152,11 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
         belt_cleared=belt_cleared,
         belt_seized=belt_seized,
         outcome=_commonest(column(table, "outcome", **own)),
-        belt_outcome=_commonest(column(table, "outcome", model=BELT, terrain=obstacle)),
+        belt_outcome=_commonest(belt_ends),
         where=where,
         carrier=carrier,
         there=there,
+        instead=int((jammed & (belt_ends == Outcome.CLEARED)).sum()),
         freed=_freed(table, own, jammed),
         friction=_friction(table, own, jammed),
     )
