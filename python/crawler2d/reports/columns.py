@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-__all__ = ["aligned", "in_mm", "mm"]
+__all__ = ["aligned", "in_mm", "mm", "percent"]
 
 
 def mm(length: float) -> str:
     """Write a length [m] in millimetres."""
     return f"{1e3 * length:.0f}"
+
+
+def percent(share: float) -> str:
+    """Write a share [-] in whole per cent."""
+    return f"{100 * share:.0f}"
 
 
 def in_mm(heights: Iterable[float]) -> str:

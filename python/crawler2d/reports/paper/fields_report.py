@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from crawler2d.reports.columns import percent
 from crawler2d.reports.markdown import markdown_table
 from crawler2d.reports.paper.agreement import WITHIN
 from crawler2d.reports.paper.layouts import READINGS, layouts
@@ -53,7 +54,7 @@ def table_2_text(rows: Sequence[Beside]) -> str:
             for row in rows
             if (row.obstacle, row.column, row.model) == (obstacle, column, model)
         }
-        share = _percent(next(iter(own.values())).paper)
+        share = percent(next(iter(own.values())).paper)
         table.append((obstacle, column, model, share, *(_beside(own.get(s)) for s in settings)))
     head = ("field", "column of the paper", "layout", "paper [%]", *settings)
     note = (
@@ -80,13 +81,13 @@ def layouts_text(rows: Sequence[FieldCell]) -> str:
                 for row in rows
                 if (row.model, row.setting, row.obstacle) == (model, setting, obstacle)
             ]
-            cells.append(" / ".join(_percent(row.rate) for row in own))
+            cells.append(" / ".join(percent(row.rate) for row in own))
         table.append((model, known[model].source, *cells))
     counts = sorted({row.count for row in rows})
     widest = max((max(row.rate - row.low, row.high - row.rate) for row in rows), default=0.0)
     note = (
         f"Runs that cleared [%], of {' or '.join(map(str, counts))} a cell: {', '.join(obstacles)}."
-        f" Wilson's 95 % intervals, in `paper_table_2.csv`, reach at most {_percent(widest)} points"
+        f" Wilson's 95 % intervals, in `paper_table_2.csv`, reach at most {percent(widest)} points"
         " either way."
     )
     return f"{note}\n\n{markdown_table(('layout', 'from', *settings), table)}"
@@ -138,7 +139,3 @@ def _beside(row: Beside | None) -> str:
     return (
         f"{row.cleared} of {row.count}; {points[0]} ({points[1]} to {points[2]}): **{row.verdict}**"
     )
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f}"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from crawler2d.common.extras import extra
 from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE
+from crawler2d.reports.paper.agreement import PAPER_RUNS
 from crawler2d.sweeps.statistics import wilson
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["plot_table_2"]
 
 _COLORS, _MARKERS = (BLUE, ORANGE, GREEN), ("o", "s", "^")
-_PAPER_RUNS = 20
 
 
 def plot_table_2(rows: Sequence[Beside]) -> Figure:
@@ -48,7 +48,7 @@ def plot_table_2(rows: Sequence[Beside]) -> Figure:
     for ax, field in zip(axes.flat, fields, strict=True):
         for place, model in enumerate(models):
             own = [row for row in rows if (row.obstacle, row.model) == (field, model)]
-            theirs = (round(_PAPER_RUNS * own[0].paper), _PAPER_RUNS)
+            theirs = (round(PAPER_RUNS * own[0].paper), PAPER_RUNS)
             points = [("the paper", *theirs, BLACK, "D")]
             points += [
                 (row.setting, row.cleared, row.count, *_style(settings.index(row.setting)))

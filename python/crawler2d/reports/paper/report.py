@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from crawler2d.reports.columns import in_mm, mm
+from crawler2d.reports.columns import in_mm, mm, percent
 from crawler2d.reports.markdown import markdown_table
 from crawler2d.reports.paper import published
 from crawler2d.reports.paper.figures import DRAWN, NOT_DRAWN
@@ -58,8 +58,8 @@ def table_1_text(slopes: Sequence[Slope], rows: Sequence[Driving]) -> str:
             row.model,
             f"{math.degrees(row.closed_form):.1f}",
             "none" if math.isnan(row.steepest) else _deg(row.steepest),
-            _percent(row.declared),
-            _percent(row.measured),
+            percent(row.declared),
+            percent(row.measured),
             row.limit.replace("_", " "),
         )
         for row in slopes
@@ -213,10 +213,6 @@ def _height(row: Height) -> str:
         return f"none; {row.limit.replace('_', ' ')}"
     gaps = f" (not {in_mm(row.gaps)})" if row.gaps else ""
     return f"{mm(row.highest)}{gaps}; {row.limit.replace('_', ' ')}"
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f}"
 
 
 def _deg(angle: float) -> str:
