@@ -9,6 +9,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.reading.formats import tree_of as tree_in
+from crawler2d.reading.how import How
 from crawler2d.writing.mjcf import MJCF
 from crawler2d.writing.sdf import SDF
 from crawler2d.writing.urdf import URDF
@@ -29,8 +30,7 @@ CASES = [
 def read_again(robot: c2d.Robot, name: str, folder: Path) -> Tree:
     path = folder / f"robot.{FORMS[name][1]}"
     getattr(robot, f"to_{name}")(path, friction=1.0)
-    how: Any = {"trusted": False, "packages": {}, "arguments": {}, "leave_out_missing": False}
-    return tree_in(path, model=None, mesh="hull", **how).tree
+    return tree_in(path.read_bytes(), path, How(mesh="hull")).tree
 
 
 def close(got: Any, expected: Any, accuracy: float = 1e-9) -> bool:

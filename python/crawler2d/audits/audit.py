@@ -7,12 +7,14 @@ import warnings
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Unpack
 
 from crawler2d.audits.audited import Audited
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.lint import lint
 from crawler2d.audits.obstacles import read_obstacles, standard_obstacles
+from crawler2d.audits.patches import patch_of
 from crawler2d.audits.pockets import pockets
 from crawler2d.audits.population import (
     unknown_of,
@@ -20,7 +22,7 @@ from crawler2d.audits.population import (
     vary_of,
     without_friction,
 )
-from crawler2d.audits.repairs import repaired
+from crawler2d.audits.repairs import Repair, repaired
 from crawler2d.audits.runs import Runs, scenario_of
 from crawler2d.audits.subject import HowToRead, subject_of
 from crawler2d.audits.text import text_of
@@ -68,6 +70,42 @@ class Audit(Audited):
     def in_words(self) -> str:
         """The short form, as ``python -m crawler2d audit`` prints it."""
         return text_of(self)
+
+    def patch(
+        self, path: str | os.PathLike[str] | None = None, repair: Repair | None = None
+    ) -> str:
+        """Change the wheels in the file that was audited, and nothing else.
+
+        All wheels of a carrier together keep their mass and the torque of their motors; a new one
+        is a copy of its neighbour, with all that drives it. What was made is read again, and
+        refused if that is not the repaired robot.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to write the changed file; meshes keep their relative names, so the folder of
+            the file that was read is the place for it.
+        repair : Repair, optional
+            One of `repairs`; None takes the first that is confirmed and not of belts.
+
+        Returns
+        -------
+        str
+            What differs from the file that was read, as a unified diff. Of a xacro file it is what
+            that expands to which is changed.
+
+        Raises
+        ------
+        ScenarioError
+            If no file was audited, no repair by wheels is confirmed, or the file has its wheels in
+            a form that cannot be changed in place, such as meshes of another size.
+        OSError
+            If it cannot be written.
+        """
+        patch = patch_of(self, repair)
+        if path is not None:
+            Path(path).write_text(patch.text, encoding="utf-8")
+        return patch.diff
 
     def __repr__(self) -> str:
         """Write the short form."""

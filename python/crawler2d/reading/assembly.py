@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
@@ -47,6 +48,8 @@ class Assembly:
         The side view.
     middle : float
         [m] Where the middle plane lies across it.
+    base : Base
+        Its chassis frame in the side view.
     """
 
     tree: Tree
@@ -54,6 +57,7 @@ class Assembly:
     told: Telling
     view: SideView = field(init=False)
     middle: float = field(init=False)
+    base: Base = field(init=False)
 
     def robot(self, forward: str | None) -> Robot:
         """Make the robot.
@@ -75,7 +79,7 @@ class Assembly:
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
         rear, front = end_axles(self.told, gear, pairs, arms, is_belt=is_belt)
-        base = Base(np.array(rear[:2]), np.array(front[:2]))
+        self.base = base = Base(np.array(rear[:2]), np.array(front[:2]))
         if base.length <= tolerance:
             raise ScenarioError(str(at), base.length, "must have two wheels or drums on each side")
         by_end = arms_at(self.told, arms, base, tolerance)
@@ -114,6 +118,16 @@ class Assembly:
             drivetrain=drivetrain,
             track=track,
         )
+
+    @property
+    def frame(self) -> Pose:
+        """The chassis frame in that of the model: x forward, y to the left, z up."""
+        view, base = self.view, self.base
+        side = np.stack([view.forward, view.up], axis=1)  # turns the side view into the model
+        ahead = (base.front - base.rear) / base.length
+        turn = np.stack([side @ ahead, view.left, side @ (-ahead[1], ahead[0])], axis=1)
+        place = side @ (0.5 * (base.front + base.rear)) + self.middle * view.left
+        return Pose(place=place, turn=turn)
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return what moves at track speed."""

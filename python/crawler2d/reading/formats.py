@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.tree import Tree
 from crawler2d.reading.elements import Element
-from crawler2d.reading.meshes import Meshes, MeshRule
+from crawler2d.reading.how import How
+from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import LARGEST_FILE, parsed
 from crawler2d.reading.sdf import read_sdf
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.xacro import expanded
 
-__all__ = ["Found", "tree_of"]
+__all__ = ["Found", "bytes_of", "tree_of"]
 
 _MOST_SHAPES = 3000  # collisions; the public models have at most 67
 
@@ -40,28 +40,50 @@ class Found:
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
 
-def tree_of(
-    path: Path,
-    *,
-    model: str | None,
-    mesh: MeshRule,
-    leave_out_missing: bool,
-    trusted: bool,
-    packages: Mapping[str, Path],
-    arguments: Mapping[str, str],
-) -> Found:
-    """Read a file; the arguments are those of `read_robot`."""
-    data = _bytes(path)
-    name = path.name
+def bytes_of(path: Path) -> bytes:
+    """Read a file, but never more than a model may have.
+
+    Raises
+    ------
+    ScenarioError
+        If it cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise ScenarioError("path", str(path), f"must be a file ({reason})") from None
+    return data
+
+
+def tree_of(data: bytes, path: Path, how: How) -> Found:
+    """Read what a file holds.
+
+    Parameters
+    ----------
+    data : bytes
+        What it holds, or would hold.
+    path : Path
+        Where it is: its name is that of the lines, and names in it are relative to its folder.
+    how : How
+        The keywords of `read_robot`.
+
+    Raises
+    ------
+    ScenarioError
+        If it breaks a rule of its format, or needs what is not there.
+    """
+    name, folder = path.name, path.resolve().parent
     missing: list[tuple[str, str]] = []
     if path.suffix == ".xacro":
         parsed(data, name)  # entities are refused before anything else reads the file
         data, includes = expanded(
             path,
-            trusted=trusted,
-            packages=packages,
-            arguments=arguments,
-            leave_out=leave_out_missing,
+            trusted=how.trusted,
+            packages=how.packages,
+            arguments=how.arguments,
+            leave_out=how.leaves_out_missing,
         )
         name = f"{name} (expanded)"
         missing += [(include, "an include whose package is missing") for include in includes]
@@ -70,27 +92,17 @@ def tree_of(
     if len(shapes) > _MOST_SHAPES:
         rule = f"must have at most {_MOST_SHAPES} collision shapes"
         shapes[_MOST_SHAPES].refuse(len(shapes), rule)
-    meshes = Meshes(rule=mesh, folder=path.resolve().parent, packages=packages)
+    text = data.decode("utf-8", errors="replace")
+    meshes = Meshes(rule=how.mesh, folder=folder, packages=how.packages)
     if root.tag == "sdf":
-        tree = read_sdf(root, model, meshes)
+        tree = read_sdf(root, how.model, meshes)
     elif root.tag == "robot":
-        joints: list[Element] | None = [] if leave_out_missing else None
+        joints: list[Element] | None = [] if how.leaves_out_missing else None
         tree = read_urdf(root, meshes, left_out=joints)
         missing += [(joint.attribute("name"), "a joint of missing links") for joint in joints or ()]
     elif root.tag == "mujoco":
-        tree = read_mjcf(root, path, model, meshes)
+        tree = read_mjcf(root, text, folder, how.model, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
     missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]
-    return Found(tree, data.decode("utf-8", errors="replace"), missing)
-
-
-def _bytes(path: Path) -> bytes:
-    """Read a file, but never more than a model may have."""
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise ScenarioError("path", str(path), f"must be a file ({reason})") from None
-    return data
+    return Found(tree, text, missing)

@@ -22,15 +22,17 @@ __all__ = ["read_mjcf"]
 Plain = dict[str, Any]
 
 
-def read_mjcf(root: Element, path: Path, model: str | None, meshes: Meshes) -> Tree:
+def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes: Meshes) -> Tree:
     """Read the robot of an MJCF file: what hangs on one free joint.
 
     Parameters
     ----------
     root : Element
         Of the file.
-    path : Path
-        The file, which MuJoCo reads for itself.
+    text : str
+        All of it, which MuJoCo reads for itself.
+    folder : Path
+        To which the names of mesh files are relative.
     model : str, optional
         Name of the body with the free joint; None takes the only one.
     meshes : Meshes
@@ -49,12 +51,11 @@ def read_mjcf(root: Element, path: Path, model: str | None, meshes: Meshes) -> T
         If MuJoCo is missing; the message names the extra to install.
     """
     _refuse_includes(root)
-    question = {"path": str(path.resolve()), "file": path.name}
-    plain = answered(
-        "crawler2d.reading.mjcf_child", question, file=path.name, folder=path.resolve().parent
-    )
+    file = root.where.file
+    question = {"text": text, "folder": str(folder), "file": file}
+    plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=folder)
     if not _finite(plain):
-        raise ScenarioError(path.name, "a number", "must have finite numbers only")
+        raise ScenarioError(file, "a number", "must have finite numbers only")
     return _Model(plain, root.where, meshes).tree(model)
 
 

@@ -20,12 +20,13 @@ _INTEGRATOR = 1  # the number of the dynamics of an actuator whose activation is
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
     """Import MuJoCo."""
     mujoco = extra("mujoco", "models")
-    return lambda question: _described(mujoco, question["path"], question["file"])
+    return lambda question: _described(mujoco, **question)
 
 
-def _described(mujoco: Any, path: str, file: str) -> dict[str, Any]:
+def _described(mujoco: Any, text: str, folder: str, file: str) -> dict[str, Any]:
     try:
-        spec = mujoco.MjSpec.from_file(path)
+        spec = mujoco.MjSpec.from_string(text)
+        spec.modelfiledir = folder
         model = spec.compile()
     except Exception as error:  # MuJoCo has several classes of errors for a bad file
         said = " ".join(str(error).split())

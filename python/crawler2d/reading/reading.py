@@ -7,21 +7,22 @@ import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
-from crawler2d.common.arrays import real_number
 from crawler2d.common.markup import table
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.assembly import Assembly, assembled
-from crawler2d.reading.formats import tree_of
+from crawler2d.reading.formats import bytes_of, tree_of
 from crawler2d.reading.friction import ENGINES, Engine
+from crawler2d.reading.how import How
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.sources import Sources
 
-__all__ = ["Reading", "read_robot"]
+__all__ = ["Reading", "read_robot", "read_text"]
 
 _TOLERANCE = 0.001  # [m] Public models are symmetric to their last digit; CAD exports to 0.1 mm.
 _SHOWN = 12  # wheels in the text of a reading
@@ -53,6 +54,13 @@ class Reading:
         Links, joints and collision shapes as the file has them.
     text : str
         What the lines are those of: the file, or what a xacro file expands to.
+    frame : Pose
+        Of the chassis frame in the frame of the model: x forward through the end axles, y to the
+        left, z up.
+    path : Path
+        Of the file.
+    how : How
+        The keywords with which it was read.
     """
 
     robot: Robot
@@ -64,6 +72,9 @@ class Reading:
     engine: str
     tree: Tree
     text: str
+    frame: Pose
+    path: Path
+    how: How
 
     @property
     def in_words(self) -> str:
@@ -194,40 +205,56 @@ def read_robot(
     >>> str(run.outcome)
     'cleared'
     """
-    for name, value, allowed in (
-        ("engine", engine, (None, *ENGINES)),
-        ("mesh", mesh, get_args(MeshRule)),
-        ("missing", missing, ("refuse", "leave_out")),
-    ):
-        if not (value is None or isinstance(value, str)) or value not in allowed:
-            rule = f"must be one of {', '.join(str(each) for each in allowed)}"
-            raise ScenarioError(name, value, rule)
     if not isinstance(path, (str, os.PathLike)):
         raise ScenarioError("path", path, "must be the name of a file")
-    tolerance = _between(tolerance, "tolerance", 0.0, 0.1)
-    found = tree_of(
-        Path(path),
+    how = How(
+        engine=engine,
+        forward=forward,
         model=model,
         mesh=mesh,
-        leave_out_missing=missing == "leave_out",
+        missing=missing,
+        tracks=tracks,
+        ground_friction=ground_friction,
+        tolerance=tolerance,
         trusted=trusted is True,
         packages={name: Path(folder) for name, folder in (packages or {}).items()},
         arguments=arguments or {},
     )
-    tree = replace(found.tree, tracks=_known(tracks, found.tree))
-    engine = engine or ("mujoco" if tree.format == "MJCF" else "gz")
-    if ground_friction is None:
-        ground_friction = ENGINES[engine].usual
-    ground_friction = _between(ground_friction, "ground_friction", 0.0, 1e3)
+    path = Path(path)
+    reading, doubts = read_text(bytes_of(path), path, how)
+    for doubt in doubts:
+        warnings.warn(doubt, stacklevel=2)
+    return reading
+
+
+def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[ScenarioWarning]]:
+    """Read a robot from what a file holds, or would hold; `read_robot` without its warnings.
+
+    Parameters
+    ----------
+    data : bytes
+        The text.
+    path : Path
+        Where it is, or would be.
+    how : How
+        The keywords of `read_robot`.
+
+    Returns
+    -------
+    Reading and list of ScenarioWarning
+        What was read, and what is legal but hardly meant.
+    """
+    found = tree_of(data, path, how)
+    tree = replace(found.tree, tracks=_known(how.tracks, found.tree))
+    engine = how.engine or ("mujoco" if tree.format == "MJCF" else "gz")
+    ground = ENGINES[engine].usual if how.ground_friction is None else how.ground_friction
     robot, friction, work = assembled(
-        tree, forward=forward, tolerance=tolerance, engine=engine, ground=ground_friction
+        tree, forward=how.forward, tolerance=how.tolerance, engine=engine, ground=ground
     )
     robot.wheels()  # the core checks every rule of a robot
     left_out = [("left out", what, f"is {kind}") for what, kind in found.left_out]
     doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.told.doubts]]
-    for doubt in doubts:
-        warnings.warn(doubt, stacklevel=2)
-    return Reading(
+    reading = Reading(
         robot=robot,
         friction=friction,
         sources=Sources(work.told.sources),
@@ -237,7 +264,11 @@ def read_robot(
         engine=engine,
         tree=tree,
         text=found.text,
+        frame=work.frame,
+        path=path,
+        how=how,
     )
+    return reading, doubts
 
 
 def _known(tracks: Collection[str], tree: Tree) -> tuple[str, ...]:
@@ -246,13 +277,6 @@ def _known(tracks: Collection[str], tree: Tree) -> tuple[str, ...]:
         if not isinstance(name, str) or name not in links:
             raise ScenarioError("tracks", name, "must be links of the model")
     return tuple(tracks)
-
-
-def _between(value: float, path: str, least: float, most: float) -> float:
-    number = real_number(value, path)
-    if not least <= number <= most:
-        raise ScenarioError(path, number, f"must be between {least:g} and {most:g}")
-    return number
 
 
 def _table(work: Assembly) -> Table:

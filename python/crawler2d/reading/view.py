@@ -43,6 +43,11 @@ class SideView:
     left: Array
     reason: str
 
+    @property
+    def up(self) -> Array:
+        """Direction up in the frame of the model."""
+        return _UP
+
     def of(self, point: Array) -> Array:
         """[m] Return forward, up and left of a point, shape (3,), or of several, shape (n, 3)."""
         turned: Array = np.asarray(point) @ np.stack([self.forward, _UP, self.left], axis=1)

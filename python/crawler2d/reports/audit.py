@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any, get_args
 
-from crawler2d.audits.audit import REPEATS, SAMPLES, audit
+from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
 from crawler2d.audits.plain import plain_of
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
@@ -35,6 +35,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--store", type=Path, help="a file that keeps every run")
     parser.add_argument("--threads", type=int, help="default: all cores")
     parser.add_argument("--no-repairs", action="store_true", help="do not search for repairs")
+    parser.add_argument(
+        "--patch",
+        type=Path,
+        metavar="FILE",
+        help="write the file with the wheels of the first repair that is confirmed, print the diff",
+    )
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
     reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
@@ -73,7 +79,21 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     else:
         print(found.in_words)
+    if options.patch is not None and found.seizes:
+        return _patch(found, options.patch)
     return 1 if found.seizes else 0
+
+
+def _patch(found: Audit, path: Path) -> int:
+    """Write the file with other wheels; its diff goes to standard error, beside the words."""
+    try:
+        diff = found.patch(path)
+    except (ScenarioError, OSError) as error:
+        print(f"audit: no patch: {error}", file=sys.stderr)
+        return 2
+    print(diff, file=sys.stderr)
+    print(f"wrote {path}", file=sys.stderr)
+    return 1
 
 
 def _given(number: int | None, usual: int) -> int:

@@ -77,12 +77,14 @@ def absolem(
     side view the line is even. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922), here
     on them. Each of the five links of a flipper has its centre of mass 80 mm beyond its wheel
     (absolem.sdf:990) and the moment of inertia of a whole flipper (absolem.sdf:996); here the mass
-    is spread evenly from pivot to tip. The friction of its wheels is 0.5 (absolem.sdf:1018); here
-    friction belongs to the terrain.
+    is spread evenly from pivot to tip. The friction of its wheels is 0.5 along their first
+    direction, which is the axle, and 1 across it, along the track (absolem.sdf:1018 to 1022): on
+    what grips less, the floor decides. Here friction belongs to the terrain.
 
     Examples
     --------
-    The jam that its makers report, between wheels of the front flippers, at the wheels' friction:
+    The jam that its makers report, between wheels of the front flippers, where the ground is
+    slippery:
 
     >>> import crawler2d as c2d
     >>> step = c2d.terrains.step(0.10, friction=0.5)
@@ -93,8 +95,8 @@ def absolem(
     >>> str(c2d.simulate(absolem(), step, drive=drive).outcome)
     'cleared'
 
-    The wheels seize like this on steps, knife edges of 10 mm and barriers of 100 mm, all 70 to 130
-    mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the wheels clear, too.
+    At this friction the wheels seize like this on steps, knife edges of 10 mm and barriers of 100
+    mm, all 70 to 130 mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the wheels clear, too.
     The belt never gets into such a pose, and does not escape when placed in one (0 of 21). Without
     flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
     """

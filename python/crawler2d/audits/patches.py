@@ -1,0 +1,43 @@
+"""The audited file with the wheels of a repair."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crawler2d.audits.repairs import Repair
+from crawler2d.errors import ScenarioError
+from crawler2d.patching.patch import Patch, patched
+
+if TYPE_CHECKING:
+    from crawler2d.audits.audited import Audited
+
+__all__ = ["patch_of"]
+
+
+def patch_of(audit: Audited, repair: Repair | None) -> Patch:
+    """Put the wheels of a repair into the file that was audited.
+
+    Parameters
+    ----------
+    audit : Audited
+        Of a file.
+    repair : Repair, optional
+        One of its repairs; None takes the first that is confirmed and not of belts.
+
+    Raises
+    ------
+    ScenarioError
+        If no file was read, there is no such repair, or the text has wheels in a form that cannot
+        be changed in place.
+    """
+    if audit.reading is None:
+        rule = "must be the audit of a file; Robot.to_sdf, to_urdf and to_mjcf write other robots"
+        raise ScenarioError("patch", "a Robot", rule)
+    if repair is None:
+        held = (each for each in audit.repairs if each.confirmed and each.kind != "belt")
+        repair = next(held, None)
+    if repair is None or repair.kind == "belt":
+        got = "no other repair that is confirmed" if repair is None else repair.what
+        rule = "must be other wheels or gears: write belts with repair.robot.to_sdf or to_mjcf"
+        raise ScenarioError("repair", got, rule)
+    return patched(audit.reading, repair.robot)

@@ -1,0 +1,176 @@
+"""The file of a robot with other wheels: the one door for all formats."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from crawler2d.errors import ScenarioError
+from crawler2d.models.tree import Tree
+from crawler2d.parameters.robot import Robot
+from crawler2d.patching.changes import Change, changes_of
+from crawler2d.patching.copies import copied, items_about, names_of
+from crawler2d.patching.document import Document
+from crawler2d.patching.mjcf import change_mjcf
+from crawler2d.patching.sdf import change_sdf
+from crawler2d.patching.spans import Span
+from crawler2d.patching.urdf import change_urdf
+from crawler2d.reading.reading import Reading, read_text
+from crawler2d.reading.tracks import FIT
+
+__all__ = ["Patch", "patched"]
+
+_FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
+    "SDF": change_sdf,
+    "URDF": change_urdf,
+    "MJCF": change_mjcf,
+}
+_SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
+"""Settings of plugins that drive wheels by their speed."""
+
+_MASS = 1e-4  # of the whole: what rounding to eight digits leaves
+_CENTER = 0.01  # of the axle distance: wheels of unlike masses are spread anew
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patch:
+    """A file with other wheels.
+
+    Parameters
+    ----------
+    text : str
+        All of it.
+    diff : str
+        What differs from the file that was read, as a unified diff.
+    """
+
+    text: str
+    diff: str
+
+
+def patched(reading: Reading, robot: Robot) -> Patch:
+    """Change the wheels in the text of a file to those of another robot, and read that again.
+
+    Parameters
+    ----------
+    reading : Reading
+        What was read.
+    robot : Robot
+        The same robot with other wheels.
+
+    Returns
+    -------
+    Patch
+        Its robot, read by the keywords of `reading`, has the wheels of `robot`.
+
+    Raises
+    ------
+    ScenarioError
+        If the robots differ in more than wheels, or the text has them in a form that cannot be
+        changed in place, such as meshes.
+    """
+    if "\ufffd" in reading.text:
+        raise ScenarioError(reading.path.name, "another encoding", "must be UTF-8, to be changed")
+    changes = changes_of(reading, robot)
+    if not changes:
+        raise ScenarioError("robot.track", robot.track, "must have other wheels than the file")
+    document = Document(reading.text)
+    _change(document, changes, reading.tree)
+    text = document.text
+    _check(reading, robot, text)
+    name = reading.tree.file
+    lines = difflib.unified_diff(
+        reading.text.splitlines(keepends=True),
+        text.splitlines(keepends=True),
+        name,
+        f"{name} (other wheels)",
+    )
+    return Patch(text=text, diff="".join(lines))
+
+
+def _change(document: Document, changes: list[Change], tree: Tree) -> None:
+    """Make all changes in a text."""
+    change_wheel = _FORMS[tree.format.split()[0]]
+    scope = _scope(document.root, tree)
+    taken = {span.name for span in scope.within()}
+    for change in changes:
+        names = names_of(scope, change.links, change.joint.name)
+        if change.fate == "changed":
+            change_wheel(document, scope, change, tree)
+            continue
+        items = items_about(scope, names)
+        if change.fate == "removed":
+            for item in items:
+                document.remove(item)
+            continue
+
+        def change_copies(copies: Document, root: Span, change: Change = change) -> None:
+            change_wheel(copies, root, change, tree)
+
+        new = _names(names, taken)
+        texts = copied(document, items, new, change_copies)
+        for item, text in zip(items, texts, strict=True):
+            document.insert_after(item, [text])
+    _change_plugins(document, scope, changes)
+
+
+def _scope(root: Span, tree: Tree) -> Span:
+    """Return the element that holds the robot: of SDF its model."""
+    if root.tag != "sdf":
+        return root
+    models = (each for each in root.within() if each.tag == "model" and each.name == tree.name)
+    return next(models)
+
+
+def _names(names: set[str], taken: set[str]) -> dict[str, str]:
+    """Choose names for a copy, none of which is taken."""
+    count = 1
+    while True:
+        suffix = "_added" if count == 1 else f"_added_{count}"
+        new = {name: f"{name}{suffix}" for name in sorted(names)}
+        if taken.isdisjoint(new.values()):
+            taken.update(new.values())
+            return new
+        count += 1
+
+
+def _change_plugins(document: Document, scope: Span, changes: list[Change]) -> None:
+    """Change the radius by which a plugin turns a speed into that of wheels."""
+    sizes = {change.joint.name: change.size for change in changes if change.fate == "changed"}
+    for plugin in scope.within():
+        if plugin.tag != "plugin":
+            continue
+        factors = {sizes[each.text] for each in plugin.within() if each.text in sizes}
+        for setting in plugin.within():
+            if setting.tag in _SIZES and len(factors) == 1:
+                document.multiply(setting, list(factors))
+
+
+def _check(reading: Reading, robot: Robot, text: str) -> None:
+    """Read the new text, and hold it against the robot that it is to be."""
+    path = reading.path
+    if path.suffix == ".xacro":  # what it expanded to was changed
+        path = path.with_suffix("") if path.stem.endswith(".urdf") else path.with_suffix(".urdf")
+    again, _ = read_text(text.encode(), path, reading.how)
+    made = again.robot
+    got, asked = made.wheels(), robot.wheels()
+    if len(got) != len(asked) or (got["carrier"] != asked["carrier"]).any():
+        _fail("wheels", f"{len(got)} wheels", f"must have {len(asked)}")
+    for name in ("x", "y", "radius"):
+        off = np.abs(got[name] - asked[name])
+        if off.max() > 2.0 * FIT:
+            at = int(off.argmax())
+            _fail(f"{name} of wheel {at}", float(got[name][at]), f"must be {asked[name][at]:.6g} m")
+    if abs(made.mass - robot.mass) > _MASS * robot.mass:
+        _fail("mass", made.mass, f"must be {robot.mass:.6g} kg")
+    off_center = np.subtract(made.center_of_mass, robot.center_of_mass)
+    if np.abs(off_center).max() > _CENTER * robot.outline.axle_distance:
+        _fail("center_of_mass", made.center_of_mass, f"must be {robot.center_of_mass}")
+
+
+def _fail(what: str, value: object, rule: str) -> NoReturn:
+    raise ScenarioError(f"the changed file: {what}", value, f"{rule}, when it is read again")

@@ -1,0 +1,192 @@
+"""A file with other wheels: it reads as the other robot, and nothing else in it is changed."""
+
+import re
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.patching.patch import patched
+from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
+
+CARTS = ("cart.sdf", "cart.urdf", "cart.xml")
+
+
+def on_chassis(reading: c2d.Reading, count: int, radius: float | None = None) -> c2d.Robot:
+    """The robot of a file with so many wheels on its chassis; those of its flippers stay."""
+    robot = reading.robot
+    return robot.with_track(c2d.LineOfWheels(count, wheel_radius=radius))
+
+
+def with_own_flippers(reading: c2d.Reading) -> c2d.Robot:
+    """The robot of a file, whose flippers have a track of their own."""
+    robot = reading.robot
+    assert robot.flippers is not None
+    return replace(robot, flippers=replace(robot.flippers, track=c2d.LineOfWheels(3)))
+
+
+def reread(reading: c2d.Reading, text: str, folder: Path) -> c2d.Reading:
+    path = folder / reading.path.name
+    path.write_text(text, encoding="utf-8")
+    return quietly(path)
+
+
+@pytest.mark.parametrize("count", [2, 4, 7])
+@pytest.mark.parametrize("name", CARTS)
+def test_a_line_of_another_number_of_wheels_reads_back(
+    name: str, count: int, tmp_path: Path
+) -> None:
+    reading = quietly(FILES / name)
+    robot = on_chassis(reading, count)
+    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    assert again.track == c2d.LineOfWheels(count)
+    assert again.mass == pytest.approx(robot.mass, rel=1e-6)
+    assert again.center_of_mass == pytest.approx(robot.center_of_mass, abs=1e-6)
+    # The motors of a side share its torque, and all wheels turn: none is new without a motor.
+    torque = reading.robot.drivetrain.max_torque
+    assert again.drivetrain.max_torque == pytest.approx(torque, rel=1e-6)
+    assert again.drivetrain.max_speed == pytest.approx(robot.drivetrain.max_speed, rel=1e-6)
+    assert again.track_mass == pytest.approx(robot.track_mass, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", CARTS)
+def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
+    reading = quietly(FILES / name)
+    track = c2d.LineOfWheels(5, wheel_radius=0.1)
+    robot = replace(reading.robot, track=track)
+    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    assert again.outline.front_radius == pytest.approx(0.1)
+    assert len(again.wheels()) == len(robot.wheels())
+    assert again.drivetrain.max_speed == pytest.approx(reading.robot.drivetrain.max_speed)
+    force, was = (
+        each.drivetrain.max_torque / each.outline.rear_radius for each in (again, reading.robot)
+    )
+    assert force == pytest.approx(was)
+
+
+@pytest.mark.parametrize("name", CARTS)
+def test_wheels_of_flippers_change_where_they_hang(name: str, tmp_path: Path) -> None:
+    reading = quietly(FILES / name)
+    again = reread(reading, patched(reading, with_own_flippers(reading)).text, tmp_path).robot
+    assert again.track == reading.robot.track
+    assert again.flippers is not None
+    assert again.flippers.track == c2d.LineOfWheels(3)
+
+
+def without_wheels(text: str) -> str:
+    """All that a file holds but the wheels of its chassis and their motors, without spaces."""
+    root = ElementTree.fromstring(text)
+    for parent in list(root.iter()):
+        for child in list(parent):
+            named = child.get("name", "") + child.get("joint", "") + child.get("reference", "")
+            if re.search(r"(left|right)_(rear|middle|front)", named):
+                parent.remove(child)
+    return re.sub(r"\s", "", ElementTree.tostring(root, encoding="unicode"))
+
+
+@pytest.mark.parametrize("name", CARTS)
+def test_only_wheels_are_changed(name: str) -> None:
+    reading = quietly(FILES / name)
+    text = patched(reading, on_chassis(reading, 4)).text
+    assert text.count("left_flipper_tip") == reading.text.count("left_flipper_tip") > 0
+    assert without_wheels(text) == without_wheels(reading.text)
+
+
+def test_a_diff_names_the_file_and_applies_to_it() -> None:
+    reading = quietly(FILES / "cart.urdf")
+    patch = patched(reading, on_chassis(reading, 4))
+    assert patch.diff.startswith("--- cart.urdf\n+++ cart.urdf (other wheels)\n@@")
+    removed = [line[1:] for line in patch.diff.splitlines()[2:] if line.startswith("-")]
+    added = [line[1:] for line in patch.diff.splitlines()[2:] if line.startswith("+")]
+    kept = set(patch.text.splitlines())
+    assert removed
+    assert set(added) <= kept
+    assert set(removed) <= set(reading.text.splitlines())
+
+
+def test_what_drives_a_wheel_drives_its_copy(tmp_path: Path) -> None:
+    """A transmission, a plugin with a list of joints, and ros2_control."""
+    names = ("left_front", "right_front", "left_rear", "right_rear")
+    drives = "".join(
+        f"""
+<transmission name="t_{name}"><joint name="{name}_joint"/><actuator name="m_{name}"/></transmission>
+<gazebo reference="{name}"><mu1>0.75</mu1><mu2>0.75</mu2></gazebo>"""
+        for name in names
+    )
+    listed = "".join(f"<joint_name>{name}_joint</joint_name>" for name in names)
+    plugin = f'<gazebo><plugin name="diff_drive" filename="d.so">{listed}</plugin></gazebo>'
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(WHEELS, drives, plugin), encoding="utf-8")
+    reading = quietly(path)
+    root = ElementTree.fromstring(patched(reading, on_chassis(reading, 3)).text)
+    joints = [each.get("name") for each in root.findall("joint")]
+    assert len(joints) == len(set(joints)) == 6
+    assert sorted(each.text or "" for each in root.iter("joint_name")) == sorted(map(str, joints))
+    transmissions = root.findall("transmission")
+    assert len({each.get("name") for each in transmissions}) == 6
+    assert len({each.find("actuator").get("name") for each in transmissions}) == 6  # type: ignore[union-attr]
+    assert {each.find("joint").get("name") for each in transmissions} == set(joints)  # type: ignore[union-attr]
+    links = {each.get("name") for each in root.findall("link")} - {"hull"}
+    assert {each.get("reference") for each in root.findall("gazebo")} - {None} == links
+
+
+def test_a_plugin_learns_of_larger_wheels(tmp_path: Path) -> None:
+    plugin = """<gazebo><plugin name="diff_drive" filename="d.so">
+<left_joint>left_front_joint</left_joint><wheel_radius>0.08</wheel_radius>
+<wheel_separation>0.3</wheel_separation></plugin></gazebo>"""
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(WHEELS, plugin), encoding="utf-8")
+    reading = quietly(path)
+    text = patched(reading, on_chassis(reading, 2, radius=0.1)).text
+    assert "<wheel_radius>0.1</wheel_radius>" in text
+    assert "<wheel_separation>0.3</wheel_separation>" in text
+
+
+def test_double_wheels_are_copied_side_by_side(tmp_path: Path) -> None:
+    path = tmp_path / "cart.urdf"
+    path.write_text(urdf(WHEELS, pair("twin", 0.2, y=0.25), pair("back", -0.2, y=0.25)))
+    reading = quietly(path)
+    again = reread(reading, patched(reading, on_chassis(reading, 3)).text, tmp_path)
+    assert again.robot.track == c2d.LineOfWheels(3)
+    assert len(again.wheels) == 12
+
+
+def test_public_models_change_their_wheels() -> None:
+    for name in ("absolem.sdf", "marv.sdf"):
+        reading = quietly(ROBOTS / name)
+        arms = reading.robot.flippers
+        assert arms is not None
+        assert isinstance(arms.track, c2d.LineOfWheels)
+        more = replace(arms, track=c2d.LineOfWheels(arms.track.count + 1))
+        patch = patched(reading, replace(reading.robot, flippers=more))
+        assert patch.text.count("<link name=") == reading.text.count("<link name=") + 4
+
+
+def test_what_cannot_be_changed_is_refused_by_name(tmp_path: Path) -> None:
+    reading = quietly(FILES / "cart.urdf")
+    with pytest.raises(c2d.ScenarioError, match="must have other wheels than the file"):
+        patched(reading, reading.robot)
+    belted = replace(reading.robot.drivetrain, torque_sharing="track")
+    with pytest.raises(c2d.ScenarioError, match="tracks of the chassis must be wheels"):
+        patched(reading, replace(reading.robot, drivetrain=belted, track=c2d.BeltTrack()))
+    with pytest.raises(c2d.ScenarioError, match=r"robot\.flippers must be where the file has them"):
+        patched(reading, replace(reading.robot, flippers=None))
+    heavier = replace(on_chassis(reading, 4), mass=reading.robot.mass + 1.0)
+    with pytest.raises(c2d.ScenarioError, match="the changed file: mass"):
+        patched(reading, heavier)
+    foreign = tmp_path / "cart.urdf"
+    foreign.write_bytes(
+        b"<?xml version='1.0' encoding='latin-1'?><!-- \xe9 -->" + urdf(WHEELS).encode()
+    )
+    with pytest.raises(c2d.ScenarioError, match="must be UTF-8"):
+        patched(quietly(foreign), on_chassis(reading, 4))
+
+
+def test_a_patch_warns_of_nothing() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        reading = c2d.read_robot(FILES / "cart.sdf")
+        patched(reading, on_chassis(reading, 4))
