@@ -96,9 +96,10 @@ def absolem(
     'cleared'
 
     At this friction the wheels seize like this on steps, knife edges of 10 mm and barriers of 100
-    mm, all 70 to 130 mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the wheels clear, too.
-    The belt never gets into such a pose, and does not escape when placed in one (0 of 21). Without
-    flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm, friction 0.6 to 1.0.
+    mm, all 70 to 130 mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the
+    wheels clear, too. The belt never gets into such a pose, and does not escape when placed in one
+    (0 of 21). Without flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm,
+    friction 0.6 to 1.0.
     """
     built = Flippers(
         length=0.33,
