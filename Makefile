@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks paper picture soak test-wheel tools wheel
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -105,6 +105,11 @@ mutants: $(VENV)/.built $(BIN)/cargo-mutants ## put small faults into core and s
 wheel: $(VENV)/.dependencies ## build the wheel into dist/
 	@rm -f dist/*.whl
 	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin build --release --locked --out dist
+
+notices: | tools ## write anew whose libraries the compiled core contains; after changes of Cargo.lock
+	@test -x $(VENV)/about/bin/cargo-about || cargo install cargo-about@0.9.3 --locked --features cli --root $(VENV)/about
+	$(VENV)/about/bin/cargo-about about generate --locked --manifest-path python/Cargo.toml \
+		-c python/notices.toml python/notices.hbs -o THIRD-PARTY-NOTICES
 
 # Nothing is on the PATH there: neither cargo nor a compiler.
 test-wheel: wheel ## the wheel in a fresh environment without a compiler
