@@ -47,6 +47,8 @@ class Assembly:
         The side view.
     middle : float
         [m] Where the middle plane lies across it.
+    base : Base
+        The chassis frame in the side view.
     """
 
     tree: Tree
@@ -54,6 +56,7 @@ class Assembly:
     told: Telling
     view: SideView = field(init=False)
     middle: float = field(init=False)
+    base: Base = field(init=False)
 
     def robot(self, forward: str | None) -> Robot:
         """Make the robot.
@@ -75,7 +78,7 @@ class Assembly:
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
         rear, front = end_axles(self.told, gear, pairs, arms, is_belt=is_belt)
-        base = Base(np.array(rear[:2]), np.array(front[:2]))
+        self.base = base = Base(np.array(rear[:2]), np.array(front[:2]))
         if base.length <= tolerance:
             raise ScenarioError(str(at), base.length, "must have two wheels or drums on each side")
         by_end = arms_at(self.told, arms, base, tolerance)

@@ -19,6 +19,7 @@ from crawler2d.reading.assembly import Assembly, assembled
 from crawler2d.reading.formats import tree_of
 from crawler2d.reading.friction import ENGINES, Engine
 from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.silhouettes import Silhouette, silhouettes
 from crawler2d.reading.sources import Sources
 
 __all__ = ["Reading", "read_robot"]
@@ -51,6 +52,8 @@ class Reading:
         The engine whose rule combined the friction.
     tree : Tree
         Links, joints and collision shapes as the file has them.
+    silhouettes : tuple of Silhouette
+        Its collision shapes in side view, in the frame of the robot's chassis.
     text : str
         What the lines are those of: the file, or what a xacro file expands to.
     """
@@ -63,6 +66,7 @@ class Reading:
     doubts: tuple[str, ...]
     engine: str
     tree: Tree
+    silhouettes: tuple[Silhouette, ...]
     text: str
 
     @property
@@ -236,6 +240,7 @@ def read_robot(
         doubts=tuple(str(doubt) for doubt in doubts),
         engine=engine,
         tree=tree,
+        silhouettes=silhouettes(tree, work.view, work.base),
         text=found.text,
     )
 
