@@ -11,13 +11,14 @@ import numpy as np
 from crawler2d.audits.names import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES
 from crawler2d.results.row import NO_RESULT
-from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform
+from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform, UniformInt
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
     from crawler2d.audits.repairs import Repair, Repaired
     from crawler2d.audits.share import Share
     from crawler2d.audits.verdicts import Verdict
+    from crawler2d.results.record import Record
 
 __all__ = [
     "JAM_HEAD",
@@ -25,6 +26,7 @@ __all__ = [
     "calls",
     "conclusion",
     "confirmed",
+    "end",
     "hopeless",
     "jam",
     "lost",
@@ -98,12 +100,17 @@ def jam(each: Verdict) -> tuple[str, ...]:
     low, high = each.friction
     at = "" if math.isnan(low) else f"{low:.2f}-{high:.2f}"
     freed = [
-        f"{_SHORT.get(trial.trial, trial.trial)} {trial.freed}"
+        f"{_SHORT.get(trial.trial, trial.trial)}: {trial.freed}"
         for trial in each.freed
         if trial.freed
     ]
     place = f"{each.where} of the {each.carrier}"
     return each.obstacle, place, "/".join(map(str, each.there)), at, ", ".join(freed)
+
+
+def end(run: Record) -> str:
+    """Say how a run ended."""
+    return "no result" if run.outcome is None else str(run.outcome).replace("_", " ")
 
 
 def calls(audit: Audited) -> str:
@@ -189,6 +196,8 @@ def range_of(distribution: Distribution) -> str:
     match distribution:
         case Uniform(low, high):
             return f"{low:g} to {high:g}"
+        case UniformInt(low, high):
+            return f"{low} to {high}"
         case Scaled(low, high):
             return f"times {low:g} to {high:g}"
         case Shifted():
