@@ -97,8 +97,7 @@ _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set
 
 def jam(each: Verdict) -> tuple[str, ...]:
     """Say where it is jammed, and what frees it, as `JAM_HEAD` says."""
-    low, high = each.friction
-    at = "" if math.isnan(low) else f"{low:.2f}-{high:.2f}"
+    at = "" if math.isnan(each.friction[0]) else span(each.friction, ".2f").replace(" to ", "-")
     freed = [
         f"{_SHORT.get(trial.trial, trial.trial)}: {trial.freed}"
         for trial in each.freed

@@ -1,5 +1,7 @@
 """Audit a model file: what it lacks, where the robot seizes, and what smallest change ends that.
 
+It prints the short form and writes a page with all of it, which replays where the robot seized.
+
 Exit status: 1 if the robot seizes where a belt clears, 2 if the file or an option is bad, else 0;
 130 after Ctrl-C, with what a store keeps.
 """
@@ -12,13 +14,16 @@ import sys
 from pathlib import Path
 from typing import Any, get_args
 
-from crawler2d.audits.audit import REPEATS, SAMPLES, audit
+from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
 from crawler2d.audits.plain import plain_of
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
 from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
+
+_OUT = Path("out")
+"""Folder of the page, as of the other programs."""
 
 _QUICK = 40
 """Samples of a quick audit, each once."""
@@ -34,6 +39,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--store", type=Path, help="a file that keeps every run")
     parser.add_argument("--threads", type=int, help="default: all cores")
+    page = parser.add_mutually_exclusive_group()
+    page.add_argument(
+        "--html", type=Path, help="where to write the page (default: out/audit-NAME.html)"
+    )
+    page.add_argument("--no-html", action="store_true", help="write no page")
     parser.add_argument("--no-repairs", action="store_true", help="do not search for repairs")
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
@@ -63,17 +73,31 @@ def run(options: argparse.Namespace) -> int:
             threads=options.threads,
             **_reading(options),
         )
+        _show(found, options)
     except KeyboardInterrupt as interrupt:
         print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
         print(f"audit: {error}", file=sys.stderr)
         return 2
+    return 1 if found.seizes else 0
+
+
+def _show(found: Audit, options: argparse.Namespace) -> None:
+    """Print an audit, and write its page."""
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     else:
         print(found.in_words)
-    return 1 if found.seizes else 0
+    if options.no_html:
+        return
+    path: Path | None = options.html
+    if path is None:
+        _OUT.mkdir(parents=True, exist_ok=True)
+        path = _OUT / f"audit-{options.file.stem}.html"
+    found.to_html(path, threads=options.threads)
+    # With --json nothing else may be on the standard output.
+    print(f"\nThe page is in {path}", file=sys.stderr if options.json else sys.stdout)
 
 
 def _given(number: int | None, usual: int) -> int:

@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 __all__ = ["lint", "repairs", "replays", "verdicts"]
 
 
-_FREED = (
-    "between which wheels most seizures are, how many of them, at which frictions of the floor, and"
-    " how many a change frees: a belt closed round the wheels in this pose, or set clear of the"
-    " ground; twice the torque; twice the friction"
+_JAMS = (
+    "the last columns tell of the runs that seized: between which wheels most are jammed, and how"
+    " many of all; between which frictions of the floor they are; and how many a change frees:"
+    " a belt closed round the wheels in this pose, or the same set clear of the ground, twice the"
+    " torque, twice the friction"
 )
 
 
@@ -52,7 +53,7 @@ def verdicts(audit: Audited, replayed: Sequence[Replayed]) -> str:
         rows.append((*cells, *(escaped(cell) for cell in jam), link))
     notes = [words.calls(audit), words.lost(audit)]
     if numbers:
-        notes.insert(0, _FREED)
+        notes.insert(0, _JAMS)
     below = "".join(f"<p>{escaped(note[0].upper() + note[1:])}.</p>" for note in notes if note)
     short = (*words.VERDICT_HEAD, "runs", "friction", "replay")
     return grid(head, rows, label="verdicts", short=short) + below
@@ -146,7 +147,8 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
     said = [words.repairs_found(found), *map(words.hopeless, found.hopeless)]
     text = "".join(f"<p>{escaped(line[0].upper() + line[1:])}.</p>" for line in said)
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
-    return f'{text}{grid(head, rows, label="repairs", short=head[1:4])}<div class="repairs">{drawn}</div>'
+    table = grid(head, rows, label="repairs", short=head[1:4])
+    return f'{text}{table}<div class="repairs">{drawn}</div>'
 
 
 def _picture(repair: Repair, diff: str | None) -> str:

@@ -38,7 +38,8 @@ def grid(
 def _row(head: Sequence[str], cells: Sequence[str], short: Collection[str]) -> str:
     first, *others = cells
     values = "".join(
-        f'<td data-head="{escaped(title)}"{_SHORT if title in short else ""}>{cell}</td>'
+        f'<td data-head="{escaped(title)}"{_SHORT if title in short else ""}>'
+        f"{f'<div>{cell}</div>' if cell else ''}</td>"
         for title, cell in zip(head[1:], others, strict=True)
     )
     return f'<th scope="row">{first}</th>{values}'

@@ -24,12 +24,15 @@ _LONG = re.compile(r"\d+\.\d{4,}")
 
 def made(audit: Audited) -> str:
     """Write how the audit was made."""
-    drawn = unknowns(audit.vary, "what differed from run to run")
-    return (
-        f"{_table(('', 'how'), _rows(audit), 'how it was made')}"
-        f"<details><summary>obstacles</summary>{_obstacles(audit)}</details><h3>What differed from run to run</h3>{drawn}"
-        f"<h3>What makes it again</h3>{_again(audit)}"
+    parts = (
+        _table(("what", "how"), _rows(audit), "how it was made"),
+        f"<details><summary>obstacles</summary>{_obstacles(audit)}</details>",
+        "<h3>What differed from run to run</h3>",
+        unknowns(audit.vary, "what differed from run to run"),
+        "<h3>What makes it again</h3>",
+        f'<pre tabindex="0">{escaped(_again(audit))}</pre>',
     )
+    return "".join(parts)
 
 
 def _rows(audit: Audited) -> Iterator[tuple[str, str]]:
@@ -61,13 +64,14 @@ def _table(head: tuple[str, str], rows: Iterable[tuple[str, str]], label: str) -
 
 
 def _again(audit: Audited) -> str:
-    call = audit.call
-    command = None if audit.reading is None else command_of(call, audit.reading.tree.file)
+    """Write the command that makes the audit again, or else the call."""
+    call, read = audit.call, audit.reading
+    command = None if read is None else command_of(call, read.tree.file)
     if command is not None:
-        return f'<pre tabindex="0">{escaped(command)}</pre>'
-    fixed = {"samples": call.samples, "repeats": call.repeats, "seed": call.seed}
-    given = [f"{name}=..." for name in (*call.own, *call.reading)]
-    words_ = ", ".join([*given, *(f"{name}={value}" for name, value in fixed.items())])
-    subject = "robot" if audit.reading is None else repr(audit.reading.tree.file)
-    again = f"crawler2d.audit({subject}, {words_}, repair={call.repair}).to_html(path)"
-    return f'<pre tabindex="0">{escaped(again)}</pre>'
+        return command
+    arguments = ["robot" if read is None else repr(read.tree.file)]
+    arguments += [f"{name}=..." for name in (*call.own, *call.reading)]
+    arguments += [
+        f"{name}={getattr(call, name)}" for name in ("samples", "repeats", "seed", "repair")
+    ]
+    return f"crawler2d.audit({', '.join(arguments)}).to_html(path)"
