@@ -190,7 +190,9 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
 
 def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
     rows = file_page.rows("what is not known")
-    assert [row[1] for row in rows] == [words.range_of(each) for each in of_file.unknown.values()]
+    assert [row[1] for row in rows] == [
+        words.range_of(path, each) for path, each in of_file.unknown.items()
+    ]
     assert any("centre of mass" in row[0] and "cart.urdf" in row[2] for row in rows)
 
 
@@ -274,7 +276,8 @@ def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
         assert own["identity"].item() == run.scenario.identity
         assert own["final_x"].item() == run.metrics["final_x"]
     assert f"Sample {chosen.sample}, repeat {chosen.repeat}" in boxes[0][1]
-    assert f"friction {cell.sel(model='model')['drawn_friction'].item():.4g}" in boxes[0][1]
+    speed = cell.sel(model="model")["drawn_speed"].item()
+    assert f"drive: speed {speed:.4g} m/s" in boxes[0][1]
 
 
 def test_a_replay_is_the_page_of_the_run(of_file: c2d.Audit, file_page: Page) -> None:
@@ -371,3 +374,10 @@ def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
     assert np.ptp(scales) < 0.01 * min(scales)  # to a tenth of a pixel
     told = " ".join(figures)
     assert all("-".join(map(str, each.bodies)) in told for each in found)
+
+
+def test_wheels_that_touch_hold_at_any_friction() -> None:
+    """Their walls are upright at the bottom, but for rounding."""
+    robot = c2d.robots.engineer(flippers=None, track=c2d.CircumferentialWheels(24))
+    drawn = pockets_drawn(robot, pockets(robot))
+    assert set(re.findall(r"alone it holds ([^<]*)<", drawn)) == {"at any friction"}

@@ -38,7 +38,7 @@ def _robot(audit: Audited) -> Iterator[str]:
     sources = audit.unknown.sources if isinstance(audit.unknown, Ranges) else {}
     for path, distribution in audit.unknown.items():
         source = f" [{sources[path]}]" if path in sources else ""
-        text = f"{path.removeprefix('robot.')}: {words.range_of(distribution)}{source}"
+        text = f"{path.removeprefix('robot.')}: {words.range_of(path, distribution)}{source}"
         yield from _wrapped(text, 4)
 
 
@@ -66,7 +66,7 @@ def _pockets(audit: Audited) -> Iterator[str]:
         else:
             held = [p.friction for p in alike]
             deep = words.span([1e3 * p.depth for p in alike], ".1f")
-            text = f"{deep} mm deep, by their walls alone they hold below {words.span(held, '.2f')}"
+            text = f"{deep} mm deep, by their walls alone they hold {words.held(held)}"
         yield from _wrapped(f"{carrier}: {what}, {text}")
 
 

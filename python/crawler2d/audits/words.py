@@ -10,6 +10,7 @@ import numpy as np
 
 from crawler2d.audits.names import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES
+from crawler2d.common.units import unit_of
 from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform, UniformInt
 
@@ -27,6 +28,7 @@ __all__ = [
     "conclusion",
     "confirmed",
     "end",
+    "held",
     "hopeless",
     "jam",
     "lost",
@@ -45,6 +47,9 @@ __all__ = [
 ]
 
 VERDICT_HEAD = ("obstacle", "clears", "seizes", "belt clears", "most often", "verdict")
+_UPRIGHT = 100.0
+"""[-] Friction above which a wall is upright but for rounding: no surface has it."""
+
 JAM_HEAD = ("obstacle", "between wheels", "runs", "friction", "freed there by")
 
 
@@ -190,20 +195,36 @@ def confirmed(repair: Repair) -> str:
     return "confirmed" if repair.confirmed else "not confirmed"
 
 
-def range_of(distribution: Distribution) -> str:
-    """Write a range in words, as far as its kind is known."""
+def range_of(path: str, distribution: Distribution) -> str:
+    """Write the range of a field in words, as far as its kind is known, with its unit."""
+    unit = unit_of(path)
+    own = "" if unit in (None, "1") else f" {unit}"
     match distribution:
         case Uniform(low, high):
-            return f"{low:g} to {high:g}"
+            return f"{low:g} to {high:g}{own}"
         case UniformInt(low, high):
             return f"{low} to {high}"
         case Scaled(low, high):
             return f"times {low:g} to {high:g}"
         case Shifted():
             of = str(distribution.of or "").rpartition(".")[2].replace("_", " ")
-            unit = f" of the {of}" if of else ""
+            unit = f" of the {of}" if of else own
             return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
     return str(distribution)
+
+
+def held(frictions: Sequence[float]) -> str:
+    """Say at which frictions pockets hold by their walls alone.
+
+    Examples
+    --------
+    >>> held([0.84, 1.535]), held([0.84, 0.84]), held([1.0, math.inf]), held([3e7])
+    ('below 0.84 to 1.53', 'below 0.84', 'below 1.00 or at any friction', 'at any friction')
+    """
+    steep = [each for each in frictions if each >= _UPRIGHT]
+    others = [each for each in frictions if each < _UPRIGHT]
+    parts = [f"below {span(others, '.2f')}"] if others else []
+    return " or ".join(parts + ["at any friction"] * bool(steep))
 
 
 def _side(length: float, positive: str, negative: str) -> str:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
     from crawler2d.parameters.robot import Robot
 
-__all__ = ["figures", "unknowns", "wheels"]
+__all__ = ["field_name", "figures", "unknowns", "wheels"]
 
 _STATED = (
     "mass",
@@ -44,11 +44,11 @@ def figures(audit: Audited) -> str:
     read, robot = audit.reading, audit.robot
     if read is None:
         paths = [f"robot.{path}" for path in _STATED if _has(robot, path)]
-        rows = [(escaped(_name(path)), escaped(_value(robot, path))) for path in paths]
+        rows = [(escaped(field_name(path)), escaped(_value(robot, path))) for path in paths]
         return grid(("figure", "value"), rows, label="figures of the robot")
     sourced = [
         (
-            escaped(_name(path)),
+            escaped(field_name(path)),
             escaped(f"{read.friction:.4g}" if path == "friction" else _value(robot, path)),
             _source(source),
         )
@@ -63,7 +63,11 @@ def unknowns(ranges: Mapping[str, Any], label: str) -> str:
         return "<p>Nothing.</p>"
     sources = ranges.sources if isinstance(ranges, Ranges) else {}
     rows = [
-        (escaped(_name(path)), escaped(words.range_of(each)), escaped(sources.get(path, "")))
+        (
+            escaped(field_name(path)),
+            escaped(words.range_of(path, each)),
+            escaped(sources.get(path, "")),
+        )
         for path, each in ranges.items()
     ]
     return grid(("field", "range", "source of the range"), rows, label=label)
@@ -101,7 +105,8 @@ _NAMES = {
 }
 
 
-def _name(path: str) -> str:
+def field_name(path: str) -> str:
+    """Say in words which field of a scenario a path is."""
     if path in _NAMES:
         return _NAMES[path]
     return path.removeprefix("robot.").replace(".", ": ").replace("_", " ")

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from crawler2d.audits import words
+from crawler2d.audits.page.figures import field_name
 from crawler2d.audits.page.grid import grid
 from crawler2d.audits.page.robot_drawn import robot_drawn
 from crawler2d.common.markup import escaped
+from crawler2d.common.units import unit_of
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
@@ -71,7 +73,8 @@ def _replay(number: int, each: Replayed) -> str:
     there, seized = each.verdict.there
     draw = (
         f"Sample {each.sample}, repeat {each.repeat} of the runs, counted from 0; {there} of"
-        f" {seized} seizures on this obstacle are there.{_drawn(each.drawn)}"
+        f" {seized} seizures on this obstacle are there."
+        f"{_drawn('Of the robot and its floor', each.of_robot)}{_drawn('Of this run', each.of_run)}"
     )
     boxes = _box(number, "model", f"the model: {words.end(each.run)}")
     if each.belt is not None:
@@ -84,17 +87,16 @@ def _replay(number: int, each: Replayed) -> str:
     )
 
 
-def _drawn(columns: Mapping[str, float]) -> str:
-    """Say which values a run has of what is not known, and of what differs from run to run."""
-    said = ""
-    for start, of in (("unknown_", "of the robot and its floor"), ("drawn_", "of this run")):
-        values = [
-            f"{name.removeprefix(start).replace('_', ' ')} {value:.4g}"
-            for name, value in columns.items()
-            if name.startswith(start)
-        ]
-        said += f" Drawn {of}: {', '.join(values)}." if values else ""
-    return said
+def _drawn(of: str, values: Mapping[str, float]) -> str:
+    """Say which values a run has of what is not known, or of what differs from run to run."""
+    return f" {of}: {', '.join(map(_said, values.items()))}." if values else ""
+
+
+def _said(drawn: tuple[str, float]) -> str:
+    path, value = drawn
+    unit = unit_of(path)
+    number = f"{value:.0f}" if value.is_integer() else f"{value:.4g}"
+    return f"{field_name(path)} {number}{'' if unit in (None, '1') else f' {unit}'}"
 
 
 def _box(number: int, model: str, title: str) -> str:

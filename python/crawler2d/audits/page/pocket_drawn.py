@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.audits import words
 from crawler2d.common.markup import escaped
 from crawler2d.drawings.sheet import Sheet
 
@@ -88,11 +89,8 @@ def _measures(group: list[Pocket]) -> str:
     wide = f"{1e3 * pocket.width:.1f} mm wide"
     if pocket.is_slot:
         return f"slot, {wide}, {1e3 * pocket.gap:.1f} mm open: an edge gets through"
-    held = sorted({f"{each.friction:.2f}" for each in group})
-    return (
-        f"pocket, {wide}, {1e3 * pocket.depth:.1f} mm deep; by its walls alone it holds below a"
-        f" friction of {' or '.join(held)}"
-    )
+    held = words.held([each.friction for each in group])
+    return f"pocket, {wide}, {1e3 * pocket.depth:.1f} mm deep; by its walls alone it holds {held}"
 
 
 def _bottom(pocket: Pocket, rear: float, front: float) -> tuple[float, float]:

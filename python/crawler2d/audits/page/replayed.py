@@ -15,8 +15,6 @@ from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import simulate_many
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from crawler2d.audits.audited import Audited
     from crawler2d.audits.verdicts import Verdict
     from crawler2d.runs.run import Run
@@ -37,8 +35,8 @@ class Replayed:
         Of the obstacle.
     sample, repeat : int
         Where the run stands in the table of the audit.
-    drawn : dict of str to float
-        What was drawn for it, by column of the table.
+    of_robot, of_run : dict of str to float
+        What was drawn for the robot and its floor, and for this run alone, by path.
     run : Run
         The robot's, with its history.
     belt : Run, optional
@@ -48,7 +46,8 @@ class Replayed:
     verdict: Verdict
     sample: int
     repeat: int
-    drawn: dict[str, float]
+    of_robot: dict[str, float]
+    of_run: dict[str, float]
     run: Run
     belt: Run | None
 
@@ -80,7 +79,8 @@ def replayed(audit: Audited, *, threads: int | None = None) -> list[Replayed]:
             verdict=verdict,
             sample=sample,
             repeat=repeat,
-            drawn=dict(_drawn(audit, verdict.obstacle, sample, repeat)),
+            of_robot=_drawn(audit, "unknown_", verdict.obstacle, sample, repeat),
+            of_run=_drawn(audit, "drawn_", verdict.obstacle, sample, repeat),
             run=next(runs),
             belt=next(runs) if BELT in models else None,
         )
@@ -100,10 +100,13 @@ def _place(audit: Audited, verdict: Verdict) -> tuple[int, int]:
     return sample, repeat
 
 
-def _drawn(audit: Audited, obstacle: str, sample: int, repeat: int) -> Iterator[tuple[str, float]]:
-    for name in map(str, audit.table.data_vars):
-        if name.startswith(("drawn_", "unknown_")):
-            cell = column(audit.table, name, model=OWN, terrain=obstacle)
+def _drawn(audit: Audited, kind: str, obstacle: str, sample: int, repeat: int) -> dict[str, float]:
+    """Return what was drawn for a run, by path: the columns of one kind."""
+    found = {}
+    for name, variable in audit.table.data_vars.items():
+        if str(name).startswith(kind):
+            cell = column(audit.table, str(name), model=OWN, terrain=obstacle)
             value = float(cell[sample, repeat])
             if not math.isnan(value):  # this obstacle has no such field
-                yield name, value
+                found[str(variable.attrs["path"])] = value
+    return found

@@ -102,7 +102,9 @@ def _conclusion(audit: Audited) -> list[str]:
 def _badge(audit: Audited) -> str:
     if audit.seizes:
         return "<li>seizes where the belt clears</li>"
-    return '<li class="cleared">not found to seize where the belt clears</li>'
+    is_sure = all(each.word != "not certain" for each in audit.verdicts)
+    look = "cleared" if is_sure else "timed-out"
+    return f'<li class="{look}">not found to seize where the belt clears</li>'
 
 
 def _legend(audit: Audited) -> str:
