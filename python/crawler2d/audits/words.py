@@ -218,12 +218,14 @@ def held(frictions: Sequence[float]) -> str:
 
     Examples
     --------
-    >>> held([0.84, 1.535]), held([0.84, 0.84]), held([1.0, math.inf]), held([3e7])
-    ('below 0.84 to 1.53', 'below 0.84', 'below 1.00 or at any friction', 'at any friction')
+    >>> held([0.84, 1.535]), held([0.84, 0.84])
+    ('at a friction below 0.84 to 1.53', 'at a friction below 0.84')
+    >>> held([1.0, math.inf]), held([3e7])
+    ('at a friction below 1.00 or at any friction', 'at any friction')
     """
     steep = [each for each in frictions if each >= _UPRIGHT]
     others = [each for each in frictions if each < _UPRIGHT]
-    parts = [f"below {span(others, '.2f')}"] if others else []
+    parts = [f"at a friction below {span(others, '.2f')}"] if others else []
     return " or ".join(parts + ["at any friction"] * bool(steep))
 
 
