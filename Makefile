@@ -39,7 +39,7 @@ test-debug:
 test-python:
 	$(BIN)/python -m pytest
 
-test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs in a real browser
+test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs and audits in a real browser
 	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
 
 check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, nothing changed

@@ -22,6 +22,8 @@ def main() -> None:
     assert done.returncode in (0, 1)  # whether it seizes in so few runs is not the question here
     assert "38.7 kg" in done.stdout
     assert "Verdicts" in done.stdout
+    page = Path("out/audit-absolem.html").read_text(encoding="utf-8")
+    assert page.startswith("<!doctype html>")
 
 
 if __name__ == "__main__":

@@ -5,13 +5,11 @@ import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.__main__ import main
 from crawler2d.audits import audit as audit_module
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
@@ -20,17 +18,8 @@ from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.population import unknown_of_file
 from crawler2d.audits.runs import raised, scenario_of
+from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
-
-SEIZING = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
-STEP: Any = {"step of 75 mm": c2d.terrains.step(0.075)}
-QUIET: Any = {"progress": False}
-
-
-@pytest.fixture(scope="module")
-def found() -> c2d.Audit:
-    """Four touching wheels on a step of 75 mm, everything known but the start."""
-    return c2d.audit(SEIZING, STEP, unknown={}, repeats=20, **QUIET)
 
 
 def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) -> None:
@@ -330,70 +319,6 @@ def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.audit(*arguments, **{**QUIET, **how})
     assert path in caught.value.path
-
-
-# The command
-
-
-def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
-    status = main(["audit", *arguments])
-    printed = capsys.readouterr()
-    return status, printed.out, printed.err
-
-
-def test_the_command_prints_the_short_form(capsys: Any) -> None:
-    few = ("--samples", "2", "--repeats", "1", "--no-repairs")
-    status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
-    assert status in (0, 1)
-    assert out.startswith("cart: 3 round wheels in a line")
-    assert "Verdicts: 2 robots on floors, 1 run each" in out
-
-
-def test_the_command_writes_json(capsys: Any) -> None:
-    status, out, _ = run(capsys, str(FILES / "cart.urdf"), "--quick", "--samples", "1", "--json")
-    plain = json.loads(out)
-    assert (status == 1) is plain["seizes"]
-    assert plain["file"] == "cart.urdf"
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["missing.sdf"],
-        [str(FILES / "cart.urdf"), "--samples", "0"],
-        [__file__],
-        ["x", "--package", "a"],
-    ],
-)
-def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[str]) -> None:
-    status, out, err = run(capsys, *arguments)
-    assert (status, out) == (2, "")
-    assert len(err.strip().splitlines()) == 1
-
-
-def test_the_command_says_whether_it_seizes(
-    capsys: Any, monkeypatch: Any, found: c2d.Audit
-) -> None:
-    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
-
-    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
-    status, out, _ = run(capsys, "any.sdf")
-    assert status == 1
-    assert out.strip() == found.in_words
-
-
-def test_the_command_ends_at_ctrl_c(capsys: Any, monkeypatch: Any) -> None:
-    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
-
-    def interrupted(*_: Any, **__: Any) -> None:
-        raise c2d.BatchInterrupted([], "runs.sqlite")
-
-    monkeypatch.setattr(command, "audit", interrupted)
-    status, _, err = run(capsys, "any.sdf")
-    assert status == 130
-    assert "runs.sqlite keeps them" in err
-    monkeypatch.setattr(command, "audit", Mock(side_effect=KeyboardInterrupt))
-    assert run(capsys, "any.sdf")[::2] == (130, "interrupted\n")
 
 
 def test_reading_an_audited_file_is_quiet() -> None:

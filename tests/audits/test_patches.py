@@ -1,5 +1,7 @@
 """From a file that seizes to one that does not: read, audited, changed, read and audited again."""
 
+import html
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -8,7 +10,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from tests.audits.test_audit import QUIET, SEIZING, STEP
+from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import quietly
 
 # In a file each wheel has a motor of its own; with the preset's torque one of them would stall.
@@ -62,9 +64,18 @@ def test_the_command_writes_the_changed_file(
 
     monkeypatch.setattr(command, "audit", lambda *_, **__: audited)
     path = tmp_path / "new"
-    assert main(["audit", "any.sdf", "--patch", str(path)]) == 1
+    assert main(["audit", "any.sdf", "--no-html", "--patch", str(path)]) == 1
     printed = capsys.readouterr()
-    assert printed.out.strip() == audited.in_words
-    assert "+++" in printed.err
+    assert printed.out.startswith(audited.in_words)
+    assert f"The changed file is {path}" in printed.out
+    assert main(["audit", "any.sdf", "--no-html", "--json", "--patch", str(path)]) == 1
+    assert json.loads(capsys.readouterr().out)["seizes"]
     assert audited.reading is not None
     assert quietly(path.rename(tmp_path / audited.reading.path.name)).robot.track != SEIZING.track
+
+
+def test_the_page_has_the_diff_of_each_repair_by_wheels(audited: c2d.Audit) -> None:
+    page = audited.to_html()
+    for repair in audited.repairs:
+        if repair.kind != "belt":
+            assert html.escape(audited.patch(repair=repair).splitlines()[3]) in page

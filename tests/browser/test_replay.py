@@ -1,19 +1,14 @@
-"""The page of a run in a real browser: it opens, plays, and does what its controls say.
+"""The page of a run in a real browser: it opens, plays, and does what its controls say."""
 
-`make test-browser` names the browser in CRAWLER2D_BROWSER, a path or "playwright" for its own.
-"""
-
-import os
-from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Frame, Page, sync_playwright
+from playwright.sync_api import Page
 
 import crawler2d as c2d
 from crawler2d.pictures.scenes import scene_of
+from tests.browser.seen import CHECKSUM, COLOURS, DRAWN, Open, checksum, clock
 from tests.shared import ROBOT, with_flippers
 
 STEP = c2d.terrains.step(0.075)
@@ -40,16 +35,6 @@ RUNS: dict[str, tuple[c2d.Robot, Any]] = {
     "flippers with gear wheels": (with_flippers(GEARED, GEARED_ARMS), c2d.terrains.step(0.2)),
 }
 
-# The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
-PIXELS = """canvas => {
-    const copy = new OffscreenCanvas(canvas.width, canvas.height);
-    const context = copy.getContext("2d", { willReadFrequently: true });
-    context.drawImage(canvas, 0, 0);
-    return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
-}"""
-COLOURS = f"canvas => new Set(({PIXELS})(canvas)).size"
-# Changes with any pixel.
-CHECKSUM = f"canvas => ({PIXELS})(canvas).reduce((sum, p) => (Math.imul(sum, 31) + p) | 0, 0)"
 # From now on, with which transform [a, b, c, d, e, f] each path of its own is filled.
 FILLS = """() => {
     window.fills = [];
@@ -62,46 +47,6 @@ FILLS = """() => {
         return path === undefined ? fill.call(this) : fill.call(this, path, ...rule);
     };
 }"""
-# Two frames later everything asked for is drawn.
-DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
-
-Open = Callable[..., Page]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    name = os.environ.get("CRAWLER2D_BROWSER", "playwright")
-    path = None if name == "playwright" else name
-    with sync_playwright() as playwright:
-        # The pages are our own, and a container's root has no sandbox.
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        yield browser
-        browser.close()
-
-
-@pytest.fixture
-def open_page(browser: Browser, tmp_path: Path) -> Iterator[Open]:
-    """Open a page from a file; afterwards no request and no complaint may have been seen."""
-    seen: list[str] = []
-    pages: list[Page] = []
-
-    def opened(html: str, **options: Any) -> Page:
-        path = tmp_path / f"page{len(pages)}.html"
-        path.write_text(html, encoding="utf-8")
-        page = browser.new_page(viewport={"width": 1000, "height": 800}, **options)
-        pages.append(page)
-        page.on("console", lambda message: seen.append(message.text))
-        page.on("pageerror", lambda error: seen.append(str(error)))
-        page.on("request", lambda request: seen.append(request.url))
-        page.goto(path.as_uri())
-        page.evaluate(DRAWN)
-        seen.remove(path.as_uri())
-        return page
-
-    yield opened
-    assert [text for text in seen if text not in ("about:srcdoc", "data:,")] == []
-    for page in pages:
-        page.close()
 
 
 def simulated(name: str) -> c2d.Run:
@@ -113,16 +58,6 @@ def simulated(name: str) -> c2d.Run:
 @pytest.fixture(scope="module")
 def stopped() -> c2d.Run:
     return simulated("round wheels that stop")
-
-
-def checksum(page: Page | Frame, canvas: str = "#scene") -> int:
-    page.evaluate(DRAWN)
-    return int(page.eval_on_selector(canvas, CHECKSUM))
-
-
-def clock(page: Page | Frame) -> float:
-    page.evaluate(DRAWN)
-    return float(page.inner_text("#clock").split(" / ")[0])
 
 
 @pytest.mark.parametrize("name", RUNS)

@@ -8,13 +8,14 @@ from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any, Unpack, overload
 
 from crawler2d.audits.audited import Audited
 from crawler2d.audits.beside import belt_of
+from crawler2d.audits.call import Call
 from crawler2d.audits.lint import lint
 from crawler2d.audits.obstacles import read_obstacles, standard_obstacles
-from crawler2d.audits.patches import patch_of
+from crawler2d.audits.patches import diffs_of, patch_of
 from crawler2d.audits.pockets import pockets
 from crawler2d.audits.population import (
     unknown_of,
@@ -62,8 +63,8 @@ class Audit(Audited):
         Changes that end the seizures, and all of the search for them.
     table : xarray.Dataset
         The runs behind the verdicts.
-    vary, unknown, drive
-        Over what the rates are rates, and how it was driven.
+    vary, unknown, drive, call
+        Over what the rates are rates, how it was driven, and what was asked for.
     """
 
     @property
@@ -110,6 +111,56 @@ class Audit(Audited):
     def __repr__(self) -> str:
         """Write the short form."""
         return self.in_words
+
+    @overload
+    def to_html(self, path: None = None, *, threads: int | None = None) -> str: ...
+
+    @overload
+    def to_html(self, path: str | os.PathLike[str], *, threads: int | None = None) -> Path: ...
+
+    def to_html(
+        self, path: str | os.PathLike[str] | None = None, *, threads: int | None = None
+    ) -> str | Path:
+        """Write one self-contained HTML page with all that was found.
+
+        For each obstacle on which it seized one run is simulated again, beside that of the belt
+        with the same draws, and can be replayed in the page.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Where to write the page; None returns its text.
+        threads : int, optional
+            For the runs that are replayed; see `simulate_many`.
+
+        Returns
+        -------
+        str or Path
+            The text, or the path of the written file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> step = {"step": c2d.terrains.step(0.1)}
+        >>> found = c2d.audit(robot, step, unknown={}, repeats=4, repair=False, progress=False)
+        >>> page = found.to_html()
+        >>> page.startswith("<!doctype html>"), found.verdicts[0].where in page
+        (True, True)
+        """
+        # Imported only when used.
+        from crawler2d.audits.page import audit_page  # noqa: PLC0415
+
+        text = audit_page(self, diffs_of(self), threads=threads)
+        if path is None:
+            return text
+        Path(path).write_text(text, encoding="utf-8", newline="\n")
+        return Path(path)
 
 
 def audit(
@@ -201,6 +252,13 @@ def audit(
     whole_number(seed, "seed", 0, 2**64 - 1)
     if drive is not None and not isinstance(drive, Drive):
         raise ScenarioError("drive", drive, "must be a Drive")
+    own_arguments = {
+        "obstacles": obstacles,
+        "vary": vary,
+        "unknown": unknown,
+        "drive": drive,
+        "duration": duration,
+    }
     own, read, floors = subject_of(robot, reading)
     friction = 0.9 if read is None else read.friction
     grounds = standard_obstacles(own, friction)
@@ -246,6 +304,14 @@ def audit(
         vary=runs.vary,
         unknown=unknown,
         drive=runs.scenario.drive,
+        call=Call(
+            samples=samples,
+            repeats=repeats,
+            seed=seed,
+            repair=repair,
+            own=tuple(name for name, value in own_arguments.items() if value is not None),
+            reading=dict(reading),
+        ),
     )
 
 

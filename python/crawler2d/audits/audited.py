@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from crawler2d.audits.beside import Belt
+from crawler2d.audits.call import Call
 from crawler2d.audits.finding import Finding
 from crawler2d.audits.pockets import Pocket
 from crawler2d.audits.repairs import Repair, Repaired
@@ -52,6 +53,8 @@ class Audited:
         What differed from run to run, and what was not known.
     drive : Drive
         How it was driven.
+    call : Call
+        What was asked for.
     """
 
     robot: Robot
@@ -66,6 +69,7 @@ class Audited:
     vary: Mapping[str, Any]
     unknown: Mapping[str, Any]
     drive: Drive
+    call: Call
 
     @property
     def seizes(self) -> bool:

@@ -11,7 +11,7 @@ from crawler2d.patching.patch import Patch, patched
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
 
-__all__ = ["patch_of"]
+__all__ = ["diffs_of", "patch_of"]
 
 
 def patch_of(audit: Audited, repair: Repair | None) -> Patch:
@@ -41,3 +41,15 @@ def patch_of(audit: Audited, repair: Repair | None) -> Patch:
         rule = "must be other wheels or gears: write belts with repair.robot.to_sdf or to_mjcf"
         raise ScenarioError("repair", got, rule)
     return patched(audit.reading, repair.robot)
+
+
+def diffs_of(audit: Audited) -> dict[str, str]:
+    """Return what each repair by wheels changes in the file, or why it cannot, by `Repair.what`."""
+    found = {}
+    for repair in audit.repairs if audit.reading is not None else ():
+        if repair.kind != "belt":
+            try:
+                found[repair.what] = patch_of(audit, repair).diff
+            except ScenarioError as error:
+                found[repair.what] = f"no change of the file: {error}"
+    return found

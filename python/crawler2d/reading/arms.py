@@ -12,10 +12,10 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.where import Where
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
-from crawler2d.reading.belly import silhouette
 from crawler2d.reading.belts import belt_ends
 from crawler2d.reading.parts import Arm, Runner
 from crawler2d.reading.sides import Pair, paired
+from crawler2d.reading.silhouettes import silhouette
 from crawler2d.reading.tracks import Base, wheels_of
 from crawler2d.reading.view import SideView
 

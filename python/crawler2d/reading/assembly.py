@@ -49,7 +49,7 @@ class Assembly:
     middle : float
         [m] Where the middle plane lies across it.
     base : Base
-        Its chassis frame in the side view.
+        The chassis frame in the side view.
     """
 
     tree: Tree

@@ -20,6 +20,7 @@ from crawler2d.reading.formats import bytes_of, tree_of
 from crawler2d.reading.friction import ENGINES, Engine
 from crawler2d.reading.how import How
 from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.silhouettes import Silhouette, silhouettes
 from crawler2d.reading.sources import Sources
 
 __all__ = ["Reading", "read_robot", "read_text"]
@@ -52,6 +53,8 @@ class Reading:
         The engine whose rule combined the friction.
     tree : Tree
         Links, joints and collision shapes as the file has them.
+    silhouettes : tuple of Silhouette
+        Its collision shapes in side view, in the frame of the robot's chassis.
     text : str
         What the lines are those of: the file, or what a xacro file expands to.
     frame : Pose
@@ -71,6 +74,7 @@ class Reading:
     doubts: tuple[str, ...]
     engine: str
     tree: Tree
+    silhouettes: tuple[Silhouette, ...]
     text: str
     frame: Pose
     path: Path
@@ -263,6 +267,7 @@ def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[Scenario
         doubts=tuple(str(doubt) for doubt in doubts),
         engine=engine,
         tree=tree,
+        silhouettes=silhouettes(tree, work.view, work.base),
         text=found.text,
         frame=work.frame,
         path=path,

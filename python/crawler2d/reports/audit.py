@@ -1,5 +1,7 @@
 """Audit a model file: what it lacks, where the robot seizes, and what smallest change ends that.
 
+It prints the short form and writes a page with all of it, which replays where the robot seized.
+
 Exit status: 1 if the robot seizes where a belt clears, 2 if the file or an option is bad, else 0;
 130 after Ctrl-C, with what a store keeps.
 """
@@ -20,6 +22,9 @@ from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
 
+_OUT = Path("out")
+"""Folder of the page, as of the other programs."""
+
 _QUICK = 40
 """Samples of a quick audit, each once."""
 
@@ -34,6 +39,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--store", type=Path, help="a file that keeps every run")
     parser.add_argument("--threads", type=int, help="default: all cores")
+    page = parser.add_mutually_exclusive_group()
+    page.add_argument(
+        "--html", type=Path, help="where to write the page (default: out/audit-NAME.html)"
+    )
+    page.add_argument("--no-html", action="store_true", help="write no page")
     parser.add_argument("--no-repairs", action="store_true", help="do not search for repairs")
     parser.add_argument(
         "--patch",
@@ -69,31 +79,34 @@ def run(options: argparse.Namespace) -> int:
             threads=options.threads,
             **_reading(options),
         )
+        _show(found, options)
     except KeyboardInterrupt as interrupt:
         print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
         print(f"audit: {error}", file=sys.stderr)
         return 2
+    return 1 if found.seizes else 0
+
+
+def _show(found: Audit, options: argparse.Namespace) -> None:
+    """Print an audit, write its page, and the file with other wheels if that is asked for."""
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     else:
         print(found.in_words)
+    # With --json nothing else may be on the standard output.
+    beside = sys.stderr if options.json else sys.stdout
+    if not options.no_html:
+        path: Path | None = options.html
+        if path is None:
+            _OUT.mkdir(parents=True, exist_ok=True)
+            path = _OUT / f"audit-{options.file.stem}.html"
+        found.to_html(path, threads=options.threads)
+        print(f"\nThe page is in {path}", file=beside)
     if options.patch is not None and found.seizes:
-        return _patch(found, options.patch)
-    return 1 if found.seizes else 0
-
-
-def _patch(found: Audit, path: Path) -> int:
-    """Write the file with other wheels; its diff goes to standard error, beside the words."""
-    try:
-        diff = found.patch(path)
-    except (ScenarioError, OSError) as error:
-        print(f"audit: no patch: {error}", file=sys.stderr)
-        return 2
-    print(diff, file=sys.stderr)
-    print(f"wrote {path}", file=sys.stderr)
-    return 1
+        diff = found.patch(options.patch)
+        print(f"\n{diff}\nThe changed file is {options.patch}", file=beside)
 
 
 def _given(number: int | None, usual: int) -> int:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import html
-import json
-from importlib.resources import files
+import re
 from string import Template
 from typing import TYPE_CHECKING
 
 from crawler2d import _core
 from crawler2d.common.markup import escaped
 from crawler2d.pictures.ghosts import ghosts
+from crawler2d.pictures.page.parts import (
+    as_json,
+    policy_hash,
+    read_part,
+    replay_script,
+    replay_style,
+)
 from crawler2d.pictures.page.recording import recording
 from crawler2d.pictures.page.words import all_figures, figures, heading, sentence, verdict
 
@@ -20,66 +24,61 @@ if TYPE_CHECKING:
     from crawler2d.results.findings import Mechanism
     from crawler2d.results.record import Record
 
-__all__ = ["replay_page"]
+__all__ = ["replay_page", "replay_pieces"]
 
-# Joined into one script; each part uses only those before it.
-_SCRIPTS = (
-    "data.js",
-    "camera.js",
-    "marks.js",
-    "carrier.js",
-    "robot.js",
-    "lane.js",
-    "scene.js",
-    "strip.js",
-    "pointer.js",
-    "replay.js",
-)
-
-# Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
-_MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
+# Where its style and its script go, which are the same in every page.
+_SAME = re.compile(r"\$(?:style|script)(?!\w)")
 
 
 def replay_page(run: Record, time: float | None = None) -> str:
     """Write the page of a run; see `Run.to_html`."""
+    before, between, after = replay_pieces(run, time)
+    return f"{before}{replay_style()}{between}{replay_script()}{after}"
+
+
+def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str]:
+    """Write the page of a run without what all such pages have.
+
+    Parameters
+    ----------
+    run, time
+        See `Run.to_html`.
+
+    Returns
+    -------
+    tuple of 3 str
+        What stands before the style, between that and the script, and after the script; see
+        `replay_style` and `replay_script`.
+    """
     data = recording(run, time)
-    style = _read("replay.css")
-    script = '"use strict";\n(() => {\n' + "\n".join(map(_read, _SCRIPTS)) + "})();\n"
     title = heading(run)
     subject, _, ending = title.rpartition(": ")
     outcome = verdict(run)
     mechanism = [] if run.mechanism is None else [run.mechanism]
     why = sentence(run)
+    values = {
+        "title": escaped(title),
+        "subject": escaped(subject),
+        "ending": escaped(ending.replace("_", " ")),
+        "outcome_class": html.escape(outcome.replace(" ", "-")),
+        "outcome_meaning": "" if run.outcome is None else _tooltip(run.outcome.meaning),
+        "mechanism": "".join(_mechanism(each) for each in mechanism),
+        "trials": _trials(run),
+        "sentence": f'<p class="sentence">{escaped(why)}</p>' if why else "",
+        "thinned": _thinned(data["every"], data["samples"]),
+        "figures": _listed(figures(run)),
+        "all_figures": _listed(all_figures(run)),
+        "version": escaped(str(_core.build_info()["version"])),
+        "identity": run.scenario.identity[:16],
+        "style_hash": policy_hash(replay_style()),
+        "script_hash": policy_hash(replay_script()),
+        "data": as_json(data),
+    }
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
-    return Template(_read("page.html")).substitute(
-        title=escaped(title),
-        subject=escaped(subject),
-        ending=escaped(ending.replace("_", " ")),
-        outcome_class=html.escape(outcome.replace(" ", "-")),
-        outcome_meaning="" if run.outcome is None else _tooltip(run.outcome.meaning),
-        mechanism="".join(_mechanism(each) for each in mechanism),
-        trials=_trials(run),
-        sentence=f'<p class="sentence">{escaped(why)}</p>' if why else "",
-        thinned=_thinned(data["every"], data["samples"]),
-        figures=_listed(figures(run)),
-        all_figures=_listed(all_figures(run)),
-        version=escaped(str(_core.build_info()["version"])),
-        identity=run.scenario.identity[:16],
-        style=style,
-        style_hash=_hash(style),
-        script=script,
-        script_hash=_hash(script),
-        data=json.dumps(data, allow_nan=False, separators=(",", ":")).translate(_MARKUP),
+    before, between, after = (
+        Template(piece).substitute(values) for piece in _SAME.split(read_part("page.html"))
     )
-
-
-def _read(name: str) -> str:
-    return (files("crawler2d.pictures.page") / name).read_text(encoding="utf-8")
-
-
-def _hash(text: str) -> str:
-    """Name the one script, or style, that the page's security policy allows."""
-    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+    return before, between, after
 
 
 def _thinned(every: int, samples: int) -> str:

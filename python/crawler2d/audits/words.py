@@ -1,0 +1,249 @@
+"""What is said of an audit, wherever it is said: sentences, rows and figures as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crawler2d.audits.names import names_of
+from crawler2d.audits.verdicts import CLEARS, SEIZES
+from crawler2d.common.units import unit_of
+from crawler2d.results.row import NO_RESULT
+from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform, UniformInt
+
+if TYPE_CHECKING:
+    from crawler2d.audits.audited import Audited
+    from crawler2d.audits.repairs import Repair, Repaired
+    from crawler2d.audits.share import Share
+    from crawler2d.audits.verdicts import Verdict
+    from crawler2d.results.record import Record
+
+__all__ = [
+    "JAM_HEAD",
+    "VERDICT_HEAD",
+    "calls",
+    "conclusion",
+    "confirmed",
+    "end",
+    "held",
+    "hopeless",
+    "jam",
+    "lost",
+    "percent",
+    "population",
+    "range_of",
+    "repair_sentence",
+    "repairs_found",
+    "robot_sentence",
+    "seizing",
+    "share",
+    "span",
+    "subject",
+    "verdict",
+    "worst",
+]
+
+VERDICT_HEAD = ("obstacle", "clears", "seizes", "belt clears", "most often", "verdict")
+_UPRIGHT = 100.0
+"""[-] Friction above which a wall is upright but for rounding: no surface has it."""
+
+JAM_HEAD = ("obstacle", "between wheels", "runs", "friction", "freed there by")
+
+
+def subject(audit: Audited) -> str:
+    """Say what was audited."""
+    return audit.robot.in_words if audit.reading is None else audit.reading.in_words
+
+
+def robot_sentence(audit: Audited) -> str:
+    """Say how heavy and how large the robot is, and where its centre of mass is."""
+    robot = audit.robot
+    outline = robot.outline
+    x, y = robot.center_of_mass
+    return (
+        f"{robot.mass:.4g} kg, axle distance {1e3 * outline.axle_distance:.0f} mm, radius"
+        f" {1e3 * outline.front_radius:.0f} mm; centre of mass {_side(x, 'ahead of', 'behind')} the"
+        f" middle and {_side(y, 'above', 'below')} the axles"
+    )
+
+
+def population(audit: Audited) -> str:
+    """Say over how many runs the rates are rates, and how fast it drove."""
+    samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
+    each = "1 run" if repeats == 1 else f"{repeats} runs"
+    many = f"{samples} robots on floors, {each} each" if audit.unknown else f"{samples} runs"
+    return f"{many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
+
+
+def lost(audit: Audited) -> str:
+    """Say how many runs have no result; "" if all have one."""
+    ends = audit.table["outcome"].values
+    count = int(np.isin(ends, NO_RESULT).sum())
+    return f"{count} of {ends.size} runs have no result: see `error` in the table" if count else ""
+
+
+def verdict(each: Verdict) -> tuple[str, ...]:
+    """Write a verdict, as `VERDICT_HEAD` says."""
+    return (
+        each.obstacle,
+        share(each.cleared),
+        share(each.seized),
+        percent(each.belt_cleared.rate),
+        each.outcome.replace("_", " "),
+        each.word,
+    )
+
+
+_SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
+
+
+def jam(each: Verdict) -> tuple[str, ...]:
+    """Say where it is jammed, and what frees it, as `JAM_HEAD` says."""
+    at = "" if math.isnan(each.friction[0]) else span(each.friction, ".2f").replace(" to ", "-")
+    freed = [
+        f"{_SHORT.get(trial.trial, trial.trial)}: {trial.freed}"
+        for trial in each.freed
+        if trial.freed
+    ]
+    place = f"{each.where} of the {each.carrier}"
+    return each.obstacle, place, "/".join(map(str, each.there)), at, ", ".join(freed)
+
+
+def end(run: Record) -> str:
+    """Say how a run ended."""
+    return "no result" if run.outcome is None else str(run.outcome).replace("_", " ")
+
+
+def calls(audit: Audited) -> str:
+    """Say what the file calls the wheels between which it is jammed; "" if there are none."""
+    if audit.reading is None:
+        return ""
+    names = names_of(audit.robot, audit.reading)
+    bodies = {int(body) for each in audit.verdicts if each.where for body in each.where.split("-")}
+    called = [f"{body} is {names[body]}" for body in sorted(bodies) if body in names]
+    return f"on the left, wheel {', '.join(called)}" if called else ""
+
+
+def seizing(audit: Audited) -> list[str]:
+    """Name the obstacles on which it seizes while the belt clears them."""
+    return [each.obstacle for each in audit.verdicts if each.word == "seizes"]
+
+
+def conclusion(audit: Audited) -> list[str]:
+    """Say in sentences where it seizes, and what is not certain."""
+    found, names = [], seizing(audit)
+    others = [
+        f"{each.obstacle} ({each.instead} of {each.there[1]})"
+        for each in audit.verdicts
+        if each.word != "seizes" and each.seized.low > SEIZES
+    ]
+    count = len(audit.verdicts)
+    if names:
+        text = f"It seizes on {len(names)} of {count} obstacles that the belt clears"
+        found.append(f"{text}: {', '.join(names)}.")
+    else:
+        clears = sum(each.belt_cleared.rate >= CLEARS for each in audit.verdicts)
+        text = f"It was not found to seize where the belt clears, on {clears} of {count} obstacles."
+        found.append(text)
+    if others:
+        text = (
+            "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"
+            " of the seized runs the belt clears with the same draws)"
+        )
+        found.append(f"{text}: {', '.join(others)}.")
+    unsure = [each.obstacle for each in audit.verdicts if each.word == "not certain"]
+    if unsure:
+        found.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
+    return found
+
+
+def repairs_found(found: Repaired) -> str:
+    """Say what the search for repairs came to."""
+    if any(each.confirmed for each in found.repairs):
+        return f"the best of {found.tried} candidates, in fresh runs"
+    return f"none of {found.tried} candidates was confirmed in fresh runs"
+
+
+def hopeless(kind: str) -> str:
+    """Say that nothing of a kind passed the screen."""
+    return f"{kind}: no candidate cleared most of three runs in which it seized"
+
+
+def worst(repair: Repair, names: Sequence[str]) -> tuple[Share, Share, str]:
+    """Return how often a repair clears at worst of what seized, and seizes at worst, and where."""
+    cleared = min((repair.cleared[name] for name in names), key=lambda share: share.rate)
+    name, seized = max(repair.seized.items(), key=lambda item: (item[1].low, item[1].rate))
+    return cleared, seized, name if seized.rate > 0.0 else ""
+
+
+def repair_sentence(repair: Repair, names: Sequence[str]) -> str:
+    """Say what a repair changes, and what came of it."""
+    cleared, seized, name = worst(repair, names)
+    where = f", most on {name}" if name else ""
+    return (
+        f"{confirmed(repair)}: {repair.what}; clears at least"
+        f" {share(cleared)} where it seized; seizes at most {share(seized)}{where};"
+        f" {repair.wheels} wheels a side; simulated {repair.speed:.2g} times as fast"
+    )
+
+
+def confirmed(repair: Repair) -> str:
+    """Say whether fresh runs bear a repair out."""
+    return "confirmed" if repair.confirmed else "not confirmed"
+
+
+def range_of(path: str, distribution: Distribution) -> str:
+    """Write the range of a field in words, as far as its kind is known, with its unit."""
+    unit = unit_of(path)
+    own = "" if unit in (None, "1") else f" {unit}"
+    match distribution:
+        case Uniform(low, high):
+            return f"{low:g} to {high:g}{own}"
+        case UniformInt(low, high):
+            return f"{low} to {high}"
+        case Scaled(low, high):
+            return f"times {low:g} to {high:g}"
+        case Shifted():
+            of = str(distribution.of or "").rpartition(".")[2].replace("_", " ")
+            unit = f" of the {of}" if of else own
+            return f"{distribution.low:+g} to {distribution.high:+g}{unit}"
+    return str(distribution)
+
+
+def held(frictions: Sequence[float]) -> str:
+    """Say at which frictions pockets hold by their walls alone.
+
+    Examples
+    --------
+    >>> held([0.84, 1.535]), held([0.84, 0.84])
+    ('at a friction below 0.84 to 1.53', 'at a friction below 0.84')
+    >>> held([1.0, math.inf]), held([3e7])
+    ('at a friction below 1.00 or at any friction', 'at any friction')
+    """
+    steep = [each for each in frictions if each >= _UPRIGHT]
+    others = [each for each in frictions if each < _UPRIGHT]
+    parts = [f"at a friction below {span(others, '.2f')}"] if others else []
+    return " or ".join(parts + ["at any friction"] * bool(steep))
+
+
+def _side(length: float, positive: str, negative: str) -> str:
+    return f"{1e3 * abs(length):.0f} mm {positive if length >= 0.0 else negative}"
+
+
+def span(values: Sequence[float], form: str) -> str:
+    """Write the least and the largest of some numbers."""
+    low, high = (format(bound, form) for bound in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
+
+
+def percent(rate: float) -> str:
+    """Write a rate in percent."""
+    return "no result" if math.isnan(rate) else f"{100 * rate:.0f} %"
+
+
+def share(share: Share) -> str:
+    """Write a rate with its interval, in percent."""
+    return f"{percent(share.rate)} ({100 * share.low:.0f}-{100 * share.high:.0f})"

@@ -1,0 +1,23 @@
+"""Audits that several tests look at."""
+
+from __future__ import annotations
+
+import pytest
+
+import crawler2d as c2d
+from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
+
+
+@pytest.fixture(scope="session")
+def found() -> c2d.Audit:
+    """Four touching wheels on a step of 75 mm, everything known but the start."""
+    return c2d.audit(SEIZING, STEP, unknown={}, repeats=20, **QUIET)
+
+
+@pytest.fixture(scope="session")
+def of_file(tmp_path_factory: pytest.TempPathFactory) -> c2d.Audit:
+    """A cart that seizes as a file, on two steps of which it clears one."""
+    path = tmp_path_factory.mktemp("cart") / "cart.urdf"
+    path.write_text(seizing_file(), encoding="utf-8")
+    steps = {**STEP, "step of 30 mm": c2d.terrains.step(0.03)}
+    return c2d.audit(path, steps, samples=12, repeats=1, repair=False, seed=3, **QUIET)

@@ -1,0 +1,151 @@
+"""The command `python -m crawler2d audit`: what it prints and writes, and its exit status."""
+
+import argparse
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.__main__ import main
+from crawler2d.audits.call import Call, command_of
+from crawler2d.reports import audit as command
+from tests.reading.carts import FILES
+
+
+def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
+    status = main(["audit", *arguments])
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+def test_the_command_prints_the_short_form(capsys: Any) -> None:
+    few = ("--samples", "2", "--repeats", "1", "--no-repairs", "--no-html")
+    status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
+    assert status in (0, 1)
+    assert out.startswith("cart: 3 round wheels in a line")
+    assert "Verdicts: 2 robots on floors, 1 run each" in out
+
+
+def test_the_command_writes_json(capsys: Any) -> None:
+    status, out, _ = run(
+        capsys, str(FILES / "cart.urdf"), "--quick", "--samples", "1", "--json", "--no-html"
+    )
+    plain = json.loads(out)
+    assert (status == 1) is plain["seizes"]
+    assert plain["file"] == "cart.urdf"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["missing.sdf"],
+        [str(FILES / "cart.urdf"), "--samples", "0"],
+        [__file__],
+        ["x", "--package", "a"],
+    ],
+)
+def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[str]) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert len(err.strip().splitlines()) == 1
+
+
+def test_the_command_says_whether_it_seizes(
+    capsys: Any, monkeypatch: Any, found: c2d.Audit
+) -> None:
+    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    status, out, _ = run(capsys, "any.sdf", "--no-html")
+    assert status == 1
+    assert out.strip() == found.in_words
+
+
+def test_the_command_ends_at_ctrl_c(capsys: Any, monkeypatch: Any) -> None:
+    def interrupted(*_: Any, **__: Any) -> None:
+        raise c2d.BatchInterrupted([], "runs.sqlite")
+
+    monkeypatch.setattr(command, "audit", interrupted)
+    status, _, err = run(capsys, "any.sdf")
+    assert status == 130
+    assert "runs.sqlite keeps them" in err
+    monkeypatch.setattr(command, "audit", Mock(side_effect=KeyboardInterrupt))
+    assert run(capsys, "any.sdf")[::2] == (130, "interrupted\n")
+
+
+@pytest.fixture
+def made(monkeypatch: Any, tmp_path: Path, found: c2d.Audit) -> Path:
+    """An empty folder to work in, and an audit that takes no time."""
+    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_command_writes_the_page_and_says_where(made: Path, capsys: Any) -> None:
+    status, out, err = run(capsys, "models/any.sdf")
+    assert (status, err) == (1, "")
+    assert out.strip().endswith(f"The page is in {Path('out/audit-any.html')}")
+    text = (made / "out" / "audit-any.html").read_text(encoding="utf-8")
+    assert text.startswith("<!doctype html>")
+
+
+def test_the_page_can_be_written_elsewhere_or_nowhere(made: Path, capsys: Any) -> None:
+    run(capsys, "any.sdf", "--html", "here.html")
+    assert [each.name for each in made.iterdir()] == ["here.html"]
+    run(capsys, "any.sdf", "--no-html")
+    assert [each.name for each in made.iterdir()] == ["here.html"]
+
+
+def test_with_json_nothing_else_is_on_the_standard_output(made: Path, capsys: Any) -> None:
+    _, out, err = run(capsys, "any.sdf", "--json")
+    assert json.loads(out)["seizes"] is True
+    assert "out" in err
+    assert (made / "out").is_dir()
+
+
+def test_a_page_that_cannot_be_written_is_told_after_the_audit(
+    made: Path, capsys: Any, found: c2d.Audit
+) -> None:
+    status, out, err = run(capsys, "any.sdf", "--html", str(made))
+    assert status == 2
+    assert out.strip() == found.in_words
+    assert len(err.strip().splitlines()) == 1
+
+
+CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
+HOWS: Any = [
+    {},
+    {"engine": "isaac", "forward": "-x", "model": "a b; rm -rf $HOME", "ground_friction": 0.7},
+    {"mesh": "hull", "missing": "leave_out", "trusted": True},
+    {"tracks": ["-left", "right"], "packages": {"a": "b=c"}, "arguments": {"n": "it's"}},
+]
+
+
+@pytest.mark.parametrize("how", HOWS)
+def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
+    call = Call(samples=4, repeats=3, seed=2**63, repair=False, reading=how)
+    text = command_of(call, "my file.sdf")
+    assert text is not None
+    program, dash, package, name, *arguments = shlex.split(text)
+    assert (program, dash, package, name) == ("python", "-m", "crawler2d", "audit")
+    parser = argparse.ArgumentParser()
+    command.add_arguments(parser)
+    options = parser.parse_args(arguments)
+    assert options.file == Path("my file.sdf")
+    assert (options.samples, options.repeats, options.seed) == (4, 3, 2**63)
+    assert options.no_repairs
+    kept = command._reading(options)
+    assert {name: value for name, value in kept.items() if value} == {
+        "mesh": "refuse",
+        "missing": "refuse",
+        **how,
+    }
+
+
+def test_a_call_with_arguments_that_no_option_has_is_no_command() -> None:
+    assert command_of(CALL, "a.sdf") is not None
+    for changed in ({"own": ("vary",)}, {"reading": {"tolerance": 0.01}}):
+        call = Call(samples=4, repeats=3, seed=1, repair=True, **changed)
+        assert command_of(call, "a.sdf") is None

@@ -1,0 +1,383 @@
+"""The page of an audit, as far as no browser is needed: what it holds, and that it is harmless."""
+
+import base64
+import dataclasses
+import hashlib
+import html
+import json
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits import words
+from crawler2d.audits.page import audit_page
+from crawler2d.audits.page.pocket_drawn import pockets_drawn
+from crawler2d.audits.page.replayed import replayed
+from crawler2d.audits.page.robot_drawn import robot_drawn
+from crawler2d.audits.pockets import pockets
+from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
+
+HOSTILE = "</script><img src=x onerror=alert(1)> $data ${title} \"' & <!-- ]]> \u2028"
+VOID = {"meta", "link", "br", "input"}
+SCRIPTS = ("script", "style")
+
+
+class Page(HTMLParser):
+    """Tags with their attributes and the text inside each; tags that do not match are an error."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[str] = []
+        self._open: list[int] = []
+        self.feed(text)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert len(dict(attrs)) == len(attrs)
+        self.tags.append((tag, dict(attrs)))
+        self.texts.append("")
+        if tag not in VOID:
+            self._open.append(len(self.tags) - 1)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        self.texts.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.tags[self._open.pop()][0] == tag
+
+    def handle_data(self, data: str) -> None:
+        for number in self._open:
+            self.texts[number] += data
+
+    def all(self, tag: str, **attributes: str) -> Iterator[tuple[dict[str, str | None], str]]:
+        """Yield attributes and text of what has a tag and these attributes."""
+        for (name, found), text in zip(self.tags, self.texts, strict=True):
+            if name == tag and attributes.items() <= found.items():
+                yield found, text
+
+    def rows(self, label: str) -> list[list[str]]:
+        """Return the cells of the table with a label."""
+        start = next(
+            k for k, (_, found) in enumerate(self.tags) if found.get("aria-label") == label
+        )
+        rows: list[list[str]] = []
+        for (tag, found), text in zip(self.tags[start + 1 :], self.texts[start + 1 :], strict=True):
+            if tag == "table":
+                break
+            if tag == "tr":
+                rows.append([])
+            if tag == "td" or (tag == "th" and found.get("scope") == "row"):
+                rows[-1].append(text)
+        return [row for row in rows if row]
+
+    def data(self, name: str) -> Any:
+        """Return the data of an inert script."""
+        ((_, text),) = self.all("script", id=name)
+        return json.loads(text)
+
+
+@pytest.fixture(scope="module")
+def page(found: c2d.Audit) -> Page:
+    return Page(found.to_html())
+
+
+@pytest.fixture(scope="module")
+def file_page(of_file: c2d.Audit) -> Page:
+    return Page(of_file.to_html())
+
+
+# Harmless
+
+
+@pytest.mark.parametrize("name", ["found", "of_file"])
+def test_the_page_needs_nothing_from_outside(name: str, request: pytest.FixtureRequest) -> None:
+    text = request.getfixturevalue(name).to_html()
+    assert text.startswith("<!doctype html>")
+    known = text.replace("http-equiv", "").replace('xmlns="http://www.w3.org/2000/svg"', "")
+    assert "http" not in known
+    assert not [word for word in ("@import", "url(", "fetch(", "import(", "//cdn") if word in text]
+    for _, attributes in Page(text).tags:
+        assert not {"src", "srcset", "action", "data", "style"} & set(attributes)
+        assert not [each for each in attributes if each.startswith("on")]
+        link = attributes.get("href") or "data:,"
+        assert link == "data:," or link.startswith("#")
+
+
+def test_the_policy_lets_the_scripts_of_page_and_replay_run_and_nothing_else(page: Page) -> None:
+    ((policy, _),) = page.all("meta", **{"http-equiv": "Content-Security-Policy"})
+    content = policy["content"] or ""
+    assert content.startswith("default-src 'none'; img-src data:;")
+    ((_, style),) = page.all("style")
+    (script,) = [text for found, text in page.all("script") if not found]
+    own = {"style": style, "script": script}
+    for name in SCRIPTS:
+        for text in (own[name], page.data(f"replay-{name}")):
+            digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+            assert f"'sha256-{digest}'" in content
+    assert content.count("sha256-") == 4
+
+
+def test_every_link_has_a_target_and_every_name_is_there_once(file_page: Page) -> None:
+    names = [found["id"] for _, found in file_page.tags if found.get("id")]
+    assert len(names) == len(set(names))
+    links = [found["href"] for found, _ in file_page.all("a")]
+    assert len(links) >= 8
+    assert {(link or "")[1:] for link in links} <= set(names)
+
+
+@pytest.mark.parametrize("name", [HOSTILE, "</TITLE><script>alert(1)</script>", "rouge-gorge é"])
+def test_names_are_only_ever_text(
+    of_file: c2d.Audit, file_page: Page, tmp_path: Path, name: str
+) -> None:
+    """Those of robot and links in a file, of the file, and of obstacles."""
+    path = tmp_path / "cart <b>&.urdf"
+    quoted = html.escape(name.replace("\u2028", " "))
+    path.write_text(seizing_file(quoted, quoted), encoding="utf-8")
+    obstacles = {f"{label}{name}": each for label, each in of_file.obstacles.items()}
+    found = c2d.audit(path, obstacles, samples=12, repeats=1, repair=False, seed=3, **QUIET)
+    assert found.robot.name == name.replace("\u2028", " ")
+    hostile = Page(audit_page(found, {"no such repair": name}))
+
+    def kinds(of: Page) -> list[tuple[str, str | None]]:
+        return [(tag, each.get("class")) for tag, each in of.tags]
+
+    assert kinds(hostile) == kinds(file_page)
+    ((_, title),) = hostile.all("title")
+    assert title == f"{found.robot.name}: audit"
+    assert [row[0] for row in hostile.rows("verdicts")] == list(obstacles)
+
+
+# What it shows
+
+
+def plain(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_the_conclusion_is_that_of_the_short_form(found: c2d.Audit, page: Page) -> None:
+    ((_, text),) = page.all("p", **{"class": "conclusion"})
+    for sentence in words.conclusion(found):
+        assert sentence in text
+        assert sentence in plain(found.in_words)
+    assert "Confirmed: chassis: 5 wheels in place of 4; clears at least" in text
+    assert plain(words.subject(found)) in plain(found.in_words)
+    assert next(page.all("h1"))[1] == words.subject(found)
+
+
+def test_every_figure_of_a_file_has_its_value_and_its_source(
+    of_file: c2d.Audit, file_page: Page
+) -> None:
+    assert of_file.reading is not None
+    rows = {row[0]: row[1:] for row in file_page.rows("figures with their sources")}
+    sources = of_file.reading.sources
+    assert len(rows) == len(sources)
+    assert rows["mass"] == ["16 kg", sources["robot.mass"]]
+    assert rows["outline: axle distance"][0] == "0.365 m"
+    assert rows["friction"] == ["1", sources["friction"]]
+    marked = [text for _, text in file_page.all("strong", **{"class": "estimate"})]
+    assert len(marked) == len(sources.estimates) > 0
+
+
+def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
+    rows = file_page.rows("what is not known")
+    assert [row[1] for row in rows] == [
+        words.range_of(path, each) for path, each in of_file.unknown.items()
+    ]
+    assert any("centre of mass" in row[0] and "cart.urdf" in row[2] for row in rows)
+
+
+def test_wheels_are_numbered_and_have_the_names_and_lines_of_the_file(
+    of_file: c2d.Audit, file_page: Page
+) -> None:
+    assert of_file.reading is not None
+    rows = file_page.rows("wheels of the left side")
+    assert [row[0] for row in rows] == ["0", "1", "2", "3"]
+    assert [row[4] for row in rows] == ["left_rear", "left_aft", "left_fore", "left_front"]
+    lines = dict(zip(*(of_file.reading.wheels[key] for key in ("name", "line")), strict=True))
+    assert [row[5] for row in rows] == [f"cart.urdf:{lines[row[4]]}" for row in rows]
+
+
+def test_lint_stands_errors_first(of_file: c2d.Audit, file_page: Page) -> None:
+    items = [text for _, text in file_page.all("li") if ": " in text]
+    for each in of_file.lint:
+        assert any(
+            each.severity in item and each.what in item and each.where in item for item in items
+        )
+    assert of_file.lint
+
+
+def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) -> None:
+    rows = file_page.rows("verdicts")
+    assert len(rows) == len(of_file.verdicts) == 2
+    for row, each in zip(rows, of_file.verdicts, strict=True):
+        assert tuple(row[:6]) == words.verdict(each)
+        assert row[10] == ("replay" if each.where else "")
+    assert rows[0][6] == f"{of_file.verdicts[0].where} of the chassis"
+    assert f"{100 * of_file.verdicts[0].seized.rate:.0f} %" in rows[0][2]
+
+
+def test_repairs_are_those_of_the_audit(found: c2d.Audit, page: Page) -> None:
+    rows = page.rows("repairs")
+    assert [row[0] for row in rows] == [each.what for each in found.repairs]
+    assert [row[1] for row in rows] == [words.confirmed(each) for each in found.repairs]
+    assert [row[5] for row in rows] == [str(each.wheels) for each in found.repairs]
+    pictures = [each for _, each in page.tags if each.get("class") == "robot"]
+    assert len(pictures) == len(found.repairs)
+
+
+def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:
+    diff = "--- a\n+++ b\n-<radius>0.06</radius>"
+    shown = Page(audit_page(found, {found.repairs[0].what: diff}))
+    assert next(text for _, text in shown.all("pre")) == diff
+    assert not any("what changes in the file" in text for _, text in page.all("summary"))
+
+
+def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_page: Page) -> None:
+    rows = {row[0]: row[1] for row in file_page.rows("how it was made")}
+    assert rows["runs behind the verdicts"].startswith("48: 12 robots on floors, 1 run each")
+    assert rows["seed of the draws"] == "3"
+    assert c2d.__version__ in rows["crawler2d"]
+    *_, (_, again) = file_page.all("pre")
+    # Obstacles of one's own are no option of the command.
+    assert again.startswith("crawler2d.audit('cart.urdf', obstacles=..., samples=12")
+    changed = dataclasses.replace(of_file, call=dataclasses.replace(of_file.call, own=()))
+    *_, (_, again) = Page(changed.to_html()).all("pre")
+    assert again.startswith("python -m crawler2d audit cart.urdf --samples 12 --repeats 1 --seed 3")
+
+
+# Replays
+
+
+def test_every_obstacle_that_seized_has_a_replay_of_one_of_its_runs(
+    of_file: c2d.Audit, file_page: Page
+) -> None:
+    seized = [each for each in of_file.verdicts if each.seized.rate > 0.0]
+    assert [each.obstacle for each in seized] == ["step of 75 mm"]
+    boxes = list(file_page.all("details", **{"class": "replay"}))
+    assert len(boxes) == len(seized)
+    (chosen,) = replayed(of_file)
+    assert chosen.run.outcome == c2d.Outcome.SEIZED
+    assert chosen.belt is not None
+    assert chosen.belt.outcome == c2d.Outcome.CLEARED
+    cell = of_file.table.sel(terrain="step of 75 mm")
+    cell = cell.isel(sample=chosen.sample, repeat=chosen.repeat)
+    for name, run in (("model", chosen.run), ("belt", chosen.belt)):
+        own = cell.sel(model=name)
+        assert own["identity"].item() == run.scenario.identity
+        assert own["final_x"].item() == run.metrics["final_x"]
+    assert f"Sample {chosen.sample}, repeat {chosen.repeat}" in boxes[0][1]
+    speed = cell.sel(model="model")["drawn_speed"].item()
+    assert f"drive: speed {speed:.4g} m/s" in boxes[0][1]
+
+
+def test_a_replay_is_the_page_of_the_run(of_file: c2d.Audit, file_page: Page) -> None:
+    (chosen,) = replayed(of_file)
+    before, between, after = file_page.data("replay-0-model")
+    style, script = (file_page.data(f"replay-{name}") for name in ("style", "script"))
+    assert before + style + between + script + after == chosen.run.to_html()
+
+
+def test_without_a_seizure_there_is_no_replay() -> None:
+    good = SEIZING.with_track(c2d.LineOfWheels(5, wheel_radius=0.0608))
+    found = c2d.audit(good, STEP, unknown={}, repeats=2, repair=False, **QUIET)
+    page = Page(found.to_html())
+    assert [found for found, _ in page.all("details", **{"class": "replay"})] == []
+    assert len(list(page.all("script"))) == 1
+
+
+def test_a_robot_on_belts_has_a_page() -> None:
+    found = c2d.audit(c2d.robots.engineer(flippers=None), STEP, samples=2, repeats=1, **QUIET)
+    page = Page(found.to_html())
+    assert any("no neighbouring wheels" in text for _, text in page.all("p"))
+
+
+def test_equal_audits_have_equal_pages(of_file: c2d.Audit) -> None:
+    assert of_file.to_html() == of_file.to_html(threads=1)
+
+
+def test_the_page_is_written_to_a_file(found: c2d.Audit, tmp_path: Path) -> None:
+    path = tmp_path / "audit.html"
+    assert found.to_html(str(path)) == path
+    assert path.read_text(encoding="utf-8") == found.to_html()
+    with pytest.raises(OSError, match="irectory"):
+        found.to_html(tmp_path)
+
+
+def test_a_page_with_one_pair_of_replays_has_less_than_300_kb(found: c2d.Audit, say: Any) -> None:
+    size = len(found.to_html().encode())
+    say(f"the page of an audit with one pair of replays has {size / 1e3:.0f} kB")
+    assert size < 300_000
+
+
+def test_the_parts_of_the_page_are_in_the_package() -> None:
+    names = {path.name for path in files("crawler2d.audits.page").iterdir()}
+    assert {"audit.html", "audit.css", "audit.js"} <= names
+
+
+# Drawings
+
+
+def circles(svg: str) -> list[tuple[float, ...]]:
+    found = re.findall(r'<circle cx="([^"]*)" cy="([^"]*)" r="([^"]*)"', svg)
+    return [tuple(map(float, each)) for each in found]
+
+
+def test_the_robot_is_drawn_over_the_shapes_of_its_file(of_file: c2d.Audit) -> None:
+    assert of_file.reading is not None
+    shapes = of_file.reading.silhouettes
+    svg = robot_drawn(of_file.robot, "a cart", shapes)
+    wheels, outlines = circles(svg), re.findall(r'<path d="([^"]*)" class="collision"', svg)
+    assert len(wheels) == 4
+    assert len(outlines) == 5  # the two sides are one
+    for x, y, radius in wheels:
+        # A circle in pieces that are rounded to a tenth of a pixel begins at the rim of its wheel.
+        starts = [np.array(re.findall(r"-?[\d.]+", each)[:2], float) for each in outlines]
+        assert min(abs(np.hypot(*(each - (x, y))) - radius) for each in starts) < 0.2
+
+
+def test_wheels_are_numbered_where_they_are() -> None:
+    robot = c2d.robots.absolem(track="public")
+    table = robot.wheels()
+    left = table["side"] == "left"
+    svg = robot_drawn(robot, "Absolem")
+    numbers = re.findall(r'<text x="([^"]*)" y="([^"]*)"[^>]*>([^<]*)</text>', svg)
+    named = sorted(int(each) for *_, text in numbers for each in text.split(", "))
+    assert named == sorted(table["body"][left].tolist())
+    places = {(x, y) for x, y, _ in circles(svg)}
+    assert all((float(x), float(y)) in places for x, y, _ in numbers)
+
+
+def test_equal_pockets_are_drawn_once_and_all_to_one_scale() -> None:
+    robot = c2d.robots.absolem(track="public")
+    found = pockets(robot)
+    radii = dict(zip(robot.wheels()["body"].tolist(), robot.wheels()["radius"], strict=True))
+    figures = pockets_drawn(robot, found).split("<figure>")[1:]
+    assert 2 < len(figures) < len(found)
+    scales = []
+    for figure in figures:
+        rear, front = re.findall(r"<strong>(\d+)-(\d+)", figure)[0]
+        pocket = next(each for each in found if each.bodies == (int(rear), int(front)))
+        (x, _, r), (u, _, s) = circles(figure)
+        assert r / s == pytest.approx(radii[int(rear)] / radii[int(front)], rel=0.01)
+        scales.append((u - x) / pocket.width)
+        assert f"{1e3 * pocket.width:.1f} mm wide" in figure
+    assert np.ptp(scales) < 0.01 * min(scales)  # to a tenth of a pixel
+    told = " ".join(figures)
+    assert all("-".join(map(str, each.bodies)) in told for each in found)
+
+
+def test_wheels_that_touch_hold_at_any_friction() -> None:
+    """Their walls are upright at the bottom, but for rounding."""
+    robot = c2d.robots.engineer(flippers=None, track=c2d.CircumferentialWheels(24))
+    drawn = pockets_drawn(robot, pockets(robot))
+    assert set(re.findall(r"alone it holds ([^<]*)<", drawn)) == {"at any friction"}

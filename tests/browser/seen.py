@@ -1,0 +1,30 @@
+"""What is seen of a page: pixels of its canvases, and the time that a replay shows."""
+
+from collections.abc import Callable
+
+from playwright.sync_api import Frame, Page
+
+# The pixels of a copy: a canvas that is read itself is drawn by other means from then on.
+PIXELS = """canvas => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height);
+    const context = copy.getContext("2d", { willReadFrequently: true });
+    context.drawImage(canvas, 0, 0);
+    return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+}"""
+COLOURS = f"canvas => new Set(({PIXELS})(canvas)).size"
+# Changes with any pixel.
+CHECKSUM = f"canvas => ({PIXELS})(canvas).reduce((sum, p) => (Math.imul(sum, 31) + p) | 0, 0)"
+# Two frames later everything asked for is drawn.
+DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+Open = Callable[..., Page]
+
+
+def checksum(page: Page | Frame, canvas: str = "#scene") -> int:
+    page.evaluate(DRAWN)
+    return int(page.eval_on_selector(canvas, CHECKSUM))
+
+
+def clock(page: Page | Frame) -> float:
+    page.evaluate(DRAWN)
+    return float(page.inner_text("#clock").split(" / ")[0])
