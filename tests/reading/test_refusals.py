@@ -2,20 +2,24 @@
 
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import SIDES, WHEELS, collision, link, pair, read, urdf, wheel
+from tests.reading.carts import (
+    SIDES,
+    WHEELS,
+    collision,
+    link,
+    pair,
+    read,
+    refused,
+    tracked,
+    urdf,
+    wheel,
+)
 
 LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
-
-
-def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
-    with pytest.raises(c2d.ScenarioError, match=rule) as caught:
-        read(folder, text, name, **how)
-    assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
 
 
 def on_links(kind: str) -> str:
@@ -181,41 +185,6 @@ def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: 
     refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within a wheel of its flipper")
 
 
-TRACKED = """<sdf version="1.7"><model name="tank">
-<link name="hull"><inertial><mass>20</mass></inertial></link>{links}{plugins}</model></sdf>"""
-
-
-def tracked(drums: tuple[tuple[float, float, float], ...]) -> str:
-    """A vehicle with drums of x, z and radius that Gazebo's controllers move."""
-    shapes = "".join(
-        f"""<collision name="d{n}"><pose>{x} 0 {z} 1.5707963267948966 0 0</pose><geometry><cylinder>
-        <radius>{r}</radius><length>0.1</length></cylinder></geometry></collision>"""
-        for n, (x, z, r) in enumerate(drums)
-    )
-    links = "".join(
-        f"""<link name="{side}"><pose>0 {0.3 * sign} 0 0 0 0</pose>{shapes}</link>
-        <joint name="{side}j" type="fixed"><parent>hull</parent><child>{side}</child></joint>"""
-        for side, sign in SIDES
-    )
-    plugins = "".join(
-        f'<plugin name="TrackController" filename="x"><link>{side}</link></plugin>'
-        for side, _ in SIDES
-    )
-    return TRACKED.format(links=links, plugins=plugins)
-
-
-def test_drums_between_the_end_drums_are_within_the_belt(tmp_path: Path) -> None:
-    text = tracked(((-0.4, 0.0, 0.1), (0.0, 0.0, 0.1), (0.4, 0.0, 0.1)))
-    robot = read(tmp_path, text, "tank.sdf").robot
-    assert robot.track == c2d.BeltTrack()
-    assert robot.outline.axle_distance == 0.8
-
-
-def test_a_trapezoid_of_drums_is_refused_for_now(tmp_path: Path) -> None:
-    text = tracked(((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.1)))
-    refused(tmp_path, text, "tracks round more are not read", "tank.sdf")
-
-
 def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:
     skid = collision('<box size="0.1 0.1 0.16"/>')
     assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).doubts[0]
@@ -295,17 +264,6 @@ def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
     )
     text = urdf(WHEELS, belts)
     refused(tmp_path, text, "must have one kind on the chassis", tracks=["left_belt", "right_belt"])
-
-
-def test_a_track_of_one_drum_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, tracked(((0.0, 0.0, 0.1),)), "must have a drum at either end", "tank.sdf")
-
-
-def test_a_moved_box_beyond_the_belt_is_refused(tmp_path: Path) -> None:
-    box = "<collision name='b'><geometry><box><size>0.3 0.1 0.3</size></box></geometry></collision>"
-    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
-    text = re.sub(r"</link>(\s*<joint)", rf"{box}</link>\1", text)
-    refused(tmp_path, text, "must lie within the belt round the end drums", "tank.sdf")
 
 
 @pytest.mark.parametrize(

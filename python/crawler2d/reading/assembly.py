@@ -11,7 +11,7 @@ from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
-from crawler2d.reading.axles import end_axles, outline_of
+from crawler2d.reading.axles import bent_round, frame_of, outline_of
 from crawler2d.reading.belly import belly_of
 from crawler2d.reading.drive import drivetrain_of
 from crawler2d.reading.flippers import arms_at, flippers_of
@@ -74,10 +74,8 @@ class Assembly:
         is_belt = bool(pairs) and pairs[0].left[0].joint is None
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
-        rear, front = end_axles(self.told, gear, pairs, arms, is_belt=is_belt)
-        base = Base(np.array(rear[:2]), np.array(front[:2]))
-        if base.length <= tolerance:
-            raise ScenarioError(str(at), base.length, "must have two wheels or drums on each side")
+        bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
+        base, rear = frame_of(self.told, bent, tolerance)
         by_end = arms_at(self.told, arms, base, tolerance)
         track: Track = BeltTrack() if is_belt else LineOfWheels(2, as_track=False)
         if pairs and not is_belt:
@@ -91,11 +89,11 @@ class Assembly:
         of_links = lines([link.at for link in tree.links], f"sum{angle}")
         self.told.note("robot.center_of_mass", of_links)
         self.told.note("robot.moment_of_inertia", of_links)
-        outline = outline_of(self.told, base, rear[2], front[2])
+        outline = outline_of(self.told, base, bent)
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
-        torque = _holding_torque(total.mass, rear[2])
+        torque = _holding_torque(total.mass, rear.radius)
         drivetrain = drivetrain_of(
-            tree, driven, track, radius=rear[2], torque=torque, note=self.told.note
+            tree, driven, track, radius=rear.radius, torque=torque, note=self.told.note
         )
         flippers = flippers_of(self.told, by_end, total.mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):

@@ -19,25 +19,32 @@ FIT = 1e-5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Base:
-    """The chassis frame in the side view: midway between the end axles, x through both.
+    """The chassis frame in the side view: midway between the end axles.
 
     Parameters
     ----------
     rear, front : ndarray, shape (2,)
         [m] The end axles in the side view.
+    is_level : bool
+        Whether x is forward as in the model, instead of through both end axles.
     """
 
     rear: Array
     front: Array
+    is_level: bool = False
 
     @property
     def length(self) -> float:
-        """[m] Distance of the end axles."""
+        """[m] Distance of the end axles along x."""
+        if self.is_level:
+            return float(self.front[0] - self.rear[0])
         return math.hypot(*(self.front - self.rear))
 
     def of(self, points: Array) -> Array:
         """[m] Return points of the side view, shape (n, 2), in the chassis frame."""
         ahead = (self.front - self.rear) / self.length
+        if self.is_level:
+            ahead = np.array([1.0, 0.0])
         up = np.array([-ahead[1], ahead[0]])
         turned: Array = (np.asarray(points) - 0.5 * (self.front + self.rear)) @ np.stack(
             [ahead, up], 1
