@@ -54,6 +54,37 @@ def drawn_on_discs(number: int) -> c2d.Robot:
     return _with_flippers(rng, robot, wheels_only=False) if rng.random() < 0.5 else robot
 
 
+def drawn_on_gears(number: int, *, is_tapered: bool) -> c2d.Robot:
+    """Make a random robot on gear wheels, flippers too; grousers taper, or have parallel flanks."""
+    rng = np.random.default_rng([25, number])
+    robot = drawn(number, wheels_only=True)
+    robot = robot.with_track(_on_gears(rng, robot.track, robot.wheels()["radius"], is_tapered))
+    arms = robot.flippers
+    if arms is None:
+        return robot
+    radii = np.linspace(arms.tip_radius, arms.root_radius, 2)
+    assert arms.track is not None
+    return dataclasses.replace(
+        robot,
+        flippers=dataclasses.replace(arms, track=_on_gears(rng, arms.track, radii, is_tapered)),
+    )
+
+
+def _on_gears(rng: Generator, track: Any, radii: Any, is_tapered: bool) -> Any:
+    """Wheels with grousers that suit the smallest of them."""
+    smallest, count = float(radii.min()), int(rng.integers(3, 13))
+    height = smallest * float(rng.uniform(0.05, 0.4))
+    tip = smallest * float(rng.uniform(0.02, 0.9)) / count
+    wheel = c2d.GearWheel(
+        grouser_count=count,
+        grouser_height=height,
+        tip_thickness=tip,
+        base_thickness=tip * float(rng.uniform(1.05, 1.6)) if is_tapered else None,
+        phase_fraction=float(rng.choice([0.0, 1.0 / 3.0, 0.5, rng.random()])),
+    )
+    return dataclasses.replace(track, wheel=wheel)
+
+
 def _outline(rng: Generator, robot: c2d.Robot) -> c2d.TrackOutline:
     """Discs that all bend the belt, in any order; ends may be raised."""
     length, radius = robot.outline.axle_distance, robot.outline.rear_radius

@@ -76,7 +76,9 @@ def tolerance_of(belly: np.ndarray, name: str) -> float:
     return 1e-5 + (1e-3 / math.tan(sharpest) if sharpest < 0.5 * math.pi - 1e-6 else 0.0)
 
 
-def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[str]:
+def differences(
+    robot: c2d.Robot, reading: c2d.Reading, name: str, accuracy: float = 1e-9
+) -> Iterator[str]:
     """What the file states, and was not read as it was written."""
     again, (middle, axes) = reading.robot, frame_of(reading)
     force = robot.drivetrain.max_torque / (robot.outline.rear_radius - robot.outline.grouser_height)
@@ -100,9 +102,9 @@ def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[s
         for field in ("length", "mass", "angle", "rate_limit", "torque_limit", "ends"):
             pairs[field] = (getattr(again.flippers, field), getattr(robot.flippers, field))
     for field, (got, expected) in pairs.items():
-        if got != expected and not np.allclose(got, expected, rtol=1e-9, atol=1e-9):  # type: ignore[arg-type]
+        if got != expected and not np.allclose(got, expected, rtol=accuracy, atol=accuracy):  # type: ignore[arg-type]
             yield f"{field}: {got} for {expected}"
-    yield from _other_discs(robot, reading)
+    yield from _other_discs(robot, reading, accuracy)
     if (again.belly is None) != (robot.belly is None):
         yield "belly"
     elif robot.belly is not None and again.belly is not None:
@@ -113,14 +115,14 @@ def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[s
             yield f"belly: {short.min()} to {short.max()} m short"
 
 
-def _other_discs(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
+def _other_discs(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
     wheels = reading.wheels
     for carrier, expected in discs_of(robot).items():
         for side in ("left", "right"):
             own = (wheels["carrier"] == carrier) & (wheels["side"] == side)
             rows = zip(*(wheels[n][own].tolist() for n in ("x", "y", "radius")), strict=True)
             found = sorted(rows)
-            if len(found) != len(expected) or not np.allclose(found, expected, atol=1e-9):
+            if len(found) != len(expected) or not np.allclose(found, expected, atol=accuracy):
                 yield f"{side} {carrier}: {found} for {expected}"
 
 

@@ -16,9 +16,9 @@ from crawler2d.reading.belly import belly_of
 from crawler2d.reading.drive import drivetrain_of
 from crawler2d.reading.flippers import arms_at, flippers_of
 from crawler2d.reading.friction import combined
-from crawler2d.reading.gear import gear_of
 from crawler2d.reading.masses import circulating, summed
-from crawler2d.reading.parts import Gear, Runner
+from crawler2d.reading.parts import Runner, RunningGear
+from crawler2d.reading.running_gear import running_gear_of
 from crawler2d.reading.sides import Pair, middle_of, paired
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
@@ -66,7 +66,7 @@ class Assembly:
         tree, at, tolerance = self.tree, self.tree.at, self.tolerance
         self.view = view = side_view(tree, forward)
         self.told.notes.append(f"{view.reason}: {_named(view.forward)} is forward")
-        gear = gear_of(tree, view)
+        gear = running_gear_of(tree, view)
         runners = gear.runners + [r for arm in gear.arms for r in arm.runners]
         self.middle = middle = middle_of(gear.runners or runners)
         pairs = paired(gear.runners, middle=middle, tolerance=tolerance, at=at)
@@ -76,10 +76,10 @@ class Assembly:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
         bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
         base, rear = frame_of(self.told, bent, tolerance)
-        by_end = arms_at(self.told, arms, base, tolerance)
+        by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
         track: Track = BeltTrack() if is_belt else LineOfWheels(2, as_track=False)
         if pairs and not is_belt:
-            track = wheels_of(pairs, base)
+            track = wheels_of(self.told, pairs, base, view)
         total = summed(tree, view, base, [(by_end[end], _SIGN[end]) for end in by_end])
         if not total.mass > 0.0:
             raise ScenarioError(str(at), total.mass, "must have links with a mass > 0 kg")
@@ -132,7 +132,7 @@ class Assembly:
         return moving
 
     def belly(
-        self, gear: Gear, base: Base, driven: list[Pair]
+        self, gear: RunningGear, base: Base, driven: list[Pair]
     ) -> tuple[tuple[float, float], ...] | None:
         """Return the belly; doubt one that touches level ground, tell what it leaves out."""
         corners = belly_of(gear.shapes, self.view, base)

@@ -8,7 +8,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import TrackOutline
 from crawler2d.reading.arms import ArmPair
 from crawler2d.reading.belts import belt_round, ends_among
-from crawler2d.reading.parts import Gear
+from crawler2d.reading.parts import RunningGear
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
@@ -20,7 +20,7 @@ _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorte
 
 
 def bent_round(
-    told: Telling, gear: Gear, pairs: list[Pair], arms: list[ArmPair], *, is_belt: bool
+    told: Telling, gear: RunningGear, pairs: list[Pair], arms: list[ArmPair], *, is_belt: bool
 ) -> list[Pair]:
     """Return what the outline is the hull of, from the rear to the front; note its lines.
 
@@ -56,8 +56,8 @@ def bent_round(
         for name, pair in zip(("rear_radius", "front_radius"), bent, strict=True):
             told.note(f"robot.outline.{name}", lines([r.shape.size_at for r in pair.both]))
     if pairs:
-        of_all = [runner.shape.size_at for pair in pairs for runner in pair.both]
-        told.note("robot.track", lines(of_all, "radii"))
+        of_all = [s.size_at for pair in pairs for runner in pair.both for s in runner.surfaces]
+        told.note("robot.track", lines(of_all, "sizes"))
     return bent
 
 
