@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -300,3 +301,45 @@ def test_a_body_with_two_joints_is_refused(tmp_path: Path) -> None:
 def test_a_robot_without_mass_is_refused(tmp_path: Path) -> None:
     text = re.sub(r'<mass value="[^"]*"', '<mass value="0"', urdf(WHEELS))
     refused(tmp_path, text, "must have links with a mass > 0 kg")
+
+
+XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "rule"),
+    [
+        ("\n<xacro:wheel/>", 2, "unknown macro name: xacro:wheel"),
+        ('\n\n<link name="a${mass + 1}"/>', 3, "must be xacro that expands"),
+        ('\n<link name="$(find parts)"/>', 2, r"packages={name: folder} says .* got parts"),
+    ],
+)
+def test_xacro_that_does_not_expand_is_refused_with_its_line(
+    tmp_path: Path, text: str, line: int, rule: str
+) -> None:
+    pytest.importorskip("xacrodoc")
+    refused(tmp_path, f"{XACRO}{text}</robot>", rule, "cart.xacro", trusted=True)
+    with pytest.raises(c2d.ScenarioError, match=rf"^cart\.xacro:{line} "):
+        read(tmp_path, f"{XACRO}{text}</robot>", "cart.xacro", trusted=True)
+
+
+def test_xacro_whose_include_was_left_out_says_what_may_help(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    text = f'{XACRO}<xacro:include filename="$(find parts)/w.xacro"/><xacro:wheel/></robot>'
+    refused(tmp_path, text, 'missing="leave_out" leaves out includes', "cart.xacro", trusted=True)
+    how: Any = {"trusted": True, "missing": "leave_out"}
+    refused(tmp_path, text, "may need an include that was left out", "cart.xacro", **how)
+
+
+def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    text = f'{XACRO}<xacro:macro name="wheel" params=""><link name="w"/></xacro:macro></robot>'
+    with pytest.raises(c2d.ScenarioError, match="is read through the file that calls them"):
+        read(tmp_path, text, "cart.xacro", trusted=True)
+
+
+def test_joints_of_missing_links_are_left_out_on_request_only(tmp_path: Path) -> None:
+    mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
+    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves such joints out')
+    reading = read(tmp_path, urdf(WHEELS, mount), missing="leave_out")
+    assert "mount" in reading.doubts[0]

@@ -125,7 +125,8 @@ def _partner(arm: Arm, others: list[Arm], tolerance: float) -> Arm:
             return other
     path = f"{arm.joint.at}: joint[{arm.joint.name}]"
     value = f"a pivot at x = {arm.pivot[0]:.4g} m, y = {arm.pivot[1]:.4g} m"
-    rule = f"must have a partner on the other side, within {1e3 * tolerance:g} mm"
+    within = f"within {1e3 * tolerance:g} mm: tolerance= may say more"
+    rule = f"must have a partner on the other side, {within}"
     raise ScenarioError(path, value, rule)
 
 

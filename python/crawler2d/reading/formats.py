@@ -55,9 +55,9 @@ def tree_of(
     name = path.name
     missing: list[tuple[str, str]] = []
     if path.suffix == ".xacro":
-        parsed(data, name)  # entities are refused before anything else reads the file
         data, includes = expanded(
             path,
+            parsed(data, name),  # entities are refused before anything else reads the file
             trusted=trusted,
             packages=packages,
             arguments=arguments,
