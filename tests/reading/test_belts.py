@@ -1,6 +1,7 @@
 """A moved belt is that round its drums: those that bend it are the outline, others nothing."""
 
 import math
+import time
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,16 @@ def test_a_track_that_bends_round_more_drums_than_an_outline_has_is_refused(
     turns = np.linspace(0.0, 2.0 * math.pi, 71)[:-1]
     drums = [(0.4 * math.cos(turn), 0.4 * math.sin(turn), 0.01) for turn in turns]
     refused(tmp_path, tracked(drums), "must be a track that bends round at most 64", "tank.sdf")
+
+
+def test_a_track_of_200_drums_and_a_thousand_boxes_is_no_hang(tmp_path: Path) -> None:
+    turns = np.linspace(0.0, 2.0 * math.pi, 65)[:-1]
+    drums = [(0.4 * math.cos(turn), 0.4 * math.sin(turn), 0.01) for turn in turns]
+    drums += [(x, 0.0, 0.01) for x in np.linspace(-0.3, 0.3, 130).tolist()]
+    start = time.process_time()
+    found = outline(tmp_path, *drums, boxes=box(0.0, 0.0, 0.1, 0.1) * 1300)
+    assert time.process_time() - start < 2.0
+    assert len(found.discs) == 64
 
 
 def test_a_track_of_one_drum_is_refused(tmp_path: Path) -> None:

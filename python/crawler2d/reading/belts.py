@@ -13,19 +13,16 @@ from crawler2d.models.where import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.tracks import FIT
 
-__all__ = ["belt_ends", "belt_round", "discs_of", "ends_among"]
+__all__ = ["belt_ends", "belt_round", "ends_among"]
 
 _BEYOND = 0.02
 """[-] How far boxes may reach out of the belt, as a share of the larger radius: what is drawn as
 boxes between drums only nears their tangents. Those of Gazebo's example do so by 1.2 %."""
 
 _MOST = 64  # discs that an outline can have
+_AT_ONCE = 10_000  # corners of a mesh that are looked at together, in some tens of MB
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
-
-
-def discs_of(drums: list[Pair]) -> Array:
-    """[m] Return centres and radii, shape (n, 3)."""
-    return np.array([[drum.x, drum.y, drum.radius] for drum in drums])
+_NORMALS = np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
 
 
 def ends_among(drums: list[Pair]) -> tuple[Pair, Pair]:
@@ -55,11 +52,11 @@ def belt_round(drums: list[Pair], bars: list[Array], *, at: Where) -> list[Pair]
     ScenarioError
         If there is one drum only, too many bend the belt, or a bar reaches out of it.
     """
-    discs = discs_of(drums)
+    discs = _discs(drums)
     first = _ends(discs, np.array([1.0, 0.0]), at)
     bent = list(first)
     while True:
-        out = _beyond(discs[bent], discs)
+        out = _Hull(discs[bent]).beyond(discs)
         if out.max() <= FIT:
             break
         bent.append(int(out.argmax()))
@@ -70,7 +67,7 @@ def belt_round(drums: list[Pair], bars: list[Array], *, at: Where) -> list[Pair]
     # Of several drums on one run, the first that was found may lie between two later ones.
     for each in list(bent):
         others = [other for other in bent if other != each]
-        if len(others) > 1 and _beyond(discs[others], discs[[each]]).max() <= FIT:
+        if len(others) > 1 and _Hull(discs[others]).beyond(discs[[each]]).max() <= FIT:
             bent = others
     _refuse_bars(bars, discs[bent], at)
     return [drums[each] for each in sorted(bent)]
@@ -97,9 +94,9 @@ def belt_ends(
     ScenarioError
         If there is one drum only, or something reaches out.
     """
-    discs = discs_of(drums)
+    discs = _discs(drums)
     ends = list(_ends(discs, along, at))
-    out = _beyond(discs[ends], discs)
+    out = _Hull(discs[ends]).beyond(discs)
     tolerance = _BEYOND * float(discs[ends, 2].max())
     beyond = np.flatnonzero(out > tolerance)
     if beyond.size:
@@ -114,6 +111,11 @@ def belt_ends(
     return drums[rear], drums[front]
 
 
+def _discs(drums: list[Pair]) -> Array:
+    """[m] Return centres and radii, shape (n, 3)."""
+    return np.array([[drum.x, drum.y, drum.radius] for drum in drums])
+
+
 def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
     """Return which discs reach farthest back and forwards."""
     places = discs[:, :2] @ along
@@ -125,29 +127,40 @@ def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
 
 def _refuse_bars(bars: list[Array], discs: Array, at: Where) -> None:
     """Refuse what is moved and reaches out of the belt."""
-    tolerance = _BEYOND * float(discs[:, 2].max())
+    tolerance, hull = _BEYOND * float(discs[:, 2].max()), _Hull(discs)
     for corners in bars:
         points = np.column_stack([corners[:, :2], np.zeros(len(corners))])
-        beyond = float(_beyond(discs, points).max())
+        beyond = float(hull.beyond(points).max())
         if beyond > tolerance:
             rule = f"must lie within the belt round the drums, within {1e3 * tolerance:g} mm"
             raise ScenarioError(str(at), f"a moved shape {1e3 * beyond:.3g} mm beyond it", rule)
 
 
-def _beyond(belt: Array, discs: Array) -> Array:
-    """[m] Return how far each disc reaches out of the belt round others; < 0 where it does not.
+class _Hull:
+    """How far a belt round discs reaches in every direction that matters.
 
-    A disc reaches farthest out of a straight run at right angles to that, and out of an arc in any
-    direction, where the nearest one that is looked at is near enough.
+    What reaches out of a straight run does so farthest at right angles to that, and what reaches
+    out of an arc nearly as far in the nearest of many directions.
     """
-    away = belt[None, :, :2] - belt[:, None, :2]
-    narrower = belt[:, None, 2] - belt[None, :, 2]
-    distance = np.hypot(away[..., 0], away[..., 1])
-    rows, columns = np.nonzero(distance > np.abs(narrower))
-    turned = np.arctan2(away[rows, columns, 1], away[rows, columns, 0])
-    across = turned - np.arccos(narrower[rows, columns] / distance[rows, columns])
-    angles = np.concatenate([_DIRECTIONS, across])
-    normals = np.stack([np.cos(angles), np.sin(angles)])
-    reach = (belt[:, :2] @ normals + belt[:, 2:]).max(axis=0)
-    beyond: Array = (discs[:, :2] @ normals + discs[:, 2:] - reach).max(axis=1)
-    return beyond
+
+    def __init__(self, belt: Array) -> None:
+        away = belt[None, :, :2] - belt[:, None, :2]
+        narrower = belt[:, None, 2] - belt[None, :, 2]
+        distance = np.hypot(away[..., 0], away[..., 1])
+        rows, columns = np.nonzero(distance > np.abs(narrower))
+        along = np.arctan2(away[rows, columns, 1], away[rows, columns, 0])
+        across = along - np.arccos(narrower[rows, columns] / distance[rows, columns])
+        normals = np.stack([np.cos(across), np.sin(across)])
+        reach = belt[:, :2] @ normals + belt[:, 2:]
+        # Of the tangents of any two discs, those that no other disc crosses are runs.
+        is_run = reach.max(axis=0) <= reach[rows, np.arange(len(rows))] + FIT
+        self.normals = np.concatenate([_NORMALS, normals[:, is_run]], axis=1)
+        self.reach = (belt[:, :2] @ self.normals + belt[:, 2:]).max(axis=0)
+
+    def beyond(self, discs: Array) -> Array:
+        """[m] Return how far each disc reaches out of the belt; < 0 where it does not."""
+        parts = np.array_split(discs, 1 + len(discs) // _AT_ONCE)
+        out = [
+            (part[:, :2] @ self.normals + part[:, 2:] - self.reach).max(axis=1) for part in parts
+        ]
+        return np.concatenate(out)

@@ -20,6 +20,7 @@ _SHARP = 1e-5
 """[-] Corners nearer than this share of the distance from the axle are one: those of a prism on its
 two sides, which MuJoCo keeps as float32."""
 
+_MOST_CORNERS = 64  # A prism has eight; the mesh of one may name each for every facet.
 _COUNT = range(3, 201)  # grousers that a gear wheel can have
 
 
@@ -136,7 +137,7 @@ def _section(shape: Shape, joint: Joint, plane: Array) -> Array | None:
         points = [shape.pose.place + i * half[0] + j * half[1] for i in (-1, 1) for j in (-1, 1)]
         corners: Array = (np.array(points) - joint.place) @ plane
         return corners
-    if shape.kind != "hull":
+    if shape.kind != "hull" or len(shape.points) > _MOST_CORNERS:
         return None
     flat = (shape.points - joint.place) @ plane
     near = _SHARP * float(np.abs(flat).max(initial=0.0))
