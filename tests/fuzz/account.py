@@ -31,6 +31,7 @@ class Account:
         self.reasons: Counter[str] = Counter()
         self.slowest = (0.0, "")
         self.latest = 0.0  # [s] answer to an interrupt
+        self.megabytes = 0.0  # memory, where it is measured
 
     def fault(self, kind: str, example: str) -> None:
         self.faults[kind] += 1
@@ -45,6 +46,8 @@ class Account:
         counts = ", ".join(f"{count} {kind}" for kind, count in self.counts.most_common())
         seconds, case = self.slowest
         lines = [f"{self.name}, seed {SEED}: {counts}; slowest {seconds:.2f} s ({case})"]
+        if self.megabytes:
+            lines[0] += f"; {self.megabytes:.0f} MB"
         lines += [f"{count} x {reason}" for reason, count in self.reasons.most_common()]
         for kind, count in self.faults.most_common():
             lines += [f"FAULT {count} x {kind}", *(f"    {e}" for e in self.examples[kind])]

@@ -1,28 +1,62 @@
-"""Model files with faults: the shipped ones, with bytes, numbers, tags and lines changed."""
+"""Model files with faults: shipped and written ones, with bytes, numbers, tags, lines changed."""
 
 from __future__ import annotations
 
+import dataclasses
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import crawler2d as c2d
+from crawler2d.common.ends import Disc
+from crawler2d.parameters.track import Track
 from tests.robots.robot_files import FOLDER
 
 CARTS = Path(__file__).parent.parent / "reading" / "files"
 
+
+def _written(track: Track, form: str, discs: Sequence[Disc] | None = None) -> bytes:
+    """A robot as a model file, without the comment in it, which nobody reads."""
+    robot = c2d.robots.engineer(track=track)
+    if discs is not None:
+        outline = c2d.TrackOutline(
+            discs=discs, grouser_height=0.0, grouser_pitch=0.05, grouser_thickness=0.0
+        )
+        robot = dataclasses.replace(robot, outline=outline)
+    text: str = getattr(robot, f"to_{form}")()
+    return re.sub("<!--.*?-->", "", text, flags=re.DOTALL).encode()
+
+
+GEARS = c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=6))
+TAPERED = c2d.LineOfWheels(2, wheel=c2d.GearWheel(grouser_count=5, base_thickness=0.012))
+TRIANGLE = ((-0.18, 0.0, 0.064), (0.18, 0.0, 0.064), (0.25, 0.1, 0.05))
+
 ORIGINALS: dict[str, bytes] = {
-    path.name: path.read_bytes()
-    for path in (
-        FOLDER / "absolem.sdf",
-        FOLDER / "marv.sdf",
-        FOLDER / "tracked_vehicle_simple.sdf",
-        FOLDER / "eng.urdf",
-        CARTS / "cart.sdf",
-        CARTS / "cart.urdf",
-    )
+    **{
+        path.name: path.read_bytes()
+        for path in (
+            FOLDER / "absolem.sdf",
+            FOLDER / "marv.sdf",
+            FOLDER / "tracked_vehicle_simple.sdf",
+            FOLDER / "eng.urdf",
+            CARTS / "cart.sdf",
+            CARTS / "cart.urdf",
+        )
+    },
+    "belt.sdf": _written(c2d.BeltTrack(), "sdf", TRIANGLE),
+    "gears.sdf": _written(GEARS, "sdf"),
+    "gears.urdf": _written(GEARS, "urdf"),
 }
 """By name; of the small ones, a fault hits what matters more often."""
+
+MJCF = {
+    "cart.xml": (CARTS / "cart.xml").read_bytes(),
+    "belt.xml": _written(c2d.BeltTrack(), "mjcf", TRIANGLE),
+    "gears.xml": _written(GEARS, "mjcf"),
+    "tapered.xml": _written(TAPERED, "mjcf"),
+}
+XACRO = {path.name: path.read_bytes() for path in (FOLDER / "eng.xacro", CARTS / "cart.xacro")}
 
 NUMBERS = (
     *b"nan inf -inf 1e999 -1 0 -0.0 1e-320 1e300 999999 0x10 1_0 1,5 -1e6 3.1415".split(),

@@ -1,10 +1,14 @@
-"""Robots written for one test each, as URDF and SDF text, and how they are read."""
+"""Robots written for one test each, as URDF and SDF text, and how they are read or refused."""
 
 from __future__ import annotations
 
+import re
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 import crawler2d as c2d
 
@@ -84,3 +88,33 @@ def quietly(path: Path, **how: Any) -> c2d.Reading:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", c2d.ScenarioWarning)
         return c2d.read_robot(path, **how)
+
+
+TRACKED = """<sdf version="1.7"><model name="tank">
+<link name="hull"><inertial><mass>20</mass></inertial></link>{links}{plugins}</model></sdf>"""
+
+
+def tracked(drums: Iterable[tuple[float, float, float]], boxes: str = "") -> str:
+    """A vehicle with drums of x, z and radius, and boxes, that Gazebo's controllers move."""
+    shapes = "".join(
+        f"""<collision name="d{n}"><pose>{x} 0 {z} 1.5707963267948966 0 0</pose><geometry><cylinder>
+        <radius>{r}</radius><length>0.1</length></cylinder></geometry></collision>"""
+        for n, (x, z, r) in enumerate(drums)
+    )
+    links = "".join(
+        f"""<link name="{side}"><pose>0 {0.3 * sign} 0 0 0 0</pose>{shapes}{boxes}</link>
+        <joint name="{side}j" type="fixed"><parent>hull</parent><child>{side}</child></joint>"""
+        for side, sign in SIDES
+    )
+    plugins = "".join(
+        f'<plugin name="TrackController" filename="x"><link>{side}</link></plugin>'
+        for side, _ in SIDES
+    )
+    return TRACKED.format(links=links, plugins=plugins)
+
+
+def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
+    """Read a text that must be refused, by a rule and with file and line."""
+    with pytest.raises(c2d.ScenarioError, match=rule) as caught:
+        read(folder, text, name, **how)
+    assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path

@@ -30,6 +30,13 @@ def test_one_robot_as_sdf_and_urdf_is_the_same_scenario() -> None:
     assert other.friction == SDF.friction == 0.75
 
 
+def test_one_robot_as_xacro_is_the_same_scenario() -> None:
+    pytest.importorskip("xacrodoc")
+    other = quietly(FILES / "cart.xacro", trusted=True)
+    assert other.robot == SDF.robot
+    assert other.friction == SDF.friction
+
+
 def test_one_robot_as_mjcf_is_the_same_scenario() -> None:
     pytest.importorskip("mujoco")
     other = quietly(FILES / "cart.xml", engine="gz")

@@ -7,15 +7,20 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import SIDES, WHEELS, collision, link, pair, read, urdf, wheel
+from tests.reading.carts import (
+    SIDES,
+    WHEELS,
+    collision,
+    link,
+    pair,
+    read,
+    refused,
+    tracked,
+    urdf,
+    wheel,
+)
 
 LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
-
-
-def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: Any) -> None:
-    with pytest.raises(c2d.ScenarioError, match=rule) as caught:
-        read(folder, text, name, **how)
-    assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
 
 
 def on_links(kind: str) -> str:
@@ -181,41 +186,6 @@ def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: 
     refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within a wheel of its flipper")
 
 
-TRACKED = """<sdf version="1.7"><model name="tank">
-<link name="hull"><inertial><mass>20</mass></inertial></link>{links}{plugins}</model></sdf>"""
-
-
-def tracked(drums: tuple[tuple[float, float, float], ...]) -> str:
-    """A vehicle with drums of x, z and radius that Gazebo's controllers move."""
-    shapes = "".join(
-        f"""<collision name="d{n}"><pose>{x} 0 {z} 1.5707963267948966 0 0</pose><geometry><cylinder>
-        <radius>{r}</radius><length>0.1</length></cylinder></geometry></collision>"""
-        for n, (x, z, r) in enumerate(drums)
-    )
-    links = "".join(
-        f"""<link name="{side}"><pose>0 {0.3 * sign} 0 0 0 0</pose>{shapes}</link>
-        <joint name="{side}j" type="fixed"><parent>hull</parent><child>{side}</child></joint>"""
-        for side, sign in SIDES
-    )
-    plugins = "".join(
-        f'<plugin name="TrackController" filename="x"><link>{side}</link></plugin>'
-        for side, _ in SIDES
-    )
-    return TRACKED.format(links=links, plugins=plugins)
-
-
-def test_drums_between_the_end_drums_are_within_the_belt(tmp_path: Path) -> None:
-    text = tracked(((-0.4, 0.0, 0.1), (0.0, 0.0, 0.1), (0.4, 0.0, 0.1)))
-    robot = read(tmp_path, text, "tank.sdf").robot
-    assert robot.track == c2d.BeltTrack()
-    assert robot.outline.axle_distance == 0.8
-
-
-def test_a_trapezoid_of_drums_is_refused_for_now(tmp_path: Path) -> None:
-    text = tracked(((-0.5, 0.1, 0.1), (-0.3, 0.0, 0.1), (0.3, 0.0, 0.1), (0.5, 0.1, 0.1)))
-    refused(tmp_path, text, "tracks round more are not read", "tank.sdf")
-
-
 def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:
     skid = collision('<box size="0.1 0.1 0.16"/>')
     assert "rubs on level ground" in read(tmp_path, urdf(WHEELS, shapes=skid)).doubts[0]
@@ -297,17 +267,6 @@ def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
     refused(tmp_path, text, "must have one kind on the chassis", tracks=["left_belt", "right_belt"])
 
 
-def test_a_track_of_one_drum_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, tracked(((0.0, 0.0, 0.1),)), "must have a drum at either end", "tank.sdf")
-
-
-def test_a_moved_box_beyond_the_belt_is_refused(tmp_path: Path) -> None:
-    box = "<collision name='b'><geometry><box><size>0.3 0.1 0.3</size></box></geometry></collision>"
-    text = tracked(((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1)))
-    text = re.sub(r"</link>(\s*<joint)", rf"{box}</link>\1", text)
-    refused(tmp_path, text, "must lie within the belt round the end drums", "tank.sdf")
-
-
 @pytest.mark.parametrize(
     ("part", "rule"),
     [
@@ -342,3 +301,45 @@ def test_a_body_with_two_joints_is_refused(tmp_path: Path) -> None:
 def test_a_robot_without_mass_is_refused(tmp_path: Path) -> None:
     text = re.sub(r'<mass value="[^"]*"', '<mass value="0"', urdf(WHEELS))
     refused(tmp_path, text, "must have links with a mass > 0 kg")
+
+
+XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "rule"),
+    [
+        ("\n<xacro:wheel/>", 2, "unknown macro name: xacro:wheel"),
+        ('\n\n<link name="a${mass + 1}"/>', 3, "must be xacro that expands"),
+        ('\n<link name="$(find parts)"/>', 2, r"packages={name: folder} says .* got parts"),
+    ],
+)
+def test_xacro_that_does_not_expand_is_refused_with_its_line(
+    tmp_path: Path, text: str, line: int, rule: str
+) -> None:
+    pytest.importorskip("xacrodoc")
+    refused(tmp_path, f"{XACRO}{text}</robot>", rule, "cart.xacro", trusted=True)
+    with pytest.raises(c2d.ScenarioError, match=rf"^cart\.xacro:{line} "):
+        read(tmp_path, f"{XACRO}{text}</robot>", "cart.xacro", trusted=True)
+
+
+def test_xacro_whose_include_was_left_out_says_what_may_help(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    text = f'{XACRO}<xacro:include filename="$(find parts)/w.xacro"/><xacro:wheel/></robot>'
+    refused(tmp_path, text, 'missing="leave_out" leaves out includes', "cart.xacro", trusted=True)
+    how: Any = {"trusted": True, "missing": "leave_out"}
+    refused(tmp_path, text, "may need an include that was left out", "cart.xacro", **how)
+
+
+def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    text = f'{XACRO}<xacro:macro name="wheel" params=""><link name="w"/></xacro:macro></robot>'
+    with pytest.raises(c2d.ScenarioError, match="is read through the file that calls them"):
+        read(tmp_path, text, "cart.xacro", trusted=True)
+
+
+def test_joints_of_missing_links_are_left_out_on_request_only(tmp_path: Path) -> None:
+    mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
+    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves such joints out')
+    reading = read(tmp_path, urdf(WHEELS, mount), missing="leave_out")
+    assert "mount" in reading.doubts[0]

@@ -44,6 +44,70 @@ def drawn(number: int, *, wheels_only: bool = False) -> c2d.Robot:
     return robot
 
 
+def drawn_on_discs(number: int) -> c2d.Robot:
+    """Make a random robot on a belt round three to five discs: ends, idlers above, wheels below."""
+    rng = np.random.default_rng([24, number])
+    robot = drawn(number).without_flippers()
+    track = c2d.ClosedTrack(c2d.BeltTrack()) if number % 2 else c2d.BeltTrack()
+    robot = robot.with_track(track)
+    robot = dataclasses.replace(robot, outline=_outline(rng, robot))
+    return _with_flippers(rng, robot, wheels_only=False) if rng.random() < 0.5 else robot
+
+
+def drawn_on_gears(number: int, *, is_tapered: bool) -> c2d.Robot:
+    """Make a random robot on gear wheels, flippers too; grousers taper, or have parallel flanks."""
+    rng = np.random.default_rng([25, number])
+    robot = drawn(number, wheels_only=True)
+    robot = robot.with_track(_on_gears(rng, robot.track, robot.wheels()["radius"], is_tapered))
+    arms = robot.flippers
+    if arms is None:
+        return robot
+    radii = np.linspace(arms.tip_radius, arms.root_radius, 2)
+    assert arms.track is not None
+    return dataclasses.replace(
+        robot,
+        flippers=dataclasses.replace(arms, track=_on_gears(rng, arms.track, radii, is_tapered)),
+    )
+
+
+def _on_gears(rng: Generator, track: Any, radii: Any, is_tapered: bool) -> Any:
+    """Wheels with grousers that suit the smallest of them."""
+    smallest, count = float(radii.min()), int(rng.integers(3, 13))
+    height = smallest * float(rng.uniform(0.05, 0.4))
+    tip = smallest * float(rng.uniform(0.02, 0.9)) / count
+    wheel = c2d.GearWheel(
+        grouser_count=count,
+        grouser_height=height,
+        tip_thickness=tip,
+        base_thickness=tip * float(rng.uniform(1.05, 1.6)) if is_tapered else None,
+        phase_fraction=float(rng.choice([0.0, 1.0 / 3.0, 0.5, rng.random()])),
+    )
+    return dataclasses.replace(track, wheel=wheel)
+
+
+def _outline(rng: Generator, robot: c2d.Robot) -> c2d.TrackOutline:
+    """Discs that all bend the belt, in any order; ends may be raised."""
+    length, radius = robot.outline.axle_distance, robot.outline.rear_radius
+    while True:
+        count = int(rng.integers(3, 6))
+        x = length * np.array([-0.5, 0.5, *rng.uniform(-0.45, 0.45, count - 2)])
+        y = radius * np.array([*rng.uniform(-0.2, 1.0, 2), *rng.uniform(-2.0, 2.0, count - 2)])
+        discs = np.column_stack([x, y, radius * rng.uniform(0.4, 1.0, count)])
+        outline = c2d.TrackOutline(
+            discs=rng.permutation(discs),
+            grouser_height=0.0,
+            grouser_pitch=0.2 * radius,
+            grouser_thickness=0.0,
+        )
+        try:
+            dataclasses.replace(robot, outline=outline).wheels()
+        except c2d.ScenarioError as error:
+            if "discs" not in error.path:  # one that bends nothing is drawn again
+                raise
+        else:
+            return outline
+
+
 def _belly(rng: Generator, length: float, radius: float) -> Any:
     """A rectangle, a trapezoid, a polygon with any corners, or none."""
     kind = rng.integers(4)

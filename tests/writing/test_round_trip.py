@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.common.ends import ends_of
 from tests.reading.carts import quietly
-from tests.writing.drawn import drawn
+from tests.writing.drawn import drawn, drawn_on_discs
 
 SUFFIX = {"sdf": "sdf", "urdf": "urdf", "mjcf": "xml"}
 DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
@@ -26,10 +27,14 @@ def read_again(robot: c2d.Robot, name: str, folder: Path) -> c2d.Reading:
 def frame_of(reading: c2d.Reading) -> tuple[np.ndarray, np.ndarray]:
     """Middle and axes of the chassis frame of what was read, in the frame of the model.
 
-    The end axles of a reading are those of its rearmost and foremost wheels.
+    The end axles of a reading are those of its rearmost and foremost wheels; round more than two
+    drums, x is that of the model.
     """
     own = (reading.wheels["carrier"] == "chassis") & (reading.wheels["side"] == "left")
     rows = sorted(zip(*(reading.wheels[n][own] for n in ("x", "y", "radius")), strict=True))
+    if len(reading.robot.outline.discs) > 2:
+        rear, front = (np.array(end[:2]) for end in ends_of(rows))
+        return 0.5 * (rear + front), np.eye(2)
     rear, front = np.array(rows[0][:2]), np.array(rows[-1][:2])
     ahead = (front - rear) / np.hypot(*(front - rear))
     return 0.5 * (rear + front), np.array([ahead, [-ahead[1], ahead[0]]])
@@ -37,7 +42,7 @@ def frame_of(reading: c2d.Reading) -> tuple[np.ndarray, np.ndarray]:
 
 def discs_of(robot: c2d.Robot) -> dict[str, list[tuple[float, ...]]]:
     """Wheels by carrier, or the ends of belts, in the chassis frame."""
-    wheels, half = robot.wheels(), 0.5 * robot.outline.axle_distance
+    wheels = robot.wheels()
     found: dict[str, list[tuple[float, ...]]] = {}
     left = wheels["side"] == "left"
     for carrier in ("chassis", "front flipper", "rear flipper"):
@@ -47,16 +52,16 @@ def discs_of(robot: c2d.Robot) -> dict[str, list[tuple[float, ...]]]:
             found[carrier] = sorted(zip(*columns, strict=True))
     flippers = robot.flippers
     if "chassis" not in found:
-        outline = robot.outline
-        ends = [(-half, 0.0, outline.rear_radius), (half, 0.0, outline.front_radius)]
-        found["chassis"] = sorted(ends)
-    for end, sign in (("front", 1.0), ("rear", -1.0)):
+        found["chassis"] = sorted(robot.outline.discs)
+    rear, front = robot.outline.ends
+    for end, sign, axle in (("front", 1.0, front), ("rear", -1.0, rear)):
         carrier = f"{end} flipper"
         if flippers is not None and flippers.ends in (end, "both") and carrier not in found:
             reach = flippers.length
             x, y = reach * math.cos(flippers.angle), reach * math.sin(flippers.angle)
-            root = (sign * half, 0.0, flippers.root_radius)
-            found[carrier] = sorted([root, (sign * (half + x), y, flippers.tip_radius)])
+            root = (*axle[:2], flippers.root_radius)
+            tip = (axle[0] + sign * x, axle[1] + y, flippers.tip_radius)
+            found[carrier] = sorted([root, tip])
     return found
 
 
@@ -71,7 +76,9 @@ def tolerance_of(belly: np.ndarray, name: str) -> float:
     return 1e-5 + (1e-3 / math.tan(sharpest) if sharpest < 0.5 * math.pi - 1e-6 else 0.0)
 
 
-def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[str]:
+def differences(
+    robot: c2d.Robot, reading: c2d.Reading, name: str, accuracy: float = 1e-9
+) -> Iterator[str]:
     """What the file states, and was not read as it was written."""
     again, (middle, axes) = reading.robot, frame_of(reading)
     force = robot.drivetrain.max_torque / (robot.outline.rear_radius - robot.outline.grouser_height)
@@ -95,9 +102,9 @@ def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[s
         for field in ("length", "mass", "angle", "rate_limit", "torque_limit", "ends"):
             pairs[field] = (getattr(again.flippers, field), getattr(robot.flippers, field))
     for field, (got, expected) in pairs.items():
-        if got != expected and not np.allclose(got, expected, rtol=1e-9, atol=1e-9):  # type: ignore[arg-type]
+        if got != expected and not np.allclose(got, expected, rtol=accuracy, atol=accuracy):  # type: ignore[arg-type]
             yield f"{field}: {got} for {expected}"
-    yield from _other_discs(robot, reading)
+    yield from _other_discs(robot, reading, accuracy)
     if (again.belly is None) != (robot.belly is None):
         yield "belly"
     elif robot.belly is not None and again.belly is not None:
@@ -108,15 +115,23 @@ def differences(robot: c2d.Robot, reading: c2d.Reading, name: str) -> Iterator[s
             yield f"belly: {short.min()} to {short.max()} m short"
 
 
-def _other_discs(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
+def _other_discs(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
     wheels = reading.wheels
     for carrier, expected in discs_of(robot).items():
         for side in ("left", "right"):
             own = (wheels["carrier"] == carrier) & (wheels["side"] == side)
             rows = zip(*(wheels[n][own].tolist() for n in ("x", "y", "radius")), strict=True)
             found = sorted(rows)
-            if len(found) != len(expected) or not np.allclose(found, expected, atol=1e-9):
+            if len(found) != len(expected) or not np.allclose(found, expected, atol=accuracy):
                 yield f"{side} {carrier}: {found} for {expected}"
+
+
+def _other_outline(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
+    """The discs of a belt, each in the frame of the model."""
+    outline, (middle, axes) = reading.robot.outline, frame_of(reading)
+    places = [(*(middle + np.array([x, y]) @ axes), radius) for x, y, radius in outline.discs]
+    if not np.allclose(sorted(places), sorted(robot.outline.discs), atol=1e-9):
+        yield f"outline: {places} for {robot.outline.discs}"
 
 
 def check(numbers: range, name: str, folder: Path) -> None:
@@ -136,6 +151,33 @@ def test_a_drawn_robot_is_read_as_it_was_written(name: str, tmp_path: Path) -> N
 def test_a_drawn_robot_is_read_from_mjcf_as_it_was_written(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     check(range(12), "mjcf", tmp_path)
+
+
+def check_discs(numbers: range, name: str, folder: Path) -> None:
+    found = []
+    for number in numbers:
+        robot = drawn_on_discs(number)
+        reading = read_again(robot, name, folder)
+        wrong = [*differences(robot, reading, name), *_other_outline(robot, reading)]
+        found += [f"{number}: {each}" for each in wrong]
+    assert found == []
+
+
+def test_a_belt_round_three_to_five_discs_is_read_as_it_was_written(tmp_path: Path) -> None:
+    check_discs(range(40), "sdf", tmp_path)
+
+
+def test_a_belt_round_more_than_two_discs_is_read_from_mjcf(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    check_discs(range(10), "mjcf", tmp_path)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", ["sdf", "mjcf"])
+def test_five_hundred_belts_round_three_to_five_discs_are_read(name: str, tmp_path: Path) -> None:
+    if name == "mjcf":
+        pytest.importorskip("mujoco")
+    check_discs(range(1000, 1500), name, tmp_path)
 
 
 @pytest.mark.soak

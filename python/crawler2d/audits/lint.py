@@ -12,13 +12,13 @@ from crawler2d.reading.reading import Reading
 
 __all__ = ["lint"]
 
-# Where a file says what a rule about the robot found.
-_PLACES = {
-    "size": "robot.outline.axle_distance",
-    "mass": "robot.mass",
-    "inertia": "robot.moment_of_inertia",
-    "effort": "robot.drivetrain.max_torque",
-    "no track": "robot.track",
+# Where a file says what a rule about the robot found: the first of these that it states.
+_PLACES: dict[str, tuple[str, ...]] = {
+    "size": ("robot.outline.axle_distance", "robot.outline.discs"),
+    "mass": ("robot.mass",),
+    "inertia": ("robot.moment_of_inertia",),
+    "effort": ("robot.drivetrain.max_torque",),
+    "no track": ("robot.track",),
 }
 
 
@@ -52,8 +52,12 @@ def lint(
     """
     found = list(lint_robot.of_robot(robot))
     if reading is not None:
-        sources = reading.sources
-        found = [replace(f, where=sources.get(_PLACES.get(f.rule, ""), "")) for f in found]
+        found = [replace(each, where=_where(each, reading)) for each in found]
         found += [*lint_model.of_model(reading), *lint_bodies.of_bodies(reading)]
     found += [Finding(rule="doubt", severity="warning", what=doubt) for doubt in doubts]
     return tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity)))
+
+
+def _where(finding: Finding, reading: Reading) -> str:
+    sources = reading.sources
+    return next((sources[path] for path in _PLACES.get(finding.rule, ()) if path in sources), "")

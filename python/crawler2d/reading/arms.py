@@ -13,9 +13,11 @@ from crawler2d.models.poses import Array
 from crawler2d.models.where import Where
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
 from crawler2d.reading.belts import belt_ends
+from crawler2d.reading.gear_wheels import is_same_wheel
 from crawler2d.reading.parts import Arm, Runner
 from crawler2d.reading.sides import Pair, paired
 from crawler2d.reading.silhouettes import silhouette
+from crawler2d.reading.telling import Telling
 from crawler2d.reading.tracks import Base, wheels_of
 from crawler2d.reading.view import SideView
 
@@ -123,7 +125,8 @@ def _partner(arm: Arm, others: list[Arm], tolerance: float) -> Arm:
             return other
     path = f"{arm.joint.at}: joint[{arm.joint.name}]"
     value = f"a pivot at x = {arm.pivot[0]:.4g} m, y = {arm.pivot[1]:.4g} m"
-    rule = f"must have a partner on the other side, within {1e3 * tolerance:g} mm"
+    within = f"within {1e3 * tolerance:g} mm: tolerance= may say more"
+    rule = f"must have a partner on the other side, {within}"
     raise ScenarioError(path, value, rule)
 
 
@@ -166,8 +169,34 @@ def _refuse_bare(arm: Arm, runners: list[Runner], view: SideView, tolerance: flo
             raise ScenarioError(path, shape.kind, rule)
 
 
-def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> AtEnd:
+def at_end(
+    told: Telling,
+    pair: ArmPair,
+    base: Base,
+    view: SideView,
+    *,
+    is_front: bool,
+    radius: float,
+    tolerance: float,
+) -> AtEnd:
     """Describe a pair of flippers as a robot has them.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes what is to be told about gear wheels.
+    pair : ArmPair
+        The flippers.
+    base : Base
+        The chassis frame.
+    view : SideView
+        The side view.
+    is_front : bool
+        Whether they are at the front.
+    radius : float
+        [m] Of the rear end of the chassis: that of the sprocket, about which a flipper turns.
+    tolerance : float
+        [m] By how much the two sides may differ.
 
     Raises
     ------
@@ -193,25 +222,33 @@ def at_end(pair: ArmPair, base: Base, *, is_front: bool, tolerance: float) -> At
         if not has_root or {root, tip} != set(ends):
             pair.refuse("a belt beside the pivot", "must have a belt from the pivot to the tip")
     out = places[-1] - (places[0] if has_root else pivot)
+    angle = math.atan2(out[1], sign * out[0])
+    track: Track = BeltTrack()
+    if not pair.is_belt:
+        run = sign * angle * radius  # which a raised flipper adds to that of its track
+        track = _wheels(told, pair, view, is_front=is_front, has_root=has_root, run=run)
     return AtEnd(
         pair=pair,
         length=math.hypot(*out),
         root_radius=root.radius if has_root else tip.radius,
         tip_radius=tip.radius,
-        angle=math.atan2(out[1], sign * out[0]),
+        angle=angle,
         off=off,
-        track=BeltTrack() if pair.is_belt else _wheels(pair, is_front=is_front, has_root=has_root),
+        track=track,
         has_root=has_root,
     )
 
 
-def _wheels(pair: ArmPair, *, is_front: bool, has_root: bool) -> LineOfWheels | HybridWheels:
+def _wheels(
+    told: Telling, pair: ArmPair, view: SideView, *, is_front: bool, has_root: bool, run: float
+) -> LineOfWheels | HybridWheels:
     """Return the wheels of an arm in its frame, which is midway along it, x forward."""
     tip = np.array([pair.pairs[-1].x, pair.pairs[-1].y])
     pivot = np.array([pair.pairs[0].x, pair.pairs[0].y]) if has_root else pair.pivot
     order = list(pair.pairs if is_front else reversed(pair.pairs))
     frame = Base(pivot, tip) if is_front else Base(tip, pivot)
-    return wheels_of(order, frame, is_whole=has_root)
+    path = "robot.flippers.track"
+    return wheels_of(told, order, frame, view, path=path, run=run, is_whole=has_root)
 
 
 def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
@@ -235,6 +272,13 @@ def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
     if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
         value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
         rear.pair.refuse(value, f"must be alike at both ends, within {_ALIKE:.0%}")
-    if front.track != rear.track or isinstance(front.track, HybridWheels):
+    if not _is_same(front.track, rear.track):
         rule = "must be alike at both ends and have evenly spaced wheels, or a belt"
         rear.pair.refuse(f"{rear.track!r} and {front.track!r}", rule)
+
+
+def _is_same(front: Track, rear: Track) -> bool:
+    """Whether flippers have one track model; wheels placed by hand are not mirrored."""
+    if isinstance(front, LineOfWheels) and isinstance(rear, LineOfWheels):
+        return front.count == rear.count and is_same_wheel(front.wheel, rear.wheel)
+    return front == rear and not isinstance(front, HybridWheels)

@@ -12,14 +12,14 @@ from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
-from crawler2d.reading.axles import end_axles, outline_of
+from crawler2d.reading.axles import bent_round, frame_of, outline_of
 from crawler2d.reading.belly import belly_of
 from crawler2d.reading.drive import drivetrain_of
 from crawler2d.reading.flippers import arms_at, flippers_of
 from crawler2d.reading.friction import combined
-from crawler2d.reading.gear import gear_of
 from crawler2d.reading.masses import circulating, summed
-from crawler2d.reading.parts import Gear, Runner
+from crawler2d.reading.parts import Runner, RunningGear
+from crawler2d.reading.running_gear import running_gear_of
 from crawler2d.reading.sides import Pair, middle_of, paired
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
@@ -70,7 +70,7 @@ class Assembly:
         tree, at, tolerance = self.tree, self.tree.at, self.tolerance
         self.view = view = side_view(tree, forward)
         self.told.notes.append(f"{view.reason}: {_named(view.forward)} is forward")
-        gear = gear_of(tree, view)
+        gear = running_gear_of(tree, view)
         runners = gear.runners + [r for arm in gear.arms for r in arm.runners]
         self.middle = middle = middle_of(gear.runners or runners)
         pairs = paired(gear.runners, middle=middle, tolerance=tolerance, at=at)
@@ -78,14 +78,13 @@ class Assembly:
         is_belt = bool(pairs) and pairs[0].left[0].joint is None
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
-        rear, front = end_axles(self.told, gear, pairs, arms, is_belt=is_belt)
-        self.base = base = Base(np.array(rear[:2]), np.array(front[:2]))
-        if base.length <= tolerance:
-            raise ScenarioError(str(at), base.length, "must have two wheels or drums on each side")
-        by_end = arms_at(self.told, arms, base, tolerance)
+        bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
+        base, rear = frame_of(self.told, bent, tolerance)
+        self.base = base
+        by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
         track: Track = BeltTrack() if is_belt else LineOfWheels(2, as_track=False)
         if pairs and not is_belt:
-            track = wheels_of(pairs, base)
+            track = wheels_of(self.told, pairs, base, view)
         total = summed(tree, view, base, [(by_end[end], _SIGN[end]) for end in by_end])
         if not total.mass > 0.0:
             raise ScenarioError(str(at), total.mass, "must have links with a mass > 0 kg")
@@ -95,11 +94,11 @@ class Assembly:
         of_links = lines([link.at for link in tree.links], f"sum{angle}")
         self.told.note("robot.center_of_mass", of_links)
         self.told.note("robot.moment_of_inertia", of_links)
-        outline = outline_of(self.told, base, rear[2], front[2])
+        outline = outline_of(self.told, base, bent)
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
-        torque = _holding_torque(total.mass, rear[2])
+        torque = _holding_torque(total.mass, rear.radius)
         drivetrain = drivetrain_of(
-            tree, driven, track, radius=rear[2], torque=torque, note=self.told.note
+            tree, driven, track, radius=rear.radius, torque=torque, note=self.told.note
         )
         flippers = flippers_of(self.told, by_end, total.mass)
         if flippers is not None and isinstance(flippers.track, BeltTrack):
@@ -148,7 +147,7 @@ class Assembly:
         return moving
 
     def belly(
-        self, gear: Gear, base: Base, driven: list[Pair]
+        self, gear: RunningGear, base: Base, driven: list[Pair]
     ) -> tuple[tuple[float, float], ...] | None:
         """Return the belly; doubt one that touches level ground, tell what it leaves out."""
         corners = belly_of(gear.shapes, self.view, base)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.limits import MEGABYTES, SECONDS
 
 __all__ = ["answered"]
 
@@ -58,12 +60,22 @@ def answered(program: str, question: dict[str, Any], *, file: str, folder: Path)
     try:
         answer: dict[str, Any] = json.loads(done.stdout)
     except ValueError:
-        rule = "must be understood within the limits of time and memory"
+        rule = f"must be understood in {SECONDS} s of computing and {MEGABYTES} MB of memory"
         got = done.stderr.decode(errors="replace").strip().splitlines()
-        said = got[-1] if got else f"exit status {done.returncode}"
+        said = got[-1] if got else f"an end by {_ended(done.returncode)}"
         raise ScenarioError(file, said, rule) from None
     if "missing" in answer:
         raise ImportError(answer["missing"])
     if "rule" in answer:
         raise ScenarioError(answer["path"], answer["value"], answer["rule"])
     return answer
+
+
+def _ended(status: int) -> str:
+    """Say how a process ended; those that run out of time end by a signal."""
+    if status >= 0:
+        return f"status {status}"
+    try:
+        return signal.Signals(-status).name
+    except ValueError:
+        return f"signal {-status}"

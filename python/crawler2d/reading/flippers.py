@@ -10,21 +10,32 @@ from crawler2d.reading.drive import FASTEST, MARGIN, WEIGHT, Note
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base
+from crawler2d.reading.view import SideView
 
 __all__ = ["arms_at", "flippers_of"]
 
 _RATE = 1.0  # [rad/s] that of MARV's flippers
 
 
-def arms_at(told: Telling, arms: list[ArmPair], base: Base, tolerance: float) -> dict[str, AtEnd]:
-    """Return the flippers by end, the front first."""
+def arms_at(
+    told: Telling,
+    arms: list[ArmPair],
+    base: Base,
+    view: SideView,
+    *,
+    radius: float,
+    tolerance: float,
+) -> dict[str, AtEnd]:
+    """Return the flippers by end, the front first; the radius is that of the rear end [m]."""
     found: dict[str, AtEnd] = {}
     for pair in arms:
         to_front, to_rear = (math.hypot(*(pair.pivot - end)) for end in (base.front, base.rear))
         end = "front" if to_front < to_rear else "rear"
         if end in found:
             pair.refuse(f"two pairs at the {end}", "must be the only flippers at its end")
-        found[end] = at_end(pair, base, is_front=end == "front", tolerance=tolerance)
+        found[end] = at_end(
+            told, pair, base, view, is_front=end == "front", radius=radius, tolerance=tolerance
+        )
         if found[end].off > tolerance:
             reason = f"pivots {1e3 * found[end].off:.3g} mm off the end axle, here on it"
             told.doubts.append((f"joint[{pair.arms[0].joint.name}]", end, reason))
@@ -58,8 +69,9 @@ def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flipper
     told.note(
         "robot.flippers.angle", lines([arm.links[0].pose_at for p in pairs for arm in p.arms])
     )
-    radii = [r.shape.size_at for pair in pairs for each in pair.pairs for r in each.both]
-    told.note("robot.flippers.track", lines(radii, "radii"))
+    runners = [runner for pair in pairs for each in pair.pairs for runner in each.both]
+    of_all = [shape.size_at for runner in runners for shape in runner.surfaces]
+    told.note("robot.flippers.track", lines(of_all, "sizes"))
     rate, torque = _limits(ends, mass=mass, note=told.note)
     return Flippers(
         length=first.length,

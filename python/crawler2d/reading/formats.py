@@ -77,9 +77,9 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
     name, folder = path.name, path.resolve().parent
     missing: list[tuple[str, str]] = []
     if path.suffix == ".xacro":
-        parsed(data, name)  # entities are refused before anything else reads the file
         data, includes = expanded(
             path,
+            parsed(data, name),  # entities are refused before anything else reads the file
             trusted=how.trusted,
             packages=how.packages,
             arguments=how.arguments,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from crawler2d.errors import ScenarioError
+from crawler2d.models.tree import Shape
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 from crawler2d.reading.view import SideView
@@ -84,8 +85,8 @@ def combined(
     rule = ENGINES[engine]
     first: tuple[float, str] | None = None
     places = []
-    for runner in runners:
-        own, priority, where = _along(runner, view, rule.usual)
+    for runner, shape in [(each, shape) for each in runners for shape in each.surfaces]:
+        own, priority, where = _along(runner, shape, view, rule.usual)
         wins = engine == "mujoco" and priority > 0
         value = own if wins else rule.of_two(own, ground)
         of_own = f"{own:g}" if where else f"{own:g}, the engine's default,"
@@ -93,7 +94,7 @@ def combined(
         if first is None:
             first = value, f"{of_own} along the track, {word}"
         if abs(value - first[0]) > _SAME:
-            path = f"{where or runner.shape.at}: friction[{runner.name}]"
+            path = f"{where or shape.at}: friction[{runner.name}]"
             raise ScenarioError(path, value, f"must be that of all wheels, {first[0]:g}")
         if where is not None:
             places.append(where)
@@ -103,13 +104,15 @@ def combined(
     return (*first, places)
 
 
-def _along(runner: Runner, view: SideView, usual: float) -> tuple[float, int, Where | None]:
+def _along(
+    runner: Runner, shape: Shape, view: SideView, usual: float
+) -> tuple[float, int, Where | None]:
     """Return the coefficient along the track, its priority, and its line.
 
     A controller of tracks turns the first direction along the track. Else it is fdir1, in the frame
     of the collision; without one, an engine may turn it anywhere, and the smaller holds.
     """
-    found = runner.shape.friction
+    found = shape.friction
     if found is None:
         return usual, 0, None
     if runner.joint is None:

@@ -5,16 +5,20 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable
 from typing import Any
 
 from crawler2d.errors import ScenarioError
 
-__all__ = ["serve"]
+__all__ = ["MEGABYTES", "SECONDS", "serve"]
 
-_SECONDS = 2  # of computing, after the imports
-_BYTES = 400_000_000  # of memory, beyond what the imports took
+SECONDS = 2
+"""[s] Of computing, after the imports."""
+
+MEGABYTES = 400
+"""[MB] Of memory, beyond what the imports took."""
 
 
 def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> None:
@@ -43,12 +47,15 @@ def _limit() -> None:
     with contextlib.suppress(ImportError):
         import resource  # noqa: PLC0415 - not on Windows, where only the patience of the parent holds
 
+        # Its signal ends the process. The limit knows whole seconds only, but nothing that runs
+        # here can take it back.
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
         used = resource.getrusage(resource.RUSAGE_SELF)
-        seconds = int(used.ru_utime + used.ru_stime) + 1 + _SECONDS
+        seconds = int(used.ru_utime + used.ru_stime) + 1 + SECONDS
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         with contextlib.suppress(OSError, ValueError):
             with open("/proc/self/statm", encoding="ascii") as file:
                 pages = int(file.read().split()[0])
-            most = pages * os.sysconf("SC_PAGE_SIZE") + _BYTES
+            most = pages * os.sysconf("SC_PAGE_SIZE") + 1_000_000 * MEGABYTES
             resource.setrlimit(resource.RLIMIT_AS, (most, most))

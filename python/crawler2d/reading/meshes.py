@@ -18,6 +18,7 @@ __all__ = ["MeshRule", "Meshes"]
 
 MeshRule = Literal["refuse", "hull", "leave_out"]
 
+_REMEDY = ', or be left out: mesh="leave_out"'
 _LARGEST = 50_000_000  # [bytes] of one mesh, and of all that a model names together
 _HEADER, _FACET = 84, 50  # [bytes] of a binary STL
 _SCHEME = re.compile(r"(package|model|file)://(.*)", re.DOTALL)
@@ -67,13 +68,16 @@ class Meshes:
                 element.refuse(name, f"must be meshes of at most {_LARGEST} bytes together")
             data = path.read_bytes()
         except (OSError, ValueError):  # a name with a null byte is a ValueError
-            element.refuse(name, "must be a mesh that is there and can be read")
+            element.refuse(
+                name,
+                'must be a mesh that is there and can be read, or be left out: mesh="leave_out"',
+            )
         if path.suffix.lower() == ".stl":
             points = _of_stl(data)
         elif path.suffix.lower() == ".obj":
             points = _of_obj(data)
         else:
-            element.refuse(name, "must be an .stl or .obj mesh")
+            element.refuse(name, f"must be an .stl or .obj mesh{_REMEDY}")
         # Corners are shared by facets: a side view needs each once.
         finite = np.isfinite(points).all(axis=1)
         return np.unique(points[finite], axis=0)

@@ -12,7 +12,11 @@ _LONGEST_NAME = 200
 
 
 def checked(
-    names: list[tuple[str, Where]], joints: list[tuple[str, str, str, Where]], at: Where
+    names: list[tuple[str, Where]],
+    joints: list[tuple[str, str, str, Where]],
+    at: Where,
+    *,
+    remedy: str = "",
 ) -> list[str]:
     """Return the links in an order in which parents precede children, if they are one tree.
 
@@ -24,6 +28,8 @@ def checked(
         Name, parent and child of each joint.
     at : Where
         Line of the model.
+    remedy : str
+        What to do about joints of links that are missing, as the end of a rule.
 
     Raises
     ------
@@ -42,7 +48,8 @@ def checked(
         named.add(name)
         for end in (parent, child):
             if end not in seen:
-                raise ScenarioError(f"{where}: joint[{name}]", end, "must join links of the model")
+                rule = f"must join links of the model{remedy}"
+                raise ScenarioError(f"{where}: joint[{name}]", end, rule)
         if child in parent_of:
             rule = "must be the only joint that holds its child: a chain of links must be open"
             raise ScenarioError(f"{where}: joint[{name}]", child, rule)

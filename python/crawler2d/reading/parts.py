@@ -9,7 +9,34 @@ import numpy as np
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Joint, Link, Shape
 
-__all__ = ["Arm", "Gear", "Runner", "corners_of"]
+__all__ = ["Arm", "Grousers", "Runner", "RunningGear", "corners_of"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Grousers:
+    """The grousers of a gear wheel.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    radius : float
+        [m] Of their tips about the axle.
+    height, tip_thickness, base_thickness : float
+        [m] As in `GearWheel`.
+    direction : ndarray, shape (3,)
+        Of one of them from the axle.
+    shapes : tuple of Shape
+        All of them.
+    """
+
+    count: int
+    radius: float
+    height: float
+    tip_thickness: float
+    base_thickness: float
+    direction: Array
+    shapes: tuple[Shape, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -23,7 +50,7 @@ class Runner:
     x, y, z : float
         [m] Its middle: forward, up and to the left.
     radius : float
-        [m] Its radius.
+        [m] Its radius, to the tips of grousers if it has such.
     link : Link
         What it is part of.
     shape : Shape
@@ -34,6 +61,8 @@ class Runner:
         [kg] Of what turns; 0 for a drum.
     inertia : float
         [kg m^2] Of that, about its axis.
+    grousers : Grousers, optional
+        Those of a gear wheel.
     """
 
     name: str
@@ -46,6 +75,12 @@ class Runner:
     joint: Joint | None = None
     mass: float = 0.0
     inertia: float = 0.0
+    grousers: Grousers | None = None
+
+    @property
+    def surfaces(self) -> tuple[Shape, ...]:
+        """Its own shape and its grousers."""
+        return (self.shape, *(self.grousers.shapes if self.grousers else ()))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -77,7 +112,7 @@ class Arm:
 
 
 @dataclass(slots=True, eq=False)
-class Gear:
+class RunningGear:
     """The running gear of a model.
 
     Parameters

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from crawler2d.models.poses import Array
-from crawler2d.models.tree import Joint, Link, Shape, Tree
+from crawler2d.models.tree import Link, Shape, Tree
 from crawler2d.models.where import Where
 
 __all__ = [
@@ -15,8 +15,8 @@ __all__ = [
     "below",
     "is_moved",
     "is_parallel",
+    "plane_across",
     "radius_about",
-    "wheel_of",
 ]
 
 PARALLEL = 0.05
@@ -56,30 +56,19 @@ def radius_about(shape: Shape, point: Array, axis: Array) -> float | None:
     return shape.radius if offset <= _OFF_AXIS * shape.radius else None
 
 
-def _radius_of_hull(shape: Shape, point: Array, axis: Array) -> float | None:
+def plane_across(axis: Array) -> Array:
+    """Return two directions at right angles to an axis and to each other, shape (3, 2)."""
     seed = np.eye(3)[int(np.argmin(np.abs(axis)))]
     first = np.cross(axis, seed)
     first /= np.linalg.norm(first)
-    second = np.cross(axis, first)
-    flat = (shape.points - point) @ np.stack([first, second], axis=1)
+    return np.stack([first, np.cross(axis, first)], axis=1)
+
+
+def _radius_of_hull(shape: Shape, point: Array, axis: Array) -> float | None:
+    flat = (shape.points - point) @ plane_across(axis)
     reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
     largest = float(reach.max())
     return largest if reach.min() >= (1.0 - _OUT_OF_ROUND) * largest > 0.0 else None
-
-
-def wheel_of(tree: Tree, joint: Joint, hanging: dict[str, list[str]]) -> list[tuple[Link, Shape]]:
-    """Return the shapes of the wheel that turns on a joint; none if what turns on it is no wheel.
-
-    A wheel turns without limit, and everything that turns with it is round about its axis.
-    """
-    names = hanging[joint.child]
-    if not joint.is_unlimited or any(not tree.joints[n].is_locked for n in names[1:]):
-        return []
-    links = tree.by_name
-    shapes = [(links[n], shape) for n in names for shape in links[n].shapes]
-    if any(radius_about(shape, joint.place, joint.axis) is None for _, shape in shapes):
-        return []
-    return shapes
 
 
 def is_moved(link: Link, shape: Shape, moved: dict[str, Where]) -> bool:

@@ -11,6 +11,7 @@ from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element, real
 from crawler2d.reading.frames import MODEL, Frames
+from crawler2d.reading.joints import joint_of, moving
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 from crawler2d.reading.plugins import driven_by, plugin_of
@@ -18,7 +19,6 @@ from crawler2d.reading.shapes import inertia, shape_of
 
 __all__ = ["read_sdf"]
 
-_KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "fixed": "fixed"}
 # What SDF takes where a file says nothing: a link of 1 kg, a friction of 1.
 _USUAL_MASS = _USUAL_FRICTION = 1.0
 
@@ -53,7 +53,10 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     chosen = _chosen(root, model)
     for part in chosen.children:
         if part.tag in ("model", "include"):
-            part.refuse(part.attributes.get("name", part.tag), "must hold its parts itself")
+            part.refuse(
+                part.attributes.get("name", part.tag),
+                "must hold its parts itself: write its links and joints in its place",
+            )
     return _Model(chosen, minor, meshes).tree()
 
 
@@ -194,71 +197,40 @@ class _Model:
         )
 
     def joint(self, joint: Element, name: str, parent: str, child: str) -> Joint:
-        kind = joint.attribute("type")
         pose = self.frames.of(name, joint)
-        kind = _KINDS.get(kind, kind)
+        made = joint_of(joint, parent, child, pose)
         axis = joint.only("axis")
-        made = Joint(
-            name=name,
-            kind=kind,
-            parent=parent,
-            child=child,
-            place=pose.place,
-            axis=pose.turn[:, 2],
-            at=joint.where,
-            effort_at=joint.where,
-            velocity_at=joint.where,
-        )
-        if axis is None or kind == "fixed":
-            if kind in ("hinge", "slide"):
+        if made.kind == "fixed":
+            return made
+        if axis is None:
+            if made.kind in ("hinge", "slide"):
                 joint.refuse("none", "must have an axis")
             return made
-        return self.moving(made, axis, pose)
-
-    def moving(self, joint: Joint, axis: Element, pose: Pose) -> Joint:
         xyz = axis.only("xyz")
         frame = pose
         if xyz is not None and xyz.attributes.get("expressed_in", ""):
             frame = self.frames.of(xyz.attributes["expressed_in"], xyz)
         elif self.minor == 4 or (self.minor <= 6 and _flag(axis, "use_parent_model_frame")):
             frame = Pose()
-        direction = unit(frame.along((0.0, 0.0, 1.0) if xyz is None else xyz.reals(3)))
-        if direction is None:
-            axis.refuse("0 0 0", "must have a direction")
         limit = axis.only("limit")
-        values = {} if limit is None else {part.tag: part for part in limit.children}
-        lower, upper = (
-            real(values[name], values[name].text, unlimited=True) if name in values else usual
-            for name, usual in (("lower", -math.inf), ("upper", math.inf))
-        )
-        if lower > upper:
-            axis.refuse(lower, f"must have a lower limit of at most the upper, {upper}")
+        values = {
+            part.tag: (real(part, part.text, unlimited=True), part.where)
+            for part in (() if limit is None else limit.children)
+            if part.tag in ("lower", "upper", "effort", "velocity")
+        }
         stiffness = axis.only("dynamics/spring_stiffness")
-        effort, velocity = (values.get(name) for name in ("effort", "velocity"))
-        return Joint(
-            name=joint.name,
-            kind=joint.kind,
-            parent=joint.parent,
-            child=joint.child,
-            place=joint.place,
-            axis=direction,
-            lower=lower,
-            upper=upper,
-            effort=_limit(effort),
-            velocity=_limit(velocity),
+        return moving(
+            made,
+            axis,
+            frame.along((0.0, 0.0, 1.0) if xyz is None else xyz.reals(3)),
+            bounds=(
+                values["lower"][0] if "lower" in values else -math.inf,
+                values["upper"][0] if "upper" in values else math.inf,
+            ),
+            effort=values.get("effort"),
+            velocity=values.get("velocity"),
             stiffness=0.0 if stiffness is None else stiffness.reals(1)[0],
-            at=joint.at,
-            effort_at=joint.at if effort is None else effort.where,
-            velocity_at=joint.at if velocity is None else velocity.where,
         )
-
-
-def _limit(element: Element | None) -> float | None:
-    """Read a limit; a negative or an infinite one is none."""
-    if element is None:
-        return None
-    value = real(element, element.text, unlimited=True)
-    return value if 0.0 <= value < math.inf else None
 
 
 def _coefficient(ode: Element, name: str) -> tuple[float, Where]:

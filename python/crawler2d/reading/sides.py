@@ -109,7 +109,8 @@ def _same(first: Runner, second: Runner, tolerance: float) -> bool:
 
 
 def _rule(side: str, tolerance: float) -> str:
-    return f"must have a partner on the {side}, in side view within {1e3 * tolerance:g} mm"
+    within = f"within {1e3 * tolerance:g} mm: tolerance= may say more"
+    return f"must have a partner on the {side}, in side view {within}"
 
 
 def _words(runner: Runner) -> str:

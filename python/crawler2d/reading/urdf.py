@@ -11,14 +11,13 @@ from crawler2d.models.poses import Pose, from_rpy, unit
 from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element, real
+from crawler2d.reading.joints import joint_of, moving
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 from crawler2d.reading.plugins import plugin_of
 from crawler2d.reading.shapes import inertia, shape_of
 
 __all__ = ["read_urdf"]
-
-_KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
 
 def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None = None) -> Tree:
@@ -45,6 +44,9 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
     """
     _refuse_macros(root)
     elements = {link.attribute("name"): link for link in root.all("link")}
+    if not elements:
+        rule = "must have a link: a file of macros only is read through the file that calls them"
+        root.refuse("no link", rule)
     ends = []
     for joint in root.all("joint"):
         parent, child = (joint.needed(end).attribute("link") for end in ("parent", "child"))
@@ -56,6 +58,7 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
         [(link.attribute("name"), link.where) for link in root.all("link")],
         [(name, parent, child, joint.where) for joint, name, parent, child in ends],
         root.where,
+        remedy=': missing="leave_out" leaves such joints out',
     )
     by_child = {child: (joint, parent) for joint, _, parent, child in ends}
     frictions = _frictions(root)
@@ -195,48 +198,32 @@ def _friction(
 
 
 def _joint(element: Element, parent: str, child: str, pose: Pose) -> Joint:
-    kind = element.attribute("type")
-    made = Joint(
-        name=element.attribute("name"),
-        kind=_KINDS.get(kind, kind),
-        parent=parent,
-        child=child,
-        place=pose.place,
-        axis=pose.turn[:, 0],
-        at=element.where,
-        effort_at=element.where,
-        velocity_at=element.where,
-    )
-    if kind not in _KINDS:
+    made = joint_of(element, parent, child, pose)
+    if made.kind not in ("hinge", "slide"):
         return made
-    axis, limit = element.only("axis"), element.only("limit")
-    direction = unit(pose.along((1.0, 0.0, 0.0) if axis is None else axis.reals(3, "xyz")))
-    if direction is None:
-        element.refuse("0 0 0", "must have an axis with a direction")
-    made = replace(made, axis=direction)
-    if limit is None:
-        if kind != "continuous":
-            element.refuse("none", "must have a limit")
-        return made
+    kind, axis, limit = element.attribute("type"), element.only("axis"), element.only("limit")
+    if limit is None and kind != "continuous":
+        element.refuse("none", "must have a limit")
+    attributes = {} if limit is None else limit.attributes
     values = {
-        name: real(limit, text, f"@{name}", unlimited=True)
-        for name, text in limit.attributes.items()
+        name: real(limit or element, text, f"@{name}", unlimited=True)
+        for name, text in attributes.items()
         if name in ("lower", "upper", "effort", "velocity")
     }
     bounds = (-math.inf, math.inf)
     if kind != "continuous":
         bounds = (values.get("lower", 0.0), values.get("upper", 0.0))
-    if bounds[0] > bounds[1]:
-        limit.refuse(bounds[0], f"must have a lower limit of at most the upper, {bounds[1]}")
-    effort, velocity = (values.get(name, math.inf) for name in ("effort", "velocity"))
-    return replace(
+    effort, velocity = (
+        None if limit is None else (values.get(name, math.inf), limit.where)
+        for name in ("effort", "velocity")
+    )
+    return moving(
         made,
-        lower=bounds[0],
-        upper=bounds[1],
-        effort=effort if 0.0 <= effort < math.inf else None,
-        velocity=velocity if 0.0 <= velocity < math.inf else None,
-        effort_at=limit.where,
-        velocity_at=limit.where,
+        element,
+        pose.along((1.0, 0.0, 0.0) if axis is None else axis.reals(3, "xyz")),
+        bounds=bounds,
+        effort=effort,
+        velocity=velocity,
     )
 
 

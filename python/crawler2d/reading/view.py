@@ -12,7 +12,8 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Tree
 from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.rounds import PARALLEL, below, is_moved, is_parallel, wheel_of
+from crawler2d.reading.rounds import PARALLEL, below, is_moved, is_parallel
+from crawler2d.reading.wheels import wheel_of
 
 __all__ = ["SideView", "side_view"]
 
@@ -112,7 +113,8 @@ def _lateral(tree: Tree) -> Array:
     if not axes:
         rule = (
             "must have wheels, which are round collision shapes on joints that turn without limit,"
-            " or tracks that a plugin moves"
+            " bare or with equal grousers evenly round them, or tracks that a plugin moves or"
+            " tracks= names"
         )
         kinds = [shape.kind for link in tree.links for shape in link.shapes]
         count = sum(kind in ("cylinder", "capsule", "sphere") for kind in kinds)

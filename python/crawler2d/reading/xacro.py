@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from crawler2d.errors import ScenarioError
 from crawler2d.reading.child import answered
+from crawler2d.reading.elements import Element
 
 __all__ = ["expanded"]
 
 
 def expanded(
     path: Path,
+    root: Element,
     *,
     trusted: bool,
     packages: Mapping[str, Path],
@@ -25,6 +26,8 @@ def expanded(
     ----------
     path : Path
         The file.
+    root : Element
+        Of the file, for errors.
     trusted : bool
         Whether its user trusts it: its expressions are evaluated.
     packages : mapping of str to Path
@@ -50,7 +53,7 @@ def expanded(
     """
     if not trusted:
         rule = "must be trusted, because xacro evaluates expressions: trusted=True"
-        raise ScenarioError(path.name, trusted, rule)
+        root.refuse(f"trusted={trusted}", rule)
     question = {
         "path": str(path.resolve()),
         "file": path.name,

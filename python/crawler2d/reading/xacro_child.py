@@ -13,6 +13,8 @@ from crawler2d.reading.limits import serve
 
 _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
 _LOST = re.compile(r"Package not found: (\S+)")
+# What xacro says was unknown to it, or could not be evaluated.
+_CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 _INCLUDE = re.compile(r"<xacro:include\b[^>]*?/>|<xacro:include\b[^>]*?>\s*</xacro:include>")
 
 
@@ -44,9 +46,28 @@ def _expanded(
         if lost := _LOST.search(said):
             names = [name for name in _FIND.findall(text) if not _known(module, name)]
             rule = "must have its packages: packages={name: folder} says where each is"
+            if not leave_out:
+                rule += ', missing="leave_out" leaves out includes of others'
             value = ", ".join(dict.fromkeys([*names, lost[1]]))
-            raise ScenarioError(file, value, rule) from None
-        raise ScenarioError(file, said, "must be xacro that expands") from None
+            calls = [f"find {name}" for name in (lost[1], *names)]
+            raise ScenarioError(_place(file, text, calls), value, rule) from None
+        rule = "must be xacro that expands"
+        if left_out:
+            rule += ", which may need an include that was left out: packages= says where it is"
+        culprits = [part for pair in _CULPRITS.findall(said) for part in pair if part]
+        raise ScenarioError(_place(file, text, culprits), said, rule) from None
+
+
+def _place(file: str, text: str, culprits: list[str]) -> str:
+    r"""Return file and line where one of some words stands first; without it, what it includes has.
+
+    Examples
+    --------
+    >>> _place("cart.xacro", "<robot>\n<xacro:wheel/>", ["xacro:wheel"])
+    'cart.xacro:2'
+    """
+    found = [text.find(word) for word in culprits if word in text]
+    return f"{file}:{text.count(chr(10), 0, min(found)) + 1}" if found else file
 
 
 def _without_missing(module: Any, text: str, left_out: list[str]) -> str:

@@ -10,24 +10,20 @@ import numpy as np
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Joint, Link, Shape, Tree
-from crawler2d.reading.parts import Arm, Gear, Runner, corners_of
+from crawler2d.reading.grousers import grousers_on
+from crawler2d.reading.parts import Arm, Runner, RunningGear, corners_of
 from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.rounds import (
-    below,
-    is_moved,
-    is_parallel,
-    radius_about,
-    wheel_of,
-)
+from crawler2d.reading.rounds import below, is_moved, is_parallel, radius_about
 from crawler2d.reading.view import SideView
+from crawler2d.reading.wheels import wheel_of
 
-__all__ = ["gear_of"]
+__all__ = ["running_gear_of"]
 
 # [m] What lies this little behind its pivot does not lie behind it.
 _BEHIND = 0.005
 
 
-def gear_of(tree: Tree, view: SideView) -> Gear:
+def running_gear_of(tree: Tree, view: SideView) -> RunningGear:
     """Sort everything that can touch the ground.
 
     Parameters
@@ -39,7 +35,7 @@ def gear_of(tree: Tree, view: SideView) -> Gear:
 
     Returns
     -------
-    Gear
+    RunningGear
         What was found.
 
     Raises
@@ -67,8 +63,8 @@ class _Sorting:
         self.turning = {n for child in self.wheels for n in self.hanging[child]}
         self.carrier: dict[str, Joint | None] = {}
 
-    def gear(self) -> Gear:
-        gear = Gear()
+    def gear(self) -> RunningGear:
+        gear = RunningGear()
         arms: dict[str, Joint] = {}
         for link in self.tree.links:
             joint = self.tree.joints.get(link.name)
@@ -167,6 +163,7 @@ class _Sorting:
             )
         radii = [radius_about(shape, joint.place, joint.axis) or 0.0 for _, shape in shapes]
         largest = int(np.argmax(radii))
+        grousers = grousers_on([shape for _, shape in shapes], joint)
         x, y, _ = self.view.of(joint.place)
         link, shape = shapes[largest]
         turning = [self.links[name] for name in self.hanging[joint.child]]
@@ -181,12 +178,13 @@ class _Sorting:
             x=float(x),
             y=float(y),
             z=float(self.view.of(middle)[2]),
-            radius=radii[largest],
+            radius=radii[largest] if grousers is None else grousers.radius,
             link=link,
             shape=shape,
             joint=joint,
             mass=sum(part.mass for part in turning),
             inertia=sum(self.view.about_left(part.inertia) for part in turning) + sum(swung),
+            grousers=grousers,
         )
 
     def drum(self, link: Link, shape: Shape) -> Runner:

@@ -1,0 +1,221 @@
+"""A round wheel with equal grousers evenly round it is a gear wheel; others are refused by name."""
+
+import math
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d import _core
+from tests.reading.carts import ACROSS, ROUND, WHEELS, collision, pair, read, refused, urdf
+
+ROOT, TIP, COUNT = 0.07, 0.08, 6
+THICK = 0.01
+ANGLE = 2.0 * math.pi / COUNT
+
+
+def bar(turn: float, inner: float = 0.04, tip: float = TIP, thick: float = THICK) -> str:
+    """A box that reaches from a distance to a circle round the axle, up at a turn of 0."""
+    outer = math.sqrt(tip**2 - 0.25 * thick**2)  # its corners are on that circle
+    middle, height = 0.5 * (inner + outer), outer - inner
+    # A rotation about y turns z forwards, which is clockwise in side view.
+    x, z = middle * math.sin(-turn), middle * math.cos(turn)
+    return collision(
+        f'<box size="{thick} 0.05 {height}"/>', f'<origin xyz="{x} 0 {z}" rpy="0 {-turn} 0"/>'
+    )
+
+
+def gear(
+    name: str, x: float, turn: float = 0.0, turns: Iterable[float] | None = None, **how: Any
+) -> str:
+    """Two wheels with grousers; the first points up at a turn of 0 [rad], and on to the rear."""
+    if turns is None:
+        turns = [turn + k * ANGLE for k in range(COUNT)]
+    bars = "".join(bar(each, **how) for each in turns)
+    wheels = pair(name, x, radius=str(ROOT))
+    end = f"<collision>{ACROSS}<geometry>{ROUND.format(radius=ROOT)}</geometry></collision>"
+    assert end in wheels
+    return wheels.replace(end, end + bars)
+
+
+def wheel_of(folder: Path, *parts: str, **how: Any) -> c2d.GearWheel:
+    track = read(folder, urdf(*parts), **how).robot.track
+    assert isinstance(track, c2d.LineOfWheels)
+    assert isinstance(track.wheel, c2d.GearWheel)
+    return track.wheel
+
+
+def test_boxes_evenly_round_a_wheel_are_its_grousers(tmp_path: Path) -> None:
+    robot = read(tmp_path, urdf(gear("front", 0.2), gear("rear", -0.2))).robot
+    assert robot.outline.front_radius == pytest.approx(TIP)
+    assert isinstance(robot.track, c2d.LineOfWheels)
+    wheel = robot.track.wheel
+    assert isinstance(wheel, c2d.GearWheel)
+    assert wheel.grouser_count == COUNT
+    assert wheel.grouser_height == pytest.approx(TIP - ROOT)
+    assert wheel.tip_thickness == pytest.approx(THICK)
+    assert wheel.base_thickness is None
+
+
+def test_how_deep_a_box_reaches_into_its_wheel_makes_no_difference(tmp_path: Path) -> None:
+    found = [
+        wheel_of(tmp_path, gear("front", 0.2, inner=inner), gear("rear", -0.2, inner=inner))
+        for inner in (0.02, 0.069)
+    ]
+    assert found[0].tip_thickness == pytest.approx(found[1].tip_thickness)
+    assert found[0].grouser_height == pytest.approx(found[1].grouser_height)
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0 / 3.0, 0.5, 0.9])
+def test_each_wheel_starts_a_share_of_the_spacing_ahead_of_the_one_behind(
+    share: float, tmp_path: Path
+) -> None:
+    """Six grousers: one that points up stands as one that points 30 degrees above forward."""
+    parts = [
+        gear(name, x, turn=(number * share - 0.5) * ANGLE)
+        for number, (name, x) in enumerate((("rear", -0.2), ("mid", 0.0), ("front", 0.2)), 1)
+    ]
+    found = wheel_of(tmp_path, *parts).phase_fraction
+    assert found == pytest.approx(share)
+
+
+def test_wheels_start_in_a_simulation_as_they_stand_in_the_file(tmp_path: Path) -> None:
+    turns = [(0.4 * number - 0.5) * ANGLE for number in (1, 2)]
+    parts = [gear("rear", -0.2, turn=turns[0]), gear("front", 0.2, turn=turns[1])]
+    robot = read(tmp_path, urdf(*parts)).robot
+    outlines = _core.geometry(robot._alone())["bodies"]["outline"]
+    for turn, outline in zip(turns, outlines, strict=False):
+        up = 0.5 * math.pi + turn  # the direction of its first bar in side view
+        away = np.array(outline) - TIP * np.array([math.cos(up), math.sin(up)])
+        # The middle of a tip lies between two corners, and a little within the circle.
+        assert np.sort(np.hypot(*away.T))[:2] == pytest.approx(0.5 * THICK, abs=1e-4)
+
+
+def test_wheels_that_all_start_turned_by_more_are_noted(tmp_path: Path) -> None:
+    turn = -0.5 * ANGLE + math.radians(7.0)
+    reading = read(
+        tmp_path, urdf(*(gear(n, x, turn=turn) for n, x in (("a", 0.2), ("b", -0.2), ("c", 0.0))))
+    )
+    assert isinstance(reading.robot.track, c2d.LineOfWheels)
+    assert reading.robot.track.wheel.phase_fraction == pytest.approx(0.0, abs=1e-9)  # type: ignore[union-attr]
+    assert any("all start turned by 7 degrees" in note for note in reading.notes)
+    assert not any("phase_fraction" in doubt for doubt in reading.doubts)
+
+
+def test_wheels_that_start_turned_without_a_rule_are_doubted(tmp_path: Path) -> None:
+    turns = (("a", 0.2, 0.0), ("b", 0.0667, 0.3), ("c", -0.0667, 0.1), ("d", -0.2, 0.35))
+    reading = read(tmp_path, urdf(*(gear(name, x, turn=turn) for name, x, turn in turns)))
+    assert any("robot.track.wheel.phase_fraction" in doubt for doubt in reading.doubts)
+
+
+def test_a_wheel_with_grousers_turned_against_that_of_the_other_side_is_doubted(
+    tmp_path: Path,
+) -> None:
+    text = urdf(gear("front", 0.2), gear("rear", -0.2))
+    start = text.index('<link name="right_front">')
+    end = text.index("</link>", start)
+    other = gear("front", 0.2, turn=0.2)
+    first = other.index('<link name="right_front">')
+    turned = other[first : other.index("</link>", first)]
+    reading = read(tmp_path, text[:start] + turned + text[end:])
+    assert any("start up to 11.5 degrees off" in doubt for doubt in reading.doubts)
+
+
+def test_hulls_that_taper_are_grousers_with_their_thickness_at_the_root(tmp_path: Path) -> None:
+    """Corners 12 mm apart at 65 mm and 8 mm apart at 80 mm: on the root circle, 10.7 mm."""
+    corners = [(0.004, 0.08), (0.006, 0.065)]
+    lines = [f"v {s * x} {y} {z}" for x, z in corners for s in (-1, 1) for y in (-0.02, 0.02)]
+    (tmp_path / "grouser.obj").write_text("\n".join(lines))
+    turned = "".join(
+        collision('<mesh filename="grouser.obj"/>', f'<origin rpy="0 {k * ANGLE} 0"/>')
+        for k in range(COUNT)
+    )
+    parts = "".join(gear(name, x, turns=()) for name, x in (("front", 0.2), ("rear", -0.2)))
+    end = f"<geometry>{ROUND.format(radius=ROOT)}</geometry></collision>"
+    wheel = wheel_of(tmp_path, parts.replace(end, end + turned), mesh="hull")
+    assert wheel.tip_thickness == pytest.approx(0.008)
+    height = math.sqrt(ROOT**2 - 0.0053**2)  # where the flank is, to a hundredth of a millimetre
+    at_root = 0.008 + 0.004 * (0.08 - height) / 0.015
+    assert wheel.base_thickness == pytest.approx(at_root, abs=1e-5)
+    assert wheel.grouser_height == pytest.approx(math.hypot(0.08, 0.004) - ROOT)
+
+
+def test_the_lines_of_a_gear_wheel_are_those_of_its_grousers_too(tmp_path: Path) -> None:
+    text = urdf(gear("front", 0.2), gear("rear", -0.2)).replace("<collision>", "\n<collision>")
+    reading = read(tmp_path, text)
+    # 4 wheels of a cylinder and six boxes
+    assert "28 lines" in reading.sources["robot.track"]
+
+
+def test_grousers_that_grip_otherwise_than_their_wheel_are_refused(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=6)))
+    text = robot.without_flippers().to_mjcf(friction=0.6)
+    assert read(tmp_path, text, "gears.xml").friction == 0.6
+    first = re.search(
+        r'<geom [^>]*type="box"[^>]*friction="0.6', text[text.index("left_wheel_1") :]
+    )
+    assert first is not None
+    slick = text.replace(first[0], first[0].replace('friction="0.6', 'friction="0.3'), 1)
+    refused(tmp_path, slick, "must be that of all wheels, 0.6", "gears.xml")
+
+
+def test_round_wheels_beside_gear_wheels_are_refused(tmp_path: Path) -> None:
+    text = urdf(gear("front", 0.2), pair("rear", -0.2))
+    refused(tmp_path, text, "must have grousers, as other wheels of its track")
+
+
+@pytest.mark.parametrize("how", [{"thick": 0.008}, {"tip": 0.082}])
+def test_gear_wheels_that_differ_are_refused(how: dict[str, Any], tmp_path: Path) -> None:
+    text = urdf(gear("front", 0.2), gear("rear", -0.2, **how))
+    refused(tmp_path, text, "must have the grousers of the other wheels of its track, 6 of 1")
+
+
+def test_gear_wheels_with_other_numbers_of_grousers_are_refused(tmp_path: Path) -> None:
+    turns = np.arange(8) * math.pi / 4.0
+    text = urdf(gear("front", 0.2), gear("rear", -0.2, turns=turns))
+    refused(tmp_path, text, "must have the grousers of the other wheels")
+
+
+@pytest.mark.parametrize(
+    ("turns", "how"),
+    [
+        ([0.0, ANGLE, 2.0 * ANGLE, 3.0 * ANGLE, 4.0 * ANGLE], {}),  # one is missing
+        ([0.1, *(k * ANGLE for k in range(1, 6))], {}),  # one is out of place
+        ([0.0, math.pi], {}),  # too few
+        (None, {"tip": 0.069}),  # within the wheel
+        (None, {"inner": 0.073}),  # beside it
+    ],
+)
+def test_what_is_no_gear_wheel_is_no_wheel(
+    turns: list[float] | None, how: dict[str, Any], tmp_path: Path
+) -> None:
+    text = urdf(gear("front", 0.2, turns=turns, **how), gear("rear", -0.2, turns=turns, **how))
+    refused(tmp_path, text, "must have wheels, which are round collision shapes")
+    beside = read(tmp_path, urdf(WHEELS, gear("mid", 0.0, turns=turns, **how)))
+    assert any("left_mid" in note and "touch nothing" in note for note in beside.notes)
+
+
+def test_grousers_of_other_sizes_are_no_gear_wheel(tmp_path: Path) -> None:
+    mixed = "".join(gear(name, x) for name, x in (("front", 0.2), ("rear", -0.2)))
+    first = re.escape(f'<box size="{THICK} 0.05')
+    mixed = re.sub(rf"({ROUND.format(radius=ROOT)}.*?){first}", r'\1<box size="0.009 0.05', mixed)
+    refused(tmp_path, urdf(mixed), "must have wheels")
+
+
+def test_a_robot_on_gear_wheels_that_was_read_climbs_what_round_ones_do_not(
+    tmp_path: Path,
+) -> None:
+    text = urdf(*(gear(name, x) for name, x in (("front", 0.2), ("rear", -0.2))), mass="8")
+    robot = read(tmp_path, text).robot
+    ground = c2d.terrains.step(0.05, friction=0.3)
+    outcomes = [
+        str(c2d.simulate(each, ground).outcome)
+        for each in (robot, robot.with_track(c2d.LineOfWheels(2)))
+    ]
+    assert outcomes[0] == "cleared"
+    assert outcomes[1] != "cleared"
