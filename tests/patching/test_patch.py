@@ -68,6 +68,27 @@ def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", CARTS)
+def test_gear_wheels_read_back(name: str, tmp_path: Path) -> None:
+    reading = quietly(FILES / name)
+    gear = c2d.GearWheel(grouser_count=12, grouser_height=0.02, tip_thickness=0.008)
+    arms = reading.robot.flippers
+    assert arms is not None
+    arms = replace(arms, track=c2d.LineOfWheels(2))  # those of the flippers stay round
+    robot = replace(reading.robot, track=c2d.LineOfWheels(4, wheel=gear), flippers=arms)
+    again = reread(reading, patched(reading, robot).text, tmp_path).robot
+    assert isinstance(again.track, c2d.LineOfWheels)
+    assert again.track.count == 4
+    found = again.track.wheel
+    assert isinstance(found, c2d.GearWheel)
+    assert found.grouser_count == 12
+    # Files have boxes to eight digits.
+    assert found.grouser_height == pytest.approx(0.02, abs=1e-6)
+    assert found.tip_thickness == pytest.approx(0.008, abs=1e-6)
+    assert found.phase_fraction == pytest.approx(gear.phase_fraction, abs=1e-4)
+    assert again.mass == pytest.approx(robot.mass, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", CARTS)
 def test_wheels_of_flippers_change_where_they_hang(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)
     again = reread(reading, patched(reading, with_own_flippers(reading)).text, tmp_path).robot

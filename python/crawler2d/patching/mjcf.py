@@ -92,7 +92,5 @@ def _add_grousers(document: Document, body: Span, change: Change, pose: Pose) ->
         place = shape.pose.seen_from(wheel)
         where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
         size = f'size="{written(0.5 * shape.size)}"'
-        # Its mass is that of the wheel already.
-        document.append(
-            body, f'<geom name="{shape.name}" type="box" {where} {size} mass="0"{given}/>'
-        )
+        # Its mass is that of the wheel already; without a name, as names must differ.
+        document.append(body, f'<geom type="box" {where} {size} mass="0"{given}/>')
