@@ -83,7 +83,7 @@ map: $(VENV)/.built ## draw docs/rooms.svg: what rooms import of each other
 notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their outputs, some minutes
 	$(BIN)/python -m tests.reports.notebooks $(ARGS)
 
-paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; some hours, Ctrl-C loses nothing
+paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour or two, Ctrl-C loses nothing
 	$(BIN)/python -m crawler2d paper $(ARGS)
 
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
