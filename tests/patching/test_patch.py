@@ -196,7 +196,7 @@ def test_what_cannot_be_changed_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(c2d.ScenarioError, match=r"robot\.flippers must be where the file has them"):
         patched(reading, replace(reading.robot, flippers=None))
     heavier = replace(on_chassis(reading, 4), mass=reading.robot.mass + 1.0)
-    with pytest.raises(c2d.ScenarioError, match="the changed file: mass"):
+    with pytest.raises(c2d.ScenarioError, match="the changed file, read again: mass"):
         patched(reading, heavier)
     foreign = tmp_path / "cart.urdf"
     foreign.write_bytes(

@@ -123,7 +123,7 @@ class Assembly:
         """The chassis frame in that of the model: x forward, y to the left, z up."""
         view, base = self.view, self.base
         side = np.stack([view.forward, view.up], axis=1)  # turns the side view into the model
-        ahead = (base.front - base.rear) / base.length
+        ahead = base.ahead
         turn = np.stack([side @ ahead, view.left, side @ (-ahead[1], ahead[0])], axis=1)
         place = side @ (0.5 * (base.front + base.rear)) + self.middle * view.left
         return Pose(place=place, turn=turn)
