@@ -165,6 +165,14 @@ def test_standard_obstacles_grow_with_the_robot() -> None:
         assert getattr(a, "friction") == getattr(b, "friction") == 0.8  # noqa: B009
 
 
+def test_a_raised_idler_makes_no_small_obstacles() -> None:
+    discs = ((-0.3, 0.0, 0.1), (0.25, 0.0, 0.1), (0.4, 0.1, 0.04))
+    outline = replace(SEIZING.outline, discs=discs)
+    robot = replace(SEIZING, outline=outline).with_track(c2d.BeltTrack())
+    found = standard_obstacles(robot, 0.8)
+    assert list(found)[:2] == ["step 100 mm", "step 160 mm"]  # 0.5 and 0.8 of 0.1 + 0.1 m
+
+
 def test_with_flippers_there_is_a_higher_step() -> None:
     assert (
         len(standard_obstacles(c2d.robots.absolem(), 0.8))

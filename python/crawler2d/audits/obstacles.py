@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from crawler2d.errors import ScenarioError
-from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.terrain import (
     Barrier,
     DiagonalBarrier,
@@ -30,8 +30,8 @@ _KNIVES = (0.4, 0.8)
 def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
     """Return the standard obstacles of a robot, by what they are.
 
-    Every length is a multiple of R, the radius of the front end of the outline, or of L, the axle
-    distance:
+    Every length is a multiple of R, the height of the front axle above the lowest point of the
+    outline, which is the radius of equal ends, or of L, the axle distance:
 
     - steps of 0.5, 0.8 and 1.1 R, with flippers also of 1.5 R;
     - a kerb, 0.8 R high, whose edge is rounded by 0.3 R;
@@ -67,7 +67,7 @@ def standard_obstacles(robot: Robot, friction: float) -> dict[str, Terrain]:
     >>> len(found), list(found)[:3], found["knife edge 51 mm"].thickness
     (13, ['step 32 mm', 'step 51 mm', 'step 70 mm'], 0.0064)
     """
-    radius, axles = robot.outline.front_radius, robot.outline.axle_distance
+    radius, axles = _front_axle_height(robot.outline), robot.outline.axle_distance
     heights = _STEPS if robot.flippers is None else (*_STEPS, _HIGH)
     high = 0.8 * radius
     found: dict[str, Lane | DiagonalBarrier | RandomStepfield] = {
@@ -104,6 +104,15 @@ def read_obstacles(obstacles: object) -> dict[str, Terrain]:
         if not isinstance(ground, Terrain):
             raise ScenarioError(f"obstacles[{label!r}]", ground, "must be a terrain")
     return dict(obstacles)
+
+
+def _front_axle_height(outline: TrackOutline) -> float:
+    """[m] Return how high an edge is that meets the front end at its axle: belts climb about that.
+
+    The radius of the front end says less: an idler that is raised is small.
+    """
+    _, (_, y, _) = outline.ends
+    return y - min(y - radius for _, y, radius in outline.discs)
 
 
 def _mm(length: float) -> str:
