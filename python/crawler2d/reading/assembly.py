@@ -142,7 +142,7 @@ class Assembly:
             rule = "the mass of the wheels, as of hoops: their moments of inertia exceed it"
             self.told.note("robot.track_mass", estimate(rule))
             self.told.doubts.append(
-                ("robot.track_mass", moving, "is limited to hoops: wheels state more inertia")
+                ("robot.track_mass", float(f"{moving:.4g}"), "is limited to hoops: wheels state more inertia")
             )
         return moving
 
