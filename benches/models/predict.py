@@ -10,7 +10,7 @@ from benches.models.cases import Case
 from crawler2d.audits.audit import audit
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.parameters.terrain import Flat, Terrain
+from crawler2d.parameters.terrain import Flat
 from crawler2d.runs.batch import simulate_many
 from crawler2d.variation.variability import of_start
 
@@ -22,16 +22,19 @@ PREDICTIONS = Path(__file__).with_name("predictions.json")
 def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     """Search for a repair under the conditions of a case, and drive both robots from its starts.
 
+    The search is over the cells at the speed of an audit.
+
     Returns
     -------
     dict
         By model, "original" and "repair": what it is, the robot in a scenario on level ground, and
-        by obstacle one entry for each start: outcome, mechanism, the wheels between which ground is held, and the last
-        place of the chassis frame [m].
+        by cell one entry for each start: outcome, mechanism, and the last pose of the chassis frame
+        [m, rad].
     """
     own = case.robot()
-    grounds = case.obstacles(own)
-    drive = case.drive(own, next(iter(grounds.values())))
+    usual = {label: cell for label, cell in case.cells.items() if cell.speed is None}
+    grounds = {label: case.ground(cell, own) for label, cell in usual.items()}
+    drive = case.drive(next(iter(usual.values())), own)
     found = audit(
         own, grounds, drive=drive, unknown={}, vary=of_start(), repeats=20, threads=threads
     )
@@ -42,7 +45,7 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
             "what": what,
             "scenario": json.loads(Scenario(robot, Flat()).to_json()),
             "confirmed": name == "original" or repair.confirmed,
-            "runs": {label: _runs(case, robot, ground) for label, ground in grounds.items()},
+            "runs": {label: _runs(case.scenarios(label, robot), threads) for label in case.cells},
         }
         for name, (what, robot) in models.items()
     }
@@ -53,8 +56,8 @@ def robot_of(entry: dict[str, Any]) -> Robot:
     return Scenario.from_json(json.dumps(entry["scenario"])).robot
 
 
-def _runs(case: Case, robot: Robot, ground: Terrain) -> list[dict[str, Any]]:
-    runs = simulate_many(case.scenarios(robot, ground), record="summary", threads=1)
+def _runs(scenarios: list[Scenario], threads: int | None) -> list[dict[str, Any]]:
+    runs = simulate_many(scenarios, record="summary", threads=threads)
     return [
         {
             "end": str(run.outcome),
