@@ -22,7 +22,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benches.models", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
     verbs.add_parser("predict", help="search for repairs, and write the predictions down")
-    runs = verbs.add_parser("run", help="drive; what the output already has is not driven again")
+    runs = verbs.add_parser("run", help="drive; starts that the output has are not driven again")
     runs.add_argument("engine", choices=ENGINES)
     runs.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     runs.add_argument("--files", nargs="+", choices=FILES, default=list(FILES))

@@ -134,8 +134,7 @@ class BulletWorld:
         frame = self.pose()
         return {
             name: (
-                np.array(self._call("getLinkState", self._body, self._links[name])[4])
-                - frame.place
+                np.array(self._call("getLinkState", self._body, self._links[name])[4]) - frame.place
             ).tolist()
             for name in self._model.wheels
         }
@@ -161,9 +160,8 @@ class BulletWorld:
         offset, inner = self._offset
         back = pybullet.invertTransform(offset.tolist(), inner)
         place, turn = pybullet.multiplyTransforms(middle, turned, *back)
-        root = Pose(
-            place=np.array(place), turn=np.array(pybullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
-        )
+        axes = np.array(pybullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
+        root = Pose(place=np.array(place), turn=axes)
         return Pose(place=root.at(self._model.origin), turn=root.turn)
 
     def touches(self) -> list[Touch]:

@@ -130,7 +130,7 @@ def model_file(path: Path, reading: Reading, angle: float) -> ModelFile:
             held[link] = -end * turn / _sense(tree, link)
             cos, sin = np.cos(turn), end * np.sin(turn)
             x, _, z = axle - pivot
-            axle = pivot + [cos * x - sin * z, axle[1] - pivot[1], sin * x + cos * z]
+            axle = pivot + np.array([cos * x - sin * z, axle[1] - pivot[1], sin * x + cos * z])
         moved[name] = axle - origin
     return ModelFile(
         path=path,

@@ -60,7 +60,7 @@ def run(
 ) -> None:
     """Drive a file of a case over cells, and add the results to a JSON file.
 
-    Cells that the file already has are left as they are, and so are labels of other cases.
+    Starts that the file already has are not driven again, and labels of other cases are left out.
     """
     results: dict[str, Any] = {}
     if path.exists():
@@ -72,10 +72,10 @@ def run(
         model = model_of(case, file, robot, Path(folder))
         for label in labels:
             key = f"{case} | {file} | {label}"
-            if label in CASES[case].cells and key not in results:
-                scenarios = CASES[case].scenarios(label, robot)[:starts]
-                one = partial(_one, engine, time_step, model)
-                results[key] = list(pool.map(one, scenarios))
+            if label in CASES[case].cells:
+                own = results.setdefault(key, [])
+                scenarios = CASES[case].scenarios(label, robot)[len(own) : starts]
+                own += pool.map(partial(_one, engine, time_step, model), scenarios)
                 path.write_text(json.dumps(results) + "\n", encoding="utf-8")
 
 
