@@ -74,6 +74,11 @@ class Case:
     cells: Mapping[str, Cell]
     how: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def form(self) -> str:
+        """Format of the file, "sdf" or "urdf"."""
+        return "sdf" if self.file.endswith(".sdf") else "urdf"
+
     def reading(self) -> Reading:
         """Read the public file; what is doubted in it is in its audit."""
         with warnings.catch_warnings():

@@ -22,6 +22,8 @@ _NEAR = 0.002  # [m] gap up to which contacts are kept; Bullet's own 20 mm is mo
 class Bullet:
     """Bullet with steps of a millisecond, 200 iterations and a friction cone.
 
+    Its readers make a prism of 32 sides of every cylinder, unless that of URDF is told not to.
+
     Bullet multiplies the coefficients of two surfaces: that of the robot is 1, that of the ground
     the friction of the pair. Its readers give shapes a margin, by which edges are rounded.
 
@@ -29,26 +31,26 @@ class Bullet:
     ----------
     time_step : float
         [s] Of the engine.
-    margin : float, optional
-        [m] Of all shapes; None leaves what the readers give them, 1 mm.
+    is_round : bool
+        Whether cylinders are cylinders; only URDF can have that.
     """
 
     name = "Bullet"
     version = version("pybullet")
 
-    def __init__(self, time_step: float = 1e-3, margin: float | None = None) -> None:
+    def __init__(self, time_step: float = 1e-3, *, is_round: bool = True) -> None:
         self.time_step = time_step
-        self.margin = margin
+        self.is_round = is_round
 
     def world(self, scene: Scene) -> BulletWorld:
         """Build a world."""
-        return BulletWorld(scene, self.margin)
+        return BulletWorld(scene, self.is_round)
 
 
 class BulletWorld:
     """A robot on its ground in Bullet."""
 
-    def __init__(self, scene: Scene, margin: float | None) -> None:
+    def __init__(self, scene: Scene, is_round: bool) -> None:
         self._model = scene.model
         self._client = pybullet.connect(pybullet.DIRECT)
         self._call("setGravity", 0.0, 0.0, -9.81)
@@ -61,9 +63,11 @@ class BulletWorld:
             enableConeFriction=1,
             deterministicOverlappingPairs=1,
         )
-        self._ground = [self._box(box, scene.friction, margin) for box in scene.ground]
+        self._ground = [self._box(box, scene.friction) for box in scene.ground]
         path = str(scene.model.path)
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
+        if is_round:
+            flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
         if path.endswith(".sdf"):
             (self._body,) = self._call("loadSDF", path)
         else:
@@ -73,7 +77,7 @@ class BulletWorld:
         self._links = {info[12].decode(): info[0] for info in infos}
         self._moving = [info[0] for info in infos if info[2] == pybullet.JOINT_REVOLUTE]
         for link in (-1, *joints):
-            self._surface(self._body, link, 1.0, margin)
+            self._surface(self._body, link, 1.0)
         self._held = {self._links[name]: angle for name, angle in scene.model.held.items()}
         self._rates = {self._links[name]: rate for name, rate in scene.model.wheels.items()}
         self._place(scene)
@@ -84,8 +88,7 @@ class BulletWorld:
     def _call(self, name: str, *arguments: Any, **more: Any) -> Any:
         return getattr(pybullet, name)(*arguments, physicsClientId=self._client, **more)
 
-    def _surface(self, body: int, link: int, friction: float, margin: float | None) -> None:
-        given = {} if margin is None else {"collisionMargin": margin}
+    def _surface(self, body: int, link: int, friction: float) -> None:
         self._call(
             "changeDynamics",
             body,
@@ -97,14 +100,13 @@ class BulletWorld:
             linearDamping=0.0,
             angularDamping=0.0,
             jointDamping=0.0,
-            **given,
         )
 
-    def _box(self, box: Box, friction: float, margin: float | None) -> int:
+    def _box(self, box: Box, friction: float) -> int:
         half = [0.5 * each for each in box.size]
         shape = self._call("createCollisionShape", pybullet.GEOM_BOX, halfExtents=half)
         body = int(self._call("createMultiBody", 0.0, shape, basePosition=box.center))
-        self._surface(body, -1, friction, margin)
+        self._surface(body, -1, friction)
         return body
 
     def _place(self, scene: Scene) -> None:

@@ -13,6 +13,8 @@ from benches.models.cases import Case
 from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.reading import Reading, read_robot
+from crawler2d.writing.urdf import urdf_of
+from crawler2d.writing.xml import document
 
 __all__ = ["ModelFile", "cleaned", "exported", "model_file", "public"]
 
@@ -89,17 +91,21 @@ def cleaned(text: str) -> str:
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def public(case: Case, folder: Path) -> ModelFile:
-    """Return the public file of a case."""
+def public(case: Case, form: str, folder: Path) -> ModelFile:
+    """Return the public file of a case.
+
+    In another format than its own it has the same links, joints, shapes and inertias: those of the
+    tree that was read.
+    """
     reading = case.reading()
-    path = folder / Path(case.file).with_suffix(".sdf" if "SDF" in reading.tree.format else ".urdf")
-    path.write_text(cleaned(reading.text), encoding="utf-8")
+    path = folder / f"{Path(case.file).stem}.{form}"
+    text = reading.text if form == case.form else document(urdf_of(reading.tree), case.file)
+    path.write_text(cleaned(text), encoding="utf-8")
     return model_file(path, reading, case.angle)
 
 
-def exported(case: Case, robot: Robot, name: str, folder: Path) -> ModelFile:
-    """Return crawler2d's file of a robot, in the format of the public one."""
-    form = "sdf" if case.file.endswith(".sdf") else "urdf"
+def exported(case: Case, robot: Robot, form: str, name: str, folder: Path) -> ModelFile:
+    """Return crawler2d's file of a robot."""
     path = folder / f"{name}.{form}"
     text = robot.to_sdf(friction=_SURFACE) if form == "sdf" else robot.to_urdf(friction=_SURFACE)
     path.write_text(text, encoding="utf-8")

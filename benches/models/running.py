@@ -22,7 +22,9 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 
-ENGINES = ("bullet", "dart")
+ENGINES = ("bullet", "bullet-prisms", "dart")
+"""Bullet with true cylinders, Bullet with what its readers make of cylinders by default, DART."""
+
 
 FILES = {"public": "original", "export": "original", "repair": "repair"}
 """The files of a case, each with the prediction that it is to be compared with: the public one,
@@ -37,14 +39,16 @@ def engine_of(name: str, time_step: float | None = None) -> Engine:
     ImportError
         If it is not installed.
     """
-    given = {} if time_step is None else {"time_step": time_step}
-    if name == "bullet":
+    if name.startswith("bullet"):
         from benches.models.engine_bullet import Bullet  # noqa: PLC0415 - loads Bullet
 
-        return Bullet(**given)
+        is_round = name == "bullet"
+        if time_step is None:
+            return Bullet(is_round=is_round)
+        return Bullet(time_step, is_round=is_round)
     from benches.models.engine_dart import Dart  # noqa: PLC0415 - loads DART
 
-    return Dart(**given)
+    return Dart() if time_step is None else Dart(time_step)
 
 
 def run(
@@ -69,7 +73,7 @@ def run(
     predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
     robot = robot_of(predictions[case][FILES[file]])
     with tempfile.TemporaryDirectory() as folder, ProcessPoolExecutor(jobs) as pool:
-        model = model_of(case, file, robot, Path(folder))
+        model = model_of(engine, case, file, robot, Path(folder))
         for label in labels:
             key = f"{case} | {file} | {label}"
             if label in CASES[case].cells:
@@ -79,11 +83,15 @@ def run(
                 path.write_text(json.dumps(results) + "\n", encoding="utf-8")
 
 
-def model_of(case: str, file: str, robot: Robot, folder: Path) -> ModelFile:
-    """Write one of the files of a case into a folder; the public one is not made of the robot."""
+def model_of(engine: str, case: str, file: str, robot: Robot, folder: Path) -> ModelFile:
+    """Write one of the files of a case into a folder; the public one is not made of the robot.
+
+    Bullet has true cylinders from URDF alone.
+    """
+    form = "urdf" if engine == "bullet" else CASES[case].form
     if file == "public":
-        return public(CASES[case], folder)
-    return exported(CASES[case], robot, f"{case}_{file}", folder)
+        return public(CASES[case], form, folder)
+    return exported(CASES[case], robot, form, f"{case}_{file}", folder)
 
 
 def _one(

@@ -15,6 +15,7 @@ from benches.models.ground import DEPTH, WIDTH, boxes_of, profile_of
 from benches.models.judge import Judge
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.terrain import Barrier, Flat, Ridge, Stairs, Step
+from crawler2d.parameters.track import LineOfWheels
 from crawler2d.runs.batch import simulate_many
 
 GROUNDS = {
@@ -85,7 +86,8 @@ def test_other_ends_are_told_apart() -> None:
 def files_of(case: Case, folder: Path) -> list[ModelFile]:
     if case.file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
-    return [public(case, folder), exported(case, case.robot(), "export", folder)]
+    made = [exported(case, case.robot(), case.form, "export", folder)]
+    return [public(case, form, folder) for form in dict.fromkeys((case.form, "urdf"))] + made
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -110,11 +112,11 @@ def test_public_file_and_export_have_the_robots_wheels_where_it_holds_them(
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-@pytest.mark.parametrize("engine", ["bullet", "dart"])
+@pytest.mark.parametrize("engine", ["bullet", "bullet-prisms", "dart"])
 def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
     name: str, engine: str, tmp_path: Path
 ) -> None:
-    pytest.importorskip({"bullet": "pybullet", "dart": "dartpy"}[engine])
+    pytest.importorskip("dartpy" if engine == "dart" else "pybullet")
     running = importlib.import_module("benches.models.running")
     case = CASES[name]
     label = next(iter(case.cells))
@@ -146,7 +148,7 @@ def test_cleaning_takes_pictures_and_meshes_and_leaves_what_moves() -> None:
 def test_the_starts_of_a_cell_are_the_same_for_every_robot() -> None:
     case = CASES["absolem"]
     robot = case.robot()
-    repaired = robot.with_track(type(robot.track)(15))  # type: ignore[arg-type]
+    repaired = robot.with_track(LineOfWheels(15))
     label = next(iter(case.cells))
     pairs = zip(case.scenarios(label, robot), case.scenarios(label, repaired), strict=True)
     assert all(a.start == b.start and a.terrain == b.terrain for a, b in pairs)
