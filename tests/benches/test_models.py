@@ -127,8 +127,9 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
         found = driven(running.engine_of(engine), model, scenario)
         assert found["end"] == "timed out"
         start = -scenario.start.approach - model.foremost
-        # Half the acceleration times the square of the time, less what the first steps slip.
-        assert found["x"] - start == pytest.approx(0.045, abs=0.004)
+        # Half the acceleration times the square of the time, less what the wheels slip until the
+        # robot has settled: 4.4 mm at most.
+        assert found["x"] - start == pytest.approx(0.045, abs=0.006)
         assert max(found["yaw"], found["roll"], found["bend"]) < 0.01
 
 
