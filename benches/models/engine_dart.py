@@ -14,46 +14,50 @@ from crawler2d.models.poses import Pose
 
 __all__ = ["Dart"]
 
+_SWEEPS, _TOLERANCE = 300, 1e-7
+
 
 class Dart:
-    """DART with steps of half a millisecond, Dantzig's solver and ODE's collision detection.
+    """DART with ODE's collision detection, as gz-sim has it.
 
-    So gz-sim has it, but for its steps of a millisecond. DART takes the smaller coefficient of two
-    surfaces: that of the robot is 1, that of the ground the friction of the pair. Friction is a
-    pyramid, one of whose directions lies in the plane of travel. Wheels turn at given speeds, and
-    flippers are locked.
+    DART takes the smaller coefficient of two surfaces: that of the robot is 1, that of the ground
+    the friction of the pair. Its usual solver, Dantzig's, does not limit friction by the normal
+    force that it finds, but by the one without friction; its Gauss-Seidel solver keeps Coulomb's
+    law. Wheels turn at given speeds, and flippers are locked.
 
     Parameters
     ----------
     time_step : float
         [s] Of the engine.
-    detector : {"ode", "bullet", "fcl", "dart"}
-        What finds the contacts.
+    is_coulomb : bool
+        Whether the Gauss-Seidel solver finds the forces; else Dantzig's does.
     """
 
     name = "DART"
     version = version("dartpy")
 
-    def __init__(self, time_step: float = 5e-4, detector: str = "ode") -> None:
+    def __init__(self, time_step: float = 5e-4, *, is_coulomb: bool = True) -> None:
         self.time_step = time_step
-        self.detector = detector
+        self.is_coulomb = is_coulomb
 
     def world(self, scene: Scene) -> DartWorld:
         """Build a world."""
-        return DartWorld(scene, self.detector)
+        return DartWorld(scene, self.is_coulomb)
 
 
 class DartWorld:
     """A robot on its ground in DART."""
 
-    def __init__(self, scene: Scene, detector: str) -> None:
+    def __init__(self, scene: Scene, is_coulomb: bool) -> None:
         self._model = scene.model
         dynamics = dartpy.dynamics
         self._world = dartpy.simulation.World()
         self._world.setTimeStep(scene.time_step)
         self._world.setGravity([0.0, 0.0, -9.81])
         solver = self._world.getConstraintSolver()
-        solver.setCollisionDetector(_detector(detector))
+        solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
+        if is_coulomb:
+            solver.setBoxedLcpSolver(_gauss_seidel())
         for number, box in enumerate(scene.ground):
             self._world.addSkeleton(_ground(box, number, scene.friction))
         uri = f"file://{scene.model.path}"
@@ -139,14 +143,12 @@ class DartWorld:
         """Free what the world holds."""
 
 
-def _detector(name: str) -> Any:
-    found = {
-        "ode": "OdeCollisionDetector",
-        "bullet": "BulletCollisionDetector",
-        "fcl": "FCLCollisionDetector",
-        "dart": "DARTCollisionDetector",
-    }
-    return getattr(dartpy.collision, found[name])()
+def _gauss_seidel() -> Any:
+    solver = dartpy.constraint.NsgsFrictionSolver()
+    options = solver.getOptions()
+    options.maxSweeps, options.tolerance = _SWEEPS, _TOLERANCE
+    solver.setOptions(options)
+    return solver
 
 
 def _ground(box: Box, number: int, friction: float) -> Any:

@@ -22,8 +22,9 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 
-ENGINES = ("bullet", "bullet-prisms", "dart")
-"""Bullet with true cylinders, Bullet with what its readers make of cylinders by default, DART."""
+ENGINES = ("bullet", "bullet-prisms", "dart", "dart-dantzig")
+"""Bullet with true cylinders, and with what its readers make of them by default; DART with Coulomb's
+law, and with its usual solver."""
 
 
 FILES = {"public": "original", "export": "original", "repair": "repair"}
@@ -48,7 +49,10 @@ def engine_of(name: str, time_step: float | None = None) -> Engine:
         return Bullet(time_step, is_round=is_round)
     from benches.models.engine_dart import Dart  # noqa: PLC0415 - loads DART
 
-    return Dart() if time_step is None else Dart(time_step)
+    is_coulomb = name == "dart"
+    if time_step is None:
+        return Dart(is_coulomb=is_coulomb)
+    return Dart(time_step, is_coulomb=is_coulomb)
 
 
 def run(

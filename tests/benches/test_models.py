@@ -111,11 +111,11 @@ def test_public_file_and_export_have_the_robots_wheels_where_it_holds_them(
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
-@pytest.mark.parametrize("engine", ["bullet", "bullet-prisms", "dart"])
+@pytest.mark.parametrize("engine", running.ENGINES)
 def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
     name: str, engine: str, tmp_path: Path
 ) -> None:
-    pytest.importorskip("dartpy" if engine == "dart" else "pybullet")
+    pytest.importorskip("dartpy" if engine.startswith("dart") else "pybullet")
     if CASES[name].file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
     case = CASES[name]
