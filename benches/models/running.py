@@ -23,8 +23,8 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 RESULTS = Path(__file__).with_name("results")
 
 ENGINES = ("bullet", "bullet-prisms", "dart", "dart-dantzig")
-"""Bullet with true cylinders, and with what its readers make of them by default; DART with Coulomb's
-law, and with its usual solver."""
+"""Bullet with true cylinders, and with what its readers make of them by default; DART with
+Coulomb's law, and with its usual solver."""
 
 
 FILES = {"public": "original", "export": "original", "repair": "repair"}
