@@ -15,6 +15,9 @@ from benches.models.cases import CASES, STARTS
 from benches.models.predict import PREDICTIONS, predicted
 from benches.models.running import ENGINES, FILES, RESULTS, run
 from benches.models.table import table
+from crawler2d.reports.markdown import spliced
+
+_PAGE = Path(__file__).parents[2] / "docs" / "studies" / "engines.md"
 
 
 def main() -> None:
@@ -31,8 +34,8 @@ def main() -> None:
     runs.add_argument("--time-step", type=float, help="[s] other than the engine's own here")
     runs.add_argument("--output", type=Path, help="default: benches/models/results")
     runs.add_argument("--jobs", type=int, default=1, help="processes")
-    tables = verbs.add_parser("table", help="print the outcomes side by side")
-    tables.add_argument("results", nargs="*", type=Path)
+    tables = verbs.add_parser("table", help="print the outcomes, and put them into the page")
+    tables.add_argument("results", nargs="*", type=Path, help="others: only print these")
     given = parser.parse_args()
     if given.verb == "predict":
         found = {name: predicted(case, threads=1) for name, case in CASES.items()}
@@ -52,7 +55,11 @@ def main() -> None:
             )
     else:
         paths = given.results or [RESULTS / f"{engine}.json" for engine in ENGINES]
-        sys.stdout.write(table([path for path in paths if path.exists()]) + "\n")
+        text = table([path for path in paths if path.exists()])
+        sys.stdout.write(text + "\n")
+        if not given.results:
+            page = spliced(_PAGE.read_text(encoding="utf-8"), {"outcomes": text})
+            _PAGE.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from benches.models.predict import PREDICTIONS
 from benches.models.running import FILES
 from crawler2d.reports.markdown import markdown_table
 
-__all__ = ["agreement", "rows", "summary", "table"]
+__all__ = ["agreement", "counts", "rows", "summary", "table"]
 
 
 def summary(runs: Sequence[dict[str, Any]]) -> str:
@@ -40,13 +40,15 @@ def agreement(predicted: Sequence[dict[str, Any]], found: Sequence[dict[str, Any
 
 
 def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each cell: obstacle, friction, file, prediction, and each engine."""
+    """Return a row for each cell that was run: what it is, the prediction, and each engine."""
     predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
     found = []
     for name, case in CASES.items():
         for label, cell in case.cells.items():
             for file, model in FILES.items():
                 predicted = predictions[name][model]["runs"][label]
+                if not any(runs.get(f"{name} | {file} | {label}") for runs in results.values()):
+                    continue
                 row = [name, f"{label}, {cell.friction:g}", file, summary(predicted)]
                 for runs in results.values():
                     own = runs.get(f"{name} | {file} | {label}", [])
@@ -56,8 +58,25 @@ def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
     return found
 
 
+def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
+    """Return a row for each engine: in how many starts it agrees, by what was predicted."""
+    predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
+    found = []
+    for engine, runs in results.items():
+        same, of = Counter[str](), Counter[str]()
+        for key, own in runs.items():
+            name, file, label = key.split(" | ")
+            for a, b in zip(predictions[name][FILES[file]]["runs"][label], own, strict=False):
+                end = "clears" if a["end"] == "cleared" else "stops"
+                of[end] += 1
+                same[end] += agreement([a], [b])
+        found.append([engine, *(f"{same[end]} of {of[end]}" for end in ("stops", "clears"))])
+    return found
+
+
 def table(paths: Sequence[Path]) -> str:
-    """Return the table in Markdown; results are named after their files."""
+    """Return the tables in Markdown; results are named after their files."""
     results = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
     header = ["robot", "cell, friction", "file", "crawler2d", *results]
-    return markdown_table(header, rows(results))
+    sums = markdown_table(["engine", "predicted to stop", "predicted to clear"], counts(results))
+    return f"{markdown_table(header, rows(results))}\n\nStarts that agree, of all cells:\n\n{sums}"
