@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-peers bench-scaling format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-models bench-peers bench-scaling format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -60,6 +60,11 @@ bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours
 
 bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes
 	$(BIN)/python -m benches.peers.maps $(ARGS)
+
+# Bullet is built from source, which takes minutes.
+bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet and DART beside the predictions, hours; Ctrl-C loses little
+	for engine in dart dart-dantzig bullet bullet-prisms; do $(BIN)/python -m benches.models run $$engine || exit; done
+	$(BIN)/python -m benches.models table
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour
 	$(BIN)/python -m benches.peers $(ARGS)
@@ -137,6 +142,10 @@ $(BIN)/cargo-mutants: | tools
 
 $(VENV)/.peers: $(VENV)/.dependencies
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group peers
+	@touch $@
+
+$(VENV)/.engines: $(VENV)/.dependencies
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group engines
 	@touch $@
 
 # Which browser the pages are tested in: one of this machine, playwright's own, or Debian's.

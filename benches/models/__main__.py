@@ -1,0 +1,66 @@
+"""Drive files of models over obstacles in other engines, beside what crawler2d predicted.
+
+Usage, from the repository root: ``python -m benches.models predict``, ``run`` or ``table``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from itertools import product
+from pathlib import Path
+
+from benches.models.cases import CASES, STARTS
+from benches.models.predict import PREDICTIONS, predicted
+from benches.models.running import ENGINES, FILES, RESULTS, run
+from benches.models.table import table
+from crawler2d.reports.markdown import spliced
+
+_PAGE = Path(__file__).parents[2] / "docs" / "studies" / "engines.md"
+
+
+def main() -> None:
+    """Parse the arguments and run."""
+    parser = argparse.ArgumentParser(prog="python -m benches.models", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    verbs.add_parser("predict", help="search for repairs, and write the predictions down")
+    runs = verbs.add_parser("run", help="drive; starts that the output has are not driven again")
+    runs.add_argument("engine", choices=ENGINES)
+    runs.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
+    runs.add_argument("--files", nargs="+", choices=FILES, default=list(FILES))
+    runs.add_argument("--cells", nargs="+", metavar="LABEL", help="default: all")
+    runs.add_argument("--starts", type=int, default=STARTS)
+    runs.add_argument("--time-step", type=float, help="[s] other than the engine's own here")
+    runs.add_argument("--output", type=Path, help="default: benches/models/results")
+    runs.add_argument("--jobs", type=int, default=1, help="processes")
+    tables = verbs.add_parser("table", help="print the outcomes, and put them into the page")
+    tables.add_argument("results", nargs="*", type=Path, help="others: only print these")
+    given = parser.parse_args()
+    if given.verb == "predict":
+        found = {name: predicted(case, threads=1) for name, case in CASES.items()}
+        PREDICTIONS.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    elif given.verb == "run":
+        path = given.output or RESULTS / f"{given.engine}.json"
+        for case, file in product(given.cases, given.files):
+            run(
+                given.engine,
+                case,
+                file,
+                given.cells or CASES[case].cells,
+                path,
+                starts=given.starts,
+                time_step=given.time_step,
+                jobs=given.jobs,
+            )
+    else:
+        paths = given.results or [RESULTS / f"{engine}.json" for engine in ENGINES]
+        text = table([path for path in paths if path.exists()])
+        sys.stdout.write(text + "\n")
+        if not given.results:
+            page = spliced(_PAGE.read_text(encoding="utf-8"), {"outcomes": text})
+            _PAGE.write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+"""What is driven over what: robots of public files, flippers held, friction known."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crawler2d.audits.obstacles import standard_obstacles
+from crawler2d.audits.runs import scenario_of
+from crawler2d.errors import ScenarioWarning
+from crawler2d.parameters.gaits import Hold
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Drive, Start
+from crawler2d.parameters.terrain import Terrain
+from crawler2d.reading.reading import Reading, read_robot
+
+__all__ = ["CASES", "ROBOTS", "STARTS", "Case", "Cell"]
+
+ROBOTS = Path(__file__).parents[2] / "tests" / "robots"
+STARTS = 20
+
+_AMPLE = 20.0
+"""[-] Times the torque that was read: no file limits its wheels below what makes them slip."""
+
+_FIRM = 1e4  # [N m] holds a flipper
+_SEED = 23
+_SPEED, _SLOW = 0.4, 0.1  # [m/s] what an audit has for 0.41 m between the axles; no momentum
+_DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """An obstacle, and how it is met.
+
+    Parameters
+    ----------
+    obstacle : str
+        Which of the standard obstacles of an audit.
+    friction : float
+        [-] Between robot and ground.
+    speed : float, optional
+        [m/s] Commanded; None takes that of an audit.
+    """
+
+    obstacle: str
+    friction: float
+    speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A public file and what its robot drives over.
+
+    Parameters
+    ----------
+    file : str
+        In `ROBOTS`.
+    angle : float
+        [rad] At which the flippers are held, relative to the chassis, upwards > 0.
+    cells : mapping of str to Cell
+        What it drives over, by label.
+    how : mapping
+        Keywords for `read_robot`.
+    """
+
+    file: str
+    angle: float
+    cells: Mapping[str, Cell]
+    how: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def form(self) -> str:
+        """Format of the file, "sdf" or "urdf"."""
+        return "sdf" if self.file.endswith(".sdf") else "urdf"
+
+    def reading(self) -> Reading:
+        """Read the public file; what is doubted in it is in its audit."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ScenarioWarning)
+            return read_robot(ROBOTS / self.file, **self.how)
+
+    def robot(self) -> Robot:
+        """Return the robot with motors that hold their speeds, and its flippers held."""
+        return self.held(self.reading().robot)
+
+    def held(self, robot: Robot) -> Robot:
+        """Hold the flippers of a robot, and let its motors hold their speeds."""
+        torque = _AMPLE * robot.drivetrain.max_torque
+        drivetrain = replace(robot.drivetrain, max_torque=torque, torque_sharing="track")
+        flippers = robot.flippers
+        if flippers is not None:
+            flippers = replace(flippers, angle=self.angle, torque_limit=_FIRM)
+        return replace(robot, drivetrain=drivetrain, flippers=flippers)
+
+    def ground(self, cell: Cell, robot: Robot) -> Terrain:
+        """Return the obstacle of a cell, scaled to the robot as it is."""
+        return standard_obstacles(robot, cell.friction)[cell.obstacle]
+
+    def drive(self, cell: Cell, robot: Robot) -> Drive:
+        """Return the command of a cell: flippers are held."""
+        usual = scenario_of(robot, self.ground(cell, robot), None, None).drive.speed
+        return Drive(speed=usual if cell.speed is None else cell.speed, gait=Hold(self.angle))
+
+    def scenarios(self, label: str, robot: Robot) -> list[Scenario]:
+        """Return one scenario for each start of a cell.
+
+        All robots of a case have the same outline, and so the same obstacles and starts.
+        """
+        cell = self.cells[label]
+        length = robot.outline.axle_distance
+        drive = self.drive(cell, robot)
+        generator = np.random.default_rng(_SEED)
+        approach = length * (0.2 + generator.uniform(-0.125, 0.125, STARTS))
+        turn = 2.0 * np.pi * robot.outline.front_radius
+        phase = generator.uniform(0.0, turn, STARTS)
+        return [
+            Scenario(
+                robot,
+                self.ground(cell, robot),
+                drive=drive,
+                start=Start(approach=float(far), track_phase=float(along)),
+                duration=_DURATION / drive.speed,
+            )
+            for far, along in zip(approach, phase, strict=True)
+        ]
+
+
+CASES: dict[str, Case] = {
+    "absolem": Case(
+        file="absolem.sdf",
+        angle=0.7,
+        cells={
+            "step 44 mm": Cell("step 44 mm", 0.43),
+            "step 71 mm": Cell("step 71 mm", 0.43),
+            "knife edge 71 mm": Cell("knife edge 71 mm", 0.43),
+            "barrier 71 mm": Cell("barrier 71 mm", 0.43),
+            "stairs of 71 mm": Cell("stairs of 71 mm", 0.5),
+            "slow, step 44 mm": Cell("step 44 mm", 0.5, _SLOW),
+            "slow, step 71 mm": Cell("step 71 mm", 0.5, _SLOW),
+            "slow, stairs of 71 mm": Cell("stairs of 71 mm", 0.65, _SLOW),
+            "slow, knife edge 71 mm": Cell("knife edge 71 mm", 0.72, _SLOW),
+        },
+    ),
+    "engineer": Case(
+        file="eng.xacro",
+        angle=0.0,
+        cells={
+            "step 40 mm": Cell("step 40 mm", 0.45),
+            "step 64 mm": Cell("step 64 mm", 0.47),
+            "knife edge 64 mm": Cell("knife edge 64 mm", 0.5),
+            "barrier 64 mm": Cell("barrier 64 mm", 0.43),
+            "stairs of 64 mm": Cell("stairs of 64 mm", 0.65),
+            "slow, knife edge 32 mm": Cell("knife edge 32 mm", 0.6, _SLOW),
+            "slow, step 40 mm": Cell("step 40 mm", 0.6, _SLOW),
+            "slow, step 64 mm": Cell("step 64 mm", 0.65, _SLOW),
+            "slow, knife edge 64 mm": Cell("knife edge 64 mm", 0.6, _SLOW),
+            "slow, barrier 64 mm": Cell("barrier 64 mm", 0.65, _SLOW),
+            "slow, stairs of 64 mm": Cell("stairs of 64 mm", 0.68, _SLOW),
+        },
+        how={"trusted": True, "mesh": "leave_out", "missing": "leave_out"},
+    ),
+}
+"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest."""

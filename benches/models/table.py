@@ -1,0 +1,82 @@
+"""Outcomes side by side: predictions, and what the engines came to."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from benches.models.cases import CASES
+from benches.models.predict import PREDICTIONS
+from benches.models.running import FILES
+from crawler2d.reports.markdown import markdown_table
+
+__all__ = ["agreement", "counts", "rows", "summary", "table"]
+
+
+def summary(runs: Sequence[dict[str, Any]]) -> str:
+    """Return how runs ended, and where the chassis frame of those that stopped is [mm].
+
+    Examples
+    --------
+    >>> summary([{"end": "seized", "x": -0.3372}] * 2 + [{"end": "cleared", "x": 0.56}])
+    '2 seized at -337, 1 cleared'
+    """
+    words = []
+    for end, count in Counter(run["end"] for run in runs).most_common():
+        places = sorted(1e3 * run["x"] for run in runs if run["end"] == end)
+        low, high = (f"{places[i]:.0f}" for i in (0, -1))
+        at = f" at {low}" if low == high else f" at {low} to {high}"
+        words.append(f"{count} {end}" + ("" if end == "cleared" else at))
+    return ", ".join(words)
+
+
+def agreement(predicted: Sequence[dict[str, Any]], found: Sequence[dict[str, Any]]) -> int:
+    """Return in how many starts both clear or both do not."""
+    pairs = zip(predicted, found, strict=False)
+    return sum((a["end"] == "cleared") == (b["end"] == "cleared") for a, b in pairs)
+
+
+def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
+    """Return a row for each cell that was run: what it is, the prediction, and each engine."""
+    predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
+    found = []
+    for name, case in CASES.items():
+        for label, cell in case.cells.items():
+            for file, model in FILES.items():
+                predicted = predictions[name][model]["runs"][label]
+                if not any(runs.get(f"{name} | {file} | {label}") for runs in results.values()):
+                    continue
+                row = [name, f"{label}, {cell.friction:g}", file, summary(predicted)]
+                for runs in results.values():
+                    own = runs.get(f"{name} | {file} | {label}", [])
+                    same = f" ({agreement(predicted, own)} of {len(own)})" if own else ""
+                    row.append(summary(own) + same)
+                found.append(row)
+    return found
+
+
+def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
+    """Return a row for each engine: in how many starts it agrees, by what was predicted."""
+    predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
+    found = []
+    for engine, runs in results.items():
+        same, of = Counter[str](), Counter[str]()
+        for key, own in runs.items():
+            name, file, label = key.split(" | ")
+            for a, b in zip(predictions[name][FILES[file]]["runs"][label], own, strict=False):
+                end = "clears" if a["end"] == "cleared" else "stops"
+                of[end] += 1
+                same[end] += agreement([a], [b])
+        found.append([engine, *(f"{same[end]} of {of[end]}" for end in ("stops", "clears"))])
+    return found
+
+
+def table(paths: Sequence[Path]) -> str:
+    """Return the tables in Markdown; results are named after their files."""
+    results = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
+    header = ["robot", "cell, friction", "file", "crawler2d", *results]
+    sums = markdown_table(["engine", "predicted to stop", "predicted to clear"], counts(results))
+    return f"{markdown_table(header, rows(results))}\n\nStarts that agree, of all cells:\n\n{sums}"
