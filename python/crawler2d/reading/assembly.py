@@ -74,6 +74,9 @@ class Assembly:
         is_belt = bool(pairs) and pairs[0].left[0].joint is None
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
+        if gear.bars and not is_belt:
+            rule = "must have a drum at either end of a track"
+            raise ScenarioError(str(at), "moved boxes only", rule)
         bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
         base, rear = frame_of(self.told, bent, tolerance)
         by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
