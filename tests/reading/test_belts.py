@@ -1,6 +1,7 @@
 """A moved belt is that round its drums: those that bend it are the outline, others nothing."""
 
 import math
+import re
 import time
 from pathlib import Path
 
@@ -122,6 +123,19 @@ def test_a_moved_box_beyond_the_belt_is_refused(
 ) -> None:
     text = tracked(drums, box(0.0, -0.01, 0.3, 0.2))
     refused(tmp_path, text, "must lie within the belt round the drums, within 2 mm", "tank.sdf")
+
+
+def test_moved_boxes_without_drums_are_refused(tmp_path: Path) -> None:
+    bare = box(0.2, 0.0, 0.3, 0.2)
+    text = on_flippers((0.0, 0.0, 0.1), (0.3, 0.0, 0.05))
+    without = re.sub(
+        r'(<link name="\w+_arm">.*?</pose>).*?</link>', rf"\1{bare}</link>", text, flags=re.DOTALL
+    )
+    refused(tmp_path, without, "must have drums, to carry a belt", "tank.sdf")
+    without = re.sub(
+        r'(<link name="\w+_track">.*?</pose>).*?</link>', rf"\1{bare}</link>", text, flags=re.DOTALL
+    )
+    refused(tmp_path, without, "must have a drum at either end of a track", "tank.sdf")
 
 
 def on_flippers(*drums: tuple[float, float, float]) -> str:

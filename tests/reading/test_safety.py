@@ -1,13 +1,14 @@
 """A file that nobody vouches for costs neither time nor memory, and its error names the line."""
 
 import pickle
+import re
 import time
 from pathlib import Path
 
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import TENSOR, WHEELS, read, urdf
+from tests.reading.carts import FILES, TENSOR, WHEELS, read, urdf
 
 BOMB = """<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa">
 <!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
@@ -187,3 +188,20 @@ def test_a_folder_of_the_model_is_not_on_the_path_of_the_child(tmp_path: Path) -
     (tmp_path / "mujoco.py").write_text("raise SystemExit('imported what lies beside a model')")
     with pytest.raises(c2d.ScenarioError, match="must have one body with a free joint"):
         read(tmp_path, "<mujoco><worldbody/></mujoco>", "m.xml")
+
+
+@pytest.mark.parametrize(
+    ("change", "rule"),
+    [
+        (('pos="0.25 0.25 0"', 'pos="1e300 0.25 0"'), "must be finite and at most 1e"),
+        (('pos="0.25 0.25 0"', 'pos="0.25 0.25 0" quat="1 1e300 0 0"'), "must be a rotation"),
+    ],
+)
+def test_numbers_that_no_robot_has_are_refused_in_mjcf(
+    tmp_path: Path, change: tuple[str, str], rule: str
+) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text()
+    assert change[0] in text
+    error = refused(tmp_path, text.replace(*change, 1), rule, "cart.xml")
+    assert re.match(r"cart\.xml:\d+: bodies", error.path)

@@ -110,6 +110,9 @@ def arm_pairs(
     waiting = list(arms)
     while waiting:
         arm = waiting.pop(0)
+        if not arm.runners:
+            path = f"{arm.joint.at}: joint[{arm.joint.name}]"
+            raise ScenarioError(path, "moved boxes only", "must have drums, to carry a belt")
         together: tuple[Arm, ...] = (arm,)
         if len({runner.z > middle for runner in arm.runners}) == 1:  # it has one side only
             partner = _partner(arm, waiting, tolerance)

@@ -78,6 +78,9 @@ class Assembly:
         is_belt = bool(pairs) and pairs[0].left[0].joint is None
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
+        if gear.bars and not is_belt:
+            rule = "must have a drum at either end of a track"
+            raise ScenarioError(str(at), "moved boxes only", rule)
         bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
         base, rear = frame_of(self.told, bent, tolerance)
         self.base = base
@@ -142,7 +145,11 @@ class Assembly:
             rule = "the mass of the wheels, as of hoops: their moments of inertia exceed it"
             self.told.note("robot.track_mass", estimate(rule))
             self.told.doubts.append(
-                ("robot.track_mass", float(f"{moving:.4g}"), "is limited to hoops: wheels state more inertia")
+                (
+                    "robot.track_mass",
+                    float(f"{moving:.4g}"),
+                    "is limited to hoops: wheels state more inertia",
+                )
             )
         return moving
 

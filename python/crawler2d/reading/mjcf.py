@@ -21,6 +21,9 @@ __all__ = ["read_mjcf"]
 
 Plain = dict[str, Any]
 
+_LARGEST = 1e6  # [m, kg, ...] as in other formats; limits may be infinite
+_SIZES = ("place", "center", "size", "points", "mass", "inertia", "moved")
+
 
 def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes: Meshes) -> Tree:
     """Read the robot of an MJCF file: what hangs on one free joint.
@@ -54,8 +57,7 @@ def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes:
     file = root.where.file
     question = {"text": text, "folder": str(folder), "file": file}
     plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=folder)
-    if not _finite(plain):
-        raise ScenarioError(file, "a number", "must have finite numbers only")
+    _refuse_wild(plain, file)
     return _Model(plain, root.where, meshes).tree(model)
 
 
@@ -67,12 +69,22 @@ def _refuse_includes(root: Element) -> None:
             element.refuse(element.attributes.get("file", ""), rule)
 
 
-def _finite(value: Any) -> bool:
-    if isinstance(value, dict):
-        return all(_finite(v) for v in value.values())
-    if isinstance(value, list):
-        return all(_finite(v) for v in value)
-    return not isinstance(value, float) or math.isfinite(value)
+def _refuse_wild(plain: Plain, file: str) -> None:
+    """Refuse numbers that no robot has, as in other formats, and turns that are none."""
+    for kind in ("bodies", "joints", "shapes", "motors"):
+        for item in plain[kind]:
+            path = f"{file}:{item['line']}: {kind}[{item.get('name', '')}]"
+            for name, value in item.items():
+                numbers = np.array(value if isinstance(value, list) else [value]).ravel()
+                if numbers.dtype.kind not in "fi":
+                    continue
+                most = np.abs(numbers).max(initial=0.0)
+                if not most <= (_LARGEST if name in _SIZES else math.inf) or math.isnan(most):
+                    rule = f"must be finite and at most {_LARGEST:g} in magnitude"
+                    raise ScenarioError(f"{path}: {name}", float(most), rule)
+                # Squares of numbers that are too large leave MuJoCo with no direction at all.
+                if name in ("turn", "axes") and not numbers.any():
+                    raise ScenarioError(f"{path}: {name}", 0.0, "must be a rotation")
 
 
 class _Model:
