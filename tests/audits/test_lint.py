@@ -136,6 +136,16 @@ def test_sides_that_differ_within_the_tolerance(tmp_path: Path) -> None:
     assert of_text(tmp_path, urdf(WHEELS), "sides") == []
 
 
+def test_wheels_out_of_balance(tmp_path: Path) -> None:
+    text = urdf(WHEELS)
+    for off, count in (("0 0.02 0", 0), ("0.007 0 0", 0), ("0 0 0.01", 4)):  # y is the axle
+        swung = text.replace('<mass value="1"/>', f'<origin xyz="{off}"/><mass value="1"/>')
+        found = of_text(tmp_path, swung, "balance")
+        assert len(found) == bool(count)
+    assert found[0].what.startswith("left_front, right_front")
+    assert "off their axles by up to 10 mm" in found[0].what
+
+
 def test_an_inertia_that_breaks_the_triangle(tmp_path: Path) -> None:
     tensor = '<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.001"/>'
     text = urdf(WHEELS.replace(WHEEL_TENSOR, tensor))

@@ -18,6 +18,9 @@ __all__ = ["of_model", "wheel_links"]
 _STICKIEST = 2.0
 """[-] Rubber tracks on concrete have up to 1; more is meant to stop sliding, not measured."""
 
+_OFF_AXLE = 0.1
+"""[-] Share of its radius by which the centre of mass of a wheel may lie off its axle."""
+
 _SAME = 1e-6
 """[m] Last digit of the files: sides that differ by less are equal."""
 
@@ -34,6 +37,7 @@ def of_model(reading: Reading) -> Iterator[Finding]:
     yield from _effort(reading)
     yield from _driven(reading)
     yield from _sides(reading)
+    yield from _balance(reading)
     for doubt in reading.doubts:
         line = re.search(re.escape(reading.tree.file) + r"[^:]*:[0-9]+", doubt)
         where = line[0] if line else reading.tree.file
@@ -128,3 +132,24 @@ def _sides(reading: Reading) -> Iterator[Finding]:
     )
     where = f"{reading.tree.file}:{table['line'][left][index]}, {table['line'][right][index]}"
     yield Finding(rule="sides", severity="note", what=what, where=where)
+
+
+def _balance(reading: Reading) -> Iterator[Finding]:
+    """Find wheels that are out of balance: what turns with them is swung round the axle."""
+    radii = dict(
+        zip(reading.wheels["name"].tolist(), reading.wheels["radius"].tolist(), strict=True)
+    )
+    off = [
+        (math.hypot(*np.cross(joint.axis, link.center - joint.place)), link)
+        for link, joint in wheel_links(reading)
+    ]
+    found = [(away, link) for away, link in off if away > _OFF_AXLE * radii[link.name]]
+    if found:
+        most = max(away for away, _ in found)
+        names = named([link.name for _, link in found])
+        what = (
+            f"{names}: their centres of mass are off their axles by up to {1e3 * most:.3g} mm: such"
+            " wheels shake a robot as they turn; here they are in balance"
+        )
+        where = lines([link.mass_at for _, link in found])
+        yield Finding(rule="balance", severity="warning", what=what, where=where)

@@ -17,6 +17,9 @@ __all__ = ["arms_at", "flippers_of"]
 _RATE = 1.0  # [rad/s] that of MARV's flippers
 
 
+_TOLD = 1e-4  # [m] At an edge, tenths of a millimetre have decided whether a robot gets over it.
+
+
 def arms_at(
     told: Telling,
     arms: list[ArmPair],
@@ -39,6 +42,9 @@ def arms_at(
         if found[end].off > tolerance:
             reason = f"pivots {1e3 * found[end].off:.3g} mm off the end axle, here on it"
             told.doubts.append((f"joint[{pair.arms[0].joint.name}]", end, reason))
+        elif found[end].off > _TOLD:
+            off = f"{1e3 * found[end].off:.2g} mm off the end axle, here on it"
+            told.notes.append(f"the {end} flippers pivot {off}")
         locked = [arm.joint.name for arm in pair.arms if arm.joint.is_locked]
         if locked:
             told.notes.append(f"{', '.join(locked)}: locked in the file, here flippers that turn")
