@@ -73,7 +73,7 @@ def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
     for part in (
         "step of 75 mm  0 % (0-16)  100 % (84-100)  100 %        seized      seizes",
         "step of 75 mm  1-2 of the chassis  20/20",
-        "It seizes on 1 of 1 obstacles that the belt clears: step of 75 mm.",
+        "It seizes on 1 of 1 obstacles where the belt clears: step of 75 mm.",
         "confirmed: chassis: 5 wheels in place of 4",
         "Lint: nothing found",
         "no verdict",

@@ -7,7 +7,14 @@ import pytest
 import xarray as xr
 
 from crawler2d.audits.share import Share, share_of
-from crawler2d.audits.verdicts import BELT, OWN, Verdict, verdict_word, verdicts_of
+from crawler2d.audits.verdicts import (
+    BELT,
+    OWN,
+    Verdict,
+    cleared_beside,
+    verdict_word,
+    verdicts_of,
+)
 from crawler2d.sweeps.statistics import wilson
 
 SAMPLES, REPEATS = 40, 2
@@ -58,9 +65,27 @@ def test_it_seizes_where_the_lower_bound_is_above_5_percent(seized: int, word: s
 
 
 @pytest.mark.parametrize(("clears", "word"), [(38, "seizes"), (37, "belt fails, too")])
-def test_it_does_so_where_the_belt_clears_in_95_percent(clears: int, word: str) -> None:
-    belt = ends(cleared=clears, hung_up=SAMPLES - clears)
-    assert verdict(ends(seized=20, cleared=20), belt).word == word
+def test_a_belt_that_clears_in_95_percent_need_not_be_paired(clears: int, word: str) -> None:
+    """Of the five that seize, the belt clears three or two."""
+    belt = ends(hung_up=SAMPLES - clears, cleared=clears)
+    assert verdict(ends(seized=5, hung_up=35), belt).word == word
+
+
+@pytest.mark.parametrize(("of_belt", "word"), [(5, "seizes"), (4, "belt fails, too")])
+def test_elsewhere_seized_runs_count_that_the_belt_clears(of_belt: int, word: str) -> None:
+    """It seizes on twenty floors; the belt gets over on some of these, and stands on all others."""
+    assert (wilson(of_belt, SAMPLES).low > 0.05) is (word == "seizes")
+    found = verdict(ends(seized=20, slipping=20), ends(cleared=of_belt, slipping=SAMPLES - of_belt))
+    assert found.word == word
+    assert found.seized_alone.rate == of_belt / SAMPLES
+
+
+def test_a_repair_is_held_against_the_belt() -> None:
+    """It clears ten floors, of thirty that the belt clears."""
+    pair = table(ends(cleared=10, slipping=30), ends(cleared=30, slipping=10))
+    share = cleared_beside(pair, OWN, BELT, "step")
+    assert share.rate == pytest.approx(1 / 3)
+    assert share.samples == 30
 
 
 def test_where_the_model_clears_the_belt_may_fail() -> None:
@@ -152,7 +177,8 @@ def test_the_rule_asks_in_the_order_of_its_words() -> None:
 
     often, never = of(0.5, 0.3, 0.7), of(0.0, 0.0, 0.09)
     always = of(1.0, 0.9, 1.0)
-    assert verdict_word(often, often, always) == "seizes"
-    assert verdict_word(often, often, often) == "belt fails, too"
-    assert verdict_word(always, never, often) == "does not seize"
-    assert verdict_word(often, of(0.06, 0.02, 0.2), always) == "not certain"
+    assert verdict_word(often, often, always, often) == "seizes"
+    assert verdict_word(often, often, often, often) == "seizes"
+    assert verdict_word(often, often, often, never) == "belt fails, too"
+    assert verdict_word(always, never, often, never) == "does not seize"
+    assert verdict_word(often, of(0.06, 0.02, 0.2), always, never) == "not certain"

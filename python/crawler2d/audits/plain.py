@@ -39,6 +39,9 @@ def plain_of(audit: Audited) -> dict[str, Any]:
                     "robot": to_plain(each.robot),
                     "cleared": {k: dataclasses.asdict(v) for k, v in each.cleared.items()},
                     "seized": {k: dataclasses.asdict(v) for k, v in each.seized.items()},
+                    "cleared_beside": {
+                        k: dataclasses.asdict(v) for k, v in each.cleared_beside.items()
+                    },
                 }
                 for each in audit.repairs
             ],

@@ -13,7 +13,7 @@ from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
 from crawler2d.audits.runs import Runs, raised
 from crawler2d.audits.screen import screened
 from crawler2d.audits.share import Share
-from crawler2d.audits.verdicts import OWN, Verdict, shares
+from crawler2d.audits.verdicts import OWN, Verdict, cleared_beside, shares
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat, Terrain
@@ -50,10 +50,13 @@ class Repair:
     wheels : int
         Wheels of one side, flippers included.
     confirmed : bool
-        Whether it clears 95 % of its fresh runs or more on every obstacle that seized, and the
-        lower bound of its rate of seizing is above 5 % on none of all obstacles.
+        Whether it clears, on every obstacle that seized, 95 % or more of those fresh runs that the
+        belt clears with the same draws, and the lower bound of its rate of seizing is above 5 % on
+        none of all obstacles.
     cleared, seized : mapping of str to Share
         In fresh runs, by obstacle.
+    cleared_beside : mapping of str to Share
+        How many of the fresh runs that the belt clears it clears, by obstacle that seized.
     speed : float
         [-] Simulated time by computing time on level ground, each of the fastest run, relative to
         the robot as it is: above 1 it is simulated faster. It is that of this simulator.
@@ -67,6 +70,7 @@ class Repair:
     confirmed: bool
     cleared: Mapping[str, Share]
     seized: Mapping[str, Share]
+    cleared_beside: Mapping[str, Share]
     speed: float
 
 
@@ -107,9 +111,9 @@ def repaired(
     """Search for changes that end the seizures of a robot.
 
     Candidates first drive the runs in which the robot seized; see `screened`. Of those that pass,
-    round wheels and gear wheels apart, the least changed is searched for that clears 95 % of its
-    runs on the four obstacles that seize most; see `crawler2d.studies.search`. Then these, the belt
-    and the robot as it is drive over all obstacles with draws that nothing before has had.
+    round wheels and gear wheels apart, the least changed is searched for that clears 95 % as often
+    as the belt on the four obstacles that seize most; see `crawler2d.studies.search`. Then these,
+    the belt and the robot as it is drive over all obstacles with draws that nothing before has had.
 
     Parameters
     ----------
@@ -137,16 +141,17 @@ def repaired(
         if not space and any(each.kind == kind for each in every):
             hopeless.append(kind)
         elif space:
-            chosen.append(_searched(space, {v.obstacle: grounds[v.obstacle] for v in worst}, runs))
+            chosen.append(_searched(space, worst, grounds, runs))
+    beside = OWN
     if belt.robot != robot:
-        what = f"belts moved by a track plugin ({belt.reason})"
+        beside = what = f"belts moved by a track plugin ({belt.reason})"
         belts = wheel_count(robot) + 1
         chosen.append(Candidate(what=what, kind="belt", robot=belt.robot, change=belts))
     models = {OWN: robot, **{each.what: each.robot for each in chosen}}
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     level = Flat(length=5.0 * robot.outline.axle_distance)
     fresh = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
-    found = [_judged(fresh, each, list(grounds), seizing) for each in chosen]
+    found = [_judged(fresh, each, list(grounds), seizing, beside) for each in chosen]
     order = sorted(found, key=lambda each: (not each.confirmed, each.change))
     before = {name: shares(fresh, OWN, name)[1] for name in grounds}
     return Repaired(
@@ -158,8 +163,10 @@ def repaired(
     )
 
 
-def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -> Candidate:
-    """Return the least changed candidate that gets over the grounds, or the best of all."""
+def _searched(
+    space: list[Candidate], worst: Sequence[Verdict], grounds: Mapping[str, Terrain], runs: Runs
+) -> Candidate:
+    """Return the least changed candidate that gets over the worst obstacles, or the best of all."""
     drive = runs.scenario.drive
     changes = {raised(each.robot, drive): each.change for each in space}
 
@@ -170,8 +177,9 @@ def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -
         runs.scenario,
         {each.what: {"robot": raised(each.robot, drive)} for each in space},
         change,
-        terrains=grounds,
-        at_least=_CLEARS,
+        terrains={each.obstacle: grounds[each.obstacle] for each in worst},
+        # No wheels do better than the belt where that fails, as on slippery floors.
+        at_least=_CLEARS * min(each.belt_cleared.rate for each in worst),
         first=_FIRST,
         confirm=1,  # the fresh runs of `repaired` confirm
         vary=runs.vary,
@@ -187,11 +195,17 @@ def _searched(space: list[Candidate], grounds: dict[str, Terrain], runs: Runs) -
 
 
 def _judged(
-    table: xarray.Dataset, chosen: Candidate, grounds: list[str], seizing: Sequence[Verdict]
+    table: xarray.Dataset,
+    chosen: Candidate,
+    grounds: list[str],
+    seizing: Sequence[Verdict],
+    belt: str,
 ) -> Repair:
-    """Judge a candidate by its fresh runs."""
+    """Judge a candidate by its fresh runs, beside those of the belt."""
     pairs = {name: shares(table, chosen.what, name) for name in grounds}
-    clears = all(pairs[each.obstacle][0].rate >= _CLEARS for each in seizing)
+    names = [each.obstacle for each in seizing]
+    beside = {name: cleared_beside(table, chosen.what, belt, name) for name in names}
+    clears = all(share.rate >= _CLEARS for share in beside.values())
     seizes = any(seized.low > _SEIZES for _, seized in pairs.values())
     return Repair(
         what=chosen.what,
@@ -202,6 +216,7 @@ def _judged(
         confirmed=clears and not seizes,
         cleared={name: cleared for name, (cleared, _) in pairs.items()},
         seized={name: seized for name, (_, seized) in pairs.items()},
+        cleared_beside=beside,
         speed=_speed(table, chosen.what) / _speed(table, OWN),
     )
 

@@ -86,13 +86,13 @@ def _conclusion(audit: Audited) -> Iterator[str]:
     for sentence in words.conclusion(audit):
         yield from _wrapped(sentence, 0)
     if audit.repaired is not None:
-        yield from _repairs(audit.repaired, words.seizing(audit))
+        yield from _repairs(audit.repaired)
 
 
-def _repairs(found: Repaired, seizing: Sequence[str]) -> Iterator[str]:
+def _repairs(found: Repaired) -> Iterator[str]:
     yield f"Repairs: {words.repairs_found(found)}"
     for each in found.repairs:
-        yield from _wrapped(words.repair_sentence(each, seizing))
+        yield from _wrapped(words.repair_sentence(each))
     for kind in found.hopeless:
         yield f"  {words.hopeless(kind)}"
 

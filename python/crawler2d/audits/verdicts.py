@@ -26,6 +26,7 @@ __all__ = [
     "WORDS",
     "Freed",
     "Verdict",
+    "cleared_beside",
     "verdict_word",
     "verdicts_of",
 ]
@@ -82,6 +83,8 @@ class Verdict:
         How many seized runs are jammed there, of how many.
     instead : int
         In how many seized runs the belt, with the same draws, clears.
+    seized_alone : Share
+        How often the model seizes while the belt, with the same draws, clears.
     freed : tuple of Freed
         What trials came to in the seized runs.
     friction : tuple of float, shape (2,)
@@ -100,16 +103,19 @@ class Verdict:
     carrier: str
     there: tuple[int, int]
     instead: int
+    seized_alone: Share
     freed: tuple[Freed, ...]
     friction: tuple[float, float]
 
 
-def verdict_word(cleared: Share, seized: Share, belt: Share) -> str:
+def verdict_word(cleared: Share, seized: Share, belt: Share, alone: Share) -> str:
     """Judge an obstacle.
 
     "seizes": the lower bound of the rate of seizing is above 5 %, and the belt clears in 95 % of
-    its runs or more. "belt fails, too": the belt clears in fewer, and so does the model. "does not
-    seize": the upper bound of the rate of seizing is below 10 %. "not certain": anything else.
+    its runs or more; or, where it clears in fewer, as on floors that may be slippery, the lower
+    bound of the rate of seizing while the belt clears with the same draws is. "belt fails, too":
+    the belt clears in fewer, and so does the model. "does not seize": the upper bound of the rate
+    of seizing is below 10 %. "not certain": anything else.
 
     Parameters
     ----------
@@ -117,8 +123,10 @@ def verdict_word(cleared: Share, seized: Share, belt: Share) -> str:
         Of the model.
     belt : Share
         How often the belt clears.
+    alone : Share
+        How often the model seizes while the belt clears.
     """
-    if seized.low > SEIZES and belt.rate >= CLEARS:
+    if (seized.low > SEIZES and belt.rate >= CLEARS) or alone.low > SEIZES:
         return "seizes"
     if belt.rate < CLEARS and cleared.rate < CLEARS:
         return "belt fails, too"
@@ -133,8 +141,30 @@ def verdicts_of(table: xarray.Dataset, obstacles: Sequence[str]) -> tuple[Verdic
 def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Share]:
     """Return how often a model clears an obstacle, and how often it seizes there."""
     ends = column(table, "outcome", model=model, terrain=obstacle)
-    made = np.isin(ends, [str(each) for each in Outcome])
+    made = _has_result(ends)
     return share_of(ends == Outcome.CLEARED, made), share_of(ends == Outcome.SEIZED, made)
+
+
+def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) -> Share:
+    """Return how often a model clears an obstacle of the runs in which a belt does so.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With both models, over the same draws.
+    model, belt : str
+        Their names.
+    obstacle : str
+        Its label.
+    """
+    ends, of_belt = (
+        column(table, "outcome", model=name, terrain=obstacle) for name in (model, belt)
+    )
+    return share_of(ends == Outcome.CLEARED, _has_result(ends) & (of_belt == Outcome.CLEARED))
+
+
+def _has_result(ends: np.ndarray[tuple[int, int]]) -> np.ndarray[tuple[int, int]]:
+    return np.isin(ends, [str(each) for each in Outcome])
 
 
 def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
@@ -144,9 +174,11 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
     jammed = column(table, "outcome", **own) == Outcome.SEIZED
     belt_ends = column(table, "outcome", model=BELT, terrain=obstacle)
     where, carrier, there = _where(table, own, jammed)
+    instead = jammed & (belt_ends == Outcome.CLEARED)
+    alone = share_of(instead, _has_result(column(table, "outcome", **own)))
     return Verdict(
         obstacle=obstacle,
-        word=verdict_word(cleared, seized, belt_cleared),
+        word=verdict_word(cleared, seized, belt_cleared, alone),
         cleared=cleared,
         seized=seized,
         belt_cleared=belt_cleared,
@@ -156,7 +188,8 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
         where=where,
         carrier=carrier,
         there=there,
-        instead=int((jammed & (belt_ends == Outcome.CLEARED)).sum()),
+        instead=int(instead.sum()),
+        seized_alone=alone,
         freed=_freed(table, own, jammed),
         friction=_friction(table, own, jammed),
     )

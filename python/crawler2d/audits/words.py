@@ -38,7 +38,6 @@ __all__ = [
     "repair_sentence",
     "repairs_found",
     "robot_sentence",
-    "seizing",
     "share",
     "span",
     "subject",
@@ -127,23 +126,19 @@ def calls(audit: Audited) -> str:
     return f"on the left, wheel {', '.join(called)}" if called else ""
 
 
-def seizing(audit: Audited) -> list[str]:
-    """Name the obstacles on which it seizes while the belt clears them."""
-    return [each.obstacle for each in audit.verdicts if each.word == "seizes"]
-
-
 def conclusion(audit: Audited) -> list[str]:
     """Say in sentences where it seizes, and what is not certain."""
-    found, names = [], seizing(audit)
+    found = []
+    seized = [each for each in audit.verdicts if each.word == "seizes"]
     others = [
         f"{each.obstacle} ({each.instead} of {each.there[1]})"
         for each in audit.verdicts
         if each.word != "seizes" and each.seized.low > SEIZES
     ]
     count = len(audit.verdicts)
-    if names:
-        text = f"It seizes on {len(names)} of {count} obstacles that the belt clears"
-        found.append(f"{text}: {', '.join(names)}.")
+    if seized:
+        text = f"It seizes on {len(seized)} of {count} obstacles where the belt clears"
+        found.append(f"{text}: {', '.join(map(_seizing, seized))}.")
     else:
         clears = sum(each.belt_cleared.rate >= CLEARS for each in audit.verdicts)
         text = f"It was not found to seize where the belt clears, on {clears} of {count} obstacles."
@@ -160,6 +155,15 @@ def conclusion(audit: Audited) -> list[str]:
     return found
 
 
+def _seizing(verdict: Verdict) -> str:
+    """Name an obstacle that seizes; where the belt clears less than 95 %, with how it compares."""
+    if verdict.belt_cleared.rate >= CLEARS:
+        return verdict.obstacle
+    of_all = f"{verdict.instead} of {verdict.there[1]} seized runs"
+    belt = f"the belt clears {of_all}, and {percent(verdict.belt_cleared.rate)} of all"
+    return f"{verdict.obstacle} ({belt})"
+
+
 def repairs_found(found: Repaired) -> str:
     """Say what the search for repairs came to."""
     if any(each.confirmed for each in found.repairs):
@@ -172,20 +176,20 @@ def hopeless(kind: str) -> str:
     return f"{kind}: no candidate cleared most of three runs in which it seized"
 
 
-def worst(repair: Repair, names: Sequence[str]) -> tuple[Share, Share, str]:
-    """Return how often a repair clears at worst of what seized, and seizes at worst, and where."""
-    cleared = min((repair.cleared[name] for name in names), key=lambda share: share.rate)
+def worst(repair: Repair) -> tuple[Share, Share, str]:
+    """Return how often a repair clears at worst where the belt does, seizes at worst, and where."""
+    cleared = min(repair.cleared_beside.values(), key=lambda share: share.rate)
     name, seized = max(repair.seized.items(), key=lambda item: (item[1].low, item[1].rate))
     return cleared, seized, name if seized.rate > 0.0 else ""
 
 
-def repair_sentence(repair: Repair, names: Sequence[str]) -> str:
+def repair_sentence(repair: Repair) -> str:
     """Say what a repair changes, and what came of it."""
-    cleared, seized, name = worst(repair, names)
+    cleared, seized, name = worst(repair)
     where = f", most on {name}" if name else ""
     return (
-        f"{confirmed(repair)}: {repair.what}; clears at least"
-        f" {share(cleared)} where it seized; seizes at most {share(seized)}{where};"
+        f"{confirmed(repair)}: {repair.what}; clears at least {share(cleared)} of the runs that the"
+        f" belt clears where it seized; seizes at most {share(seized)}{where};"
         f" {repair.wheels} wheels a side; simulated {repair.speed:.2g} times as fast"
     )
 

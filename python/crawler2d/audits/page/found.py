@@ -121,11 +121,10 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
     if found is None:
         asked = "It seizes nowhere by the rule." if not audit.seizes else "None were searched for."
         return f"<p>{asked}</p>"
-    names = words.seizing(audit)
     head = (
         "repair",
         "in fresh runs",
-        "clears at least, where it seized",
+        "clears at least, of what the belt clears where it seized",
         "seizes at most",
         "most on",
         "wheels a side",
@@ -133,7 +132,7 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
     )
     rows = []
     for each in found.repairs:
-        cleared, seized, where = words.worst(each, names)
+        cleared, seized, where = words.worst(each)
         kind = "good" if each.confirmed else "quiet"
         rows.append(
             (

@@ -94,7 +94,7 @@ def _conclusion(audit: Audited) -> list[str]:
     if audit.repaired is not None:
         sentences.append(f"Repairs: {words.repairs_found(audit.repaired)}.")
     if confirmed:
-        text = words.repair_sentence(confirmed[0], words.seizing(audit))
+        text = words.repair_sentence(confirmed[0])
         sentences.append(f"{text[0].upper()}{text[1:]}.")
     return sentences
 
