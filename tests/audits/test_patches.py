@@ -74,6 +74,20 @@ def test_the_command_writes_the_changed_file(
     assert quietly(path.rename(tmp_path / audited.reading.path.name)).robot.track != SEIZING.track
 
 
+def test_the_command_says_why_there_is_no_changed_file(
+    capsys: Any, monkeypatch: Any, tmp_path: Path
+) -> None:
+    from crawler2d.reports import audit as command  # noqa: PLC0415 - to replace what it calls
+
+    source, path = tmp_path / "robot.urdf", tmp_path / "new.urdf"
+    STRONG.to_urdf(source, friction=0.9)
+    found = c2d.audit(source, STEP, unknown={}, repeats=10, repair=False, engine="gz", **QUIET)
+    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    assert main(["audit", "any.sdf", "--no-html", "--patch", str(path)]) == 1
+    assert "No changed file: repair must be" in capsys.readouterr().err
+    assert not path.exists()
+
+
 def test_the_page_has_the_diff_of_each_repair_by_wheels(audited: c2d.Audit) -> None:
     page = audited.to_html()
     for repair in audited.repairs:

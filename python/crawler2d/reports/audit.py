@@ -12,7 +12,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TextIO, get_args
 
 from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
 from crawler2d.audits.plain import plain_of
@@ -105,8 +105,17 @@ def _show(found: Audit, options: argparse.Namespace) -> None:
         found.to_html(path, threads=options.threads)
         print(f"\nThe page is in {path}", file=beside)
     if options.patch is not None and found.seizes:
-        diff = found.patch(options.patch)
-        print(f"\n{diff}\nThe changed file is {options.patch}", file=beside)
+        _patch(found, options.patch, beside)
+
+
+def _patch(found: Audit, path: Path, beside: TextIO) -> None:
+    """Write the file with other wheels and print the diff, or say why there is none."""
+    try:
+        diff = found.patch(path)
+    except ScenarioError as error:
+        print(f"\nNo changed file: {error}", file=sys.stderr)
+    else:
+        print(f"\n{diff}\nThe changed file is {path}", file=beside)
 
 
 def _given(number: int | None, usual: int) -> int:
