@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from crawler2d.audits.runs import TRIED, column
 from crawler2d.audits.verdicts import BELT, OWN
+from crawler2d.errors import ScenarioWarning
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.outcome import Outcome
 from crawler2d.runs.batch import simulate_many
@@ -73,7 +75,11 @@ def replayed(audit: Audited, *, threads: int | None = None) -> list[Replayed]:
         for model in models
     ]
     scenarios = [Scenario.from_json(text) for text in texts]
-    runs = iter(simulate_many(scenarios, threads=threads, sample_interval=_INTERVAL, trials=TRIED))
+    with warnings.catch_warnings():
+        # What the core doubts is in the lint.
+        warnings.simplefilter("ignore", ScenarioWarning)
+        made = simulate_many(scenarios, threads=threads, sample_interval=_INTERVAL, trials=TRIED)
+    runs = iter(made)
     return [
         Replayed(
             verdict=verdict,
