@@ -54,6 +54,8 @@ LINES: list[tuple[str, int, str, dict[int, float]]] = [
     (ABSOLEM, 990, "<pose>", {0: 0.08}),
     (ABSOLEM, 996, "<iyy>", {0: 0.012277}),
     (ABSOLEM, 1018, "<mu>", {0: 0.5}),
+    (ABSOLEM, 1019, "<mu2>", {0: 1.0}),
+    (ABSOLEM, 1022, "<fdir1>", {0: 0.0, 1: 0.0, 2: 1.0}),
     (SPECIFICATION, 51, "Maximum forward speed", {0: PRESETS["absolem"].drivetrain.max_speed}),
     (SPECIFICATION, 51, "odometry", {3: PRESETS["absolem"].drivetrain.max_acceleration}),
     (MARV, 469, "<pose>", {0: 0.5 * PRESETS["marv"].outline.axle_distance}),

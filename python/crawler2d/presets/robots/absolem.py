@@ -78,8 +78,8 @@ def absolem(
     on them. Each of the five links of a flipper has its centre of mass 80 mm beyond its wheel
     (absolem.sdf:990) and the moment of inertia of a whole flipper (absolem.sdf:996); here the mass
     is spread evenly from pivot to tip. The friction of its wheels is 0.5 along their first
-    direction, which is the axle, and 1 across it, along the track (absolem.sdf:1018 to 1022): on
-    what grips less, the floor decides. Here friction belongs to the terrain.
+    direction, which is the axle, and 1 across it, along the track (absolem.sdf:1018, 1019, 1022):
+    on what grips less, the floor decides. Here friction belongs to the terrain.
 
     Examples
     --------
