@@ -149,3 +149,12 @@ def test_a_call_with_arguments_that_no_option_has_is_no_command() -> None:
     for changed in ({"own": ("vary",)}, {"reading": {"tolerance": 0.01}}):
         call = Call(samples=4, repeats=3, seed=1, repair=True, **changed)
         assert command_of(call, "a.sdf") is None
+
+
+def test_the_command_advises_its_own_options(capsys: Any, tmp_path: Path) -> None:
+    path = tmp_path / "cart.xacro"
+    path.write_text((FILES / "cart.xacro").read_text(encoding="utf-8"), encoding="utf-8")
+    status, _, err = run(capsys, str(path))
+    assert status == 2
+    assert "--trusted" in err
+    assert "trusted=True" not in err

@@ -52,7 +52,7 @@ def test_without_a_confirmed_repair_there_is_no_patch(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     STRONG.to_urdf(path, friction=0.9)
     found = c2d.audit(path, STEP, unknown={}, repeats=2, repair=False, **QUIET)
-    with pytest.raises(c2d.ScenarioError, match="got no other repair that is confirmed"):
+    with pytest.raises(c2d.ScenarioError, match="got none that is confirmed"):
         found.patch(tmp_path / "new.urdf")
     assert not (tmp_path / "new.urdf").exists()
 

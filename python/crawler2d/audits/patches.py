@@ -36,10 +36,15 @@ def patch_of(audit: Audited, repair: Repair | None) -> Patch:
     if repair is None:
         held = (each for each in audit.repairs if each.confirmed and each.kind != "belt")
         repair = next(held, None)
-    if repair is None or repair.kind == "belt":
-        got = "no other repair that is confirmed" if repair is None else repair.what
+    if repair is None:
+        rule = (
+            "must be given, where no change of wheels is confirmed: one of Audit.repairs that is"
+            " not; belts are written by repair.robot.to_sdf or to_mjcf"
+        )
+        raise ScenarioError("repair", "none that is confirmed", rule)
+    if repair.kind == "belt":
         rule = "must be other wheels or gears: write belts with repair.robot.to_sdf or to_mjcf"
-        raise ScenarioError("repair", got, rule)
+        raise ScenarioError("repair", repair.what, rule)
     return patched(audit.reading, repair.robot)
 
 

@@ -141,8 +141,8 @@ def conclusion(audit: Audited) -> list[str]:
         found.append(f"{text}: {', '.join(map(_seizing, seized))}.")
     else:
         clears = sum(each.belt_cleared.rate >= CLEARS for each in audit.verdicts)
-        text = f"It was not found to seize where the belt clears, on {clears} of {count} obstacles."
-        found.append(text)
+        belt = f"the belt clears {clears} of {count} obstacles in 95 % of its runs"
+        found.append(f"It was not found to seize where the belt clears; {belt}.")
     if others:
         text = (
             "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"

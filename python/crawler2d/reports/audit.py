@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
         print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
-        print(f"audit: {error}", file=sys.stderr)
+        print(f"audit: {_as_options(str(error))}", file=sys.stderr)
         return 2
     return 1 if found.seizes else 0
 
@@ -113,9 +113,29 @@ def _patch(found: Audit, path: Path, beside: TextIO) -> None:
     try:
         diff = found.patch(path)
     except ScenarioError as error:
-        print(f"\nNo changed file: {error}", file=sys.stderr)
+        print(f"\nNo changed file: {_as_options(str(error))}", file=sys.stderr)
     else:
         print(f"\n{diff}\nThe changed file is {path}", file=beside)
+
+
+_OPTIONS = {
+    "trusted=True": "--trusted",
+    'missing="leave_out"': "--missing leave_out",
+    'mesh="hull"': "--mesh hull",
+    'mesh="leave_out"': "--mesh leave_out",
+    "packages={name: folder}": "--package NAME=FOLDER",
+    "packages=": "--package",
+    "tracks=": "--track",
+    "model=": "--model",
+}
+"""How the command spells the keywords that errors advise."""
+
+
+def _as_options(error: str) -> str:
+    """Write the keywords of an error as options of the command."""
+    for keyword, option in _OPTIONS.items():
+        error = error.replace(keyword, option)
+    return error
 
 
 def _given(number: int | None, usual: int) -> int:
