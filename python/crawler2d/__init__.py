@@ -50,13 +50,6 @@ from crawler2d.runs.batch import simulate, simulate_many
 from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.run import Run
 from crawler2d.runs.simulation import Simulation
-from crawler2d.sweeps.compare import compare
-from crawler2d.sweeps.rates import rate
-from crawler2d.sweeps.sequential import Until, sequential
-from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
-from crawler2d.sweeps.store import join_stores
-from crawler2d.sweeps.sweep import sweep
-from crawler2d.sweeps.table import table
 from crawler2d.variation import variability
 from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
 
@@ -64,6 +57,13 @@ if TYPE_CHECKING:
     from crawler2d import studies
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
+    from crawler2d.sweeps.compare import compare
+    from crawler2d.sweeps.rates import rate
+    from crawler2d.sweeps.sequential import Until, sequential
+    from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
+    from crawler2d.sweeps.store import join_stores
+    from crawler2d.sweeps.sweep import sweep
+    from crawler2d.sweeps.table import table
 
 __all__ = [
     "Audit",
@@ -133,14 +133,24 @@ __all__ = [
 
 __version__ = str(build_info()["version"])
 
-# Rooms that not every user enters are imported when they are first named: they take as long as half
-# of the rest.
+# Rooms that not every user enters are imported when they are first named: they take as long as the
+# rest.
 _WHEN_NAMED = {
     "Audit": "crawler2d.audits.audit",
     "audit": "crawler2d.audits.audit",
     "Reading": "crawler2d.reading.reading",
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",
+    "Until": "crawler2d.sweeps.sequential",
+    "compare": "crawler2d.sweeps.compare",
+    "join_stores": "crawler2d.sweeps.store",
+    "newcombe": "crawler2d.sweeps.statistics",
+    "newcombe_paired": "crawler2d.sweeps.statistics",
+    "rate": "crawler2d.sweeps.rates",
+    "sequential": "crawler2d.sweeps.sequential",
+    "sweep": "crawler2d.sweeps.sweep",
+    "table": "crawler2d.sweeps.table",
+    "wilson": "crawler2d.sweeps.statistics",
 }
 
 

@@ -29,7 +29,7 @@ assert not heavy, heavy
 WHEN_NAMED = """
 import sys
 import crawler2d
-rooms = {"crawler2d.audits", "crawler2d.reading", "crawler2d.studies"}
+rooms = {f"crawler2d.{name}" for name in ("audits", "reading", "studies", "sweeps")}
 assert not rooms & set(sys.modules)
 assert set(crawler2d.__all__) <= set(dir(crawler2d))
 for name in crawler2d.__all__:
