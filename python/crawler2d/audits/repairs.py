@@ -13,7 +13,7 @@ from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
 from crawler2d.audits.runs import Runs, raised
 from crawler2d.audits.screen import screened
 from crawler2d.audits.share import Share
-from crawler2d.audits.verdicts import OWN, Verdict, cleared_beside, shares
+from crawler2d.audits.verdicts import CLEARS, OWN, SEIZES, Verdict, cleared_beside, shares
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat, Terrain
@@ -28,9 +28,6 @@ _FIRST = 10  # runs of every candidate on each terrain in the first round of a s
 _GROUNDS = 4  # obstacles of a search: those that seize most
 LEVEL = "level ground"
 """Where the cost of driving is measured."""
-
-_CLEARS = 0.95
-_SEIZES = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,7 +176,7 @@ def _searched(
         change,
         terrains={each.obstacle: grounds[each.obstacle] for each in worst},
         # No wheels do better than the belt where that fails, as on slippery floors.
-        at_least=_CLEARS * min(each.belt_cleared.rate for each in worst),
+        at_least=CLEARS * min(each.belt_cleared.rate for each in worst),
         first=_FIRST,
         confirm=1,  # the fresh runs of `repaired` confirm
         vary=runs.vary,
@@ -205,8 +202,8 @@ def _judged(
     pairs = {name: shares(table, chosen.what, name) for name in grounds}
     names = [each.obstacle for each in seizing]
     beside = {name: cleared_beside(table, chosen.what, belt, name) for name in names}
-    clears = all(share.rate >= _CLEARS for share in beside.values())
-    seizes = any(seized.low > _SEIZES for _, seized in pairs.values())
+    clears = all(share.rate >= CLEARS for share in beside.values())
+    seizes = any(seized.low > SEIZES for _, seized in pairs.values())
     return Repair(
         what=chosen.what,
         kind=chosen.kind,

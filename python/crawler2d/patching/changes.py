@@ -12,7 +12,7 @@ import numpy as np
 
 from crawler2d import _core
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Array
+from crawler2d.models.poses import Array, Pose
 from crawler2d.models.tree import Joint, Shape
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
@@ -74,6 +74,11 @@ class Change:
         """Whether its wheel stays as it is."""
         same = self.size == self.share == 1.0 and not self.shift.any() and not self.grousers
         return self.fate == "changed" and same
+
+    def grousers_on(self, wheel: Pose) -> Iterator[tuple[Shape, Pose]]:
+        """Yield the grousers, with their poses in the frame of the wheel's link as it has moved."""
+        moved = Pose(place=wheel.place + self.shift, turn=wheel.turn)
+        return ((shape, shape.pose.seen_from(moved)) for shape in self.grousers)
 
     @property
     def effort(self) -> float:
@@ -259,6 +264,6 @@ class _Carrier:
         return tuple(_moved(shape, frame) for shape in made[1:])
 
 
-def _moved(shape: Shape, frame: Any) -> Shape:
+def _moved(shape: Shape, frame: Pose) -> Shape:
     """Return a shape that was given in the chassis frame in the frame of the model."""
     return Shape(name=shape.name, kind=shape.kind, pose=frame.then(shape.pose), size=shape.size)

@@ -75,8 +75,7 @@ class Document:
         """Put a text in the place of all that an element holds."""
         new = escape(value)
         if span.is_closed:
-            opening = self.source(span)[:-2].rstrip()
-            self._change(span.start, span.end, f"{opening}>{new}</{span.tag}>")
+            self._open(span, new)
         else:
             self._change(span.inner, span.outer, new)
 
@@ -112,21 +111,23 @@ class Document:
         """Take an element out, with its line if nothing else is on it."""
         self._change(span.start - len(self._indent(span)), span.end, "")
 
-    def insert_after(self, span: Span, texts: Sequence[str]) -> None:
-        """Put elements behind another one, with the same indent."""
-        indent = self._indent(span)
-        if texts:
-            self._change(span.end, span.end, "".join(indent + text for text in texts))
+    def insert_after(self, span: Span, text: str) -> None:
+        """Put an element behind another one, with the same indent."""
+        self._change(span.end, span.end, self._indent(span) + text)
 
     def append(self, span: Span, text: str) -> None:
         """Put an element behind the last one in another."""
         if span.children:
-            self.insert_after(span.children[-1], [text])
+            self.insert_after(span.children[-1], text)
         elif span.is_closed:
-            opening = self.source(span)[:-2].rstrip()
-            self._change(span.start, span.end, f"{opening}>{text}</{span.tag}>")
+            self._open(span, text)
         else:
             self._change(span.outer, span.outer, text)
+
+    def _open(self, span: Span, content: str) -> None:
+        """Give an element whose tag closes itself some content."""
+        opening = self.source(span)[:-2].rstrip()
+        self._change(span.start, span.end, f"{opening}>{content}</{span.tag}>")
 
     def _indent(self, span: Span) -> str:
         """Return the space before an element, from the end of the line above."""

@@ -84,12 +84,10 @@ def _refuse(body: str, value: str, rule: str) -> NoReturn:
 
 
 def _add_grousers(document: Document, body: Span, change: Change, pose: Pose) -> None:
-    wheel = Pose(place=pose.place + change.shift, turn=pose.turn)
     geom = body.only("geom")
     alike = {} if geom is None else geom.attributes
     given = "".join(f' {name}="{alike[name]}"' for name in _INHERITED if name in alike)
-    for shape in change.grousers:
-        place = shape.pose.seen_from(wheel)
+    for shape, place in change.grousers_on(pose):
         where = f'pos="{written(place.place)}" quat="{numbers(place.quaternion)}"'
         size = f'size="{written(0.5 * shape.size)}"'
         # Its mass is that of the wheel already; without a name, as names must differ.

@@ -32,7 +32,7 @@ _FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
 _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
 """Settings of plugins that drive wheels by their speed."""
 
-_MASS = 1e-4  # of the whole: what rounding to eight digits leaves
+_MASS = 1e-4  # of the whole: far above what rounding leaves
 _CENTER = 0.01  # of the axle distance: wheels of unlike masses are spread anew
 
 
@@ -114,7 +114,7 @@ def _change(document: Document, changes: list[Change], tree: Tree) -> None:
         new = _names(names, taken)
         texts = copied(document, items, new, change_copies)
         for item, text in zip(items, texts, strict=True):
-            document.insert_after(item, [text])
+            document.insert_after(item, text)
     _change_plugins(document, scope, changes)
 
 

@@ -74,12 +74,10 @@ def _refuse(element: Span, value: str, rule: str) -> NoReturn:
 
 
 def _add_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
-    wheel = Pose(place=pose.place + change.shift, turn=pose.turn)
     first = link.only("collision")
     surface = None if first is None else first.only("surface")
     of_wheel = "" if surface is None else document.source(surface)
-    for shape in change.grousers:
-        place = shape.pose.seen_from(wheel)
+    for shape, place in change.grousers_on(pose):
         pose_text = f"<pose>{written(place.place)} {numbers(place.rpy)}</pose>"
         box = f"<geometry><box><size>{written(shape.size)}</size></box></geometry>"
         for tag, more in (("collision", of_wheel), ("visual", "")):

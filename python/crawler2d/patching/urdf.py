@@ -52,9 +52,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
 
 
 def _add_grousers(document: Document, link: Span, change: Change, pose: Pose) -> None:
-    wheel = Pose(place=pose.place + change.shift, turn=pose.turn)
-    for shape in change.grousers:
-        place = shape.pose.seen_from(wheel)
+    for shape, place in change.grousers_on(pose):
         origin = f'<origin xyz="{written(place.place)}" rpy="{numbers(place.rpy)}"/>'
         box = f'<geometry><box size="{written(shape.size)}"/></geometry>'
         for tag in ("collision", "visual"):
