@@ -1,14 +1,9 @@
 //! The scenes that the benchmarks time, from scenario files shared with the tests.
 
-use crawler2d_core::{Checked, Scenario, TorqueSharing};
+use crawler2d_core::{Checked, Engine, Scenario};
 
-#[path = "../../rust_core/tests/facts/engine_world.rs"]
-mod engine_world;
-
-pub use engine_world::{EngineSettings, EngineWorld};
-
-/// [s] Length of a step of the bare engine.
-pub const ENGINE_STEP: f64 = 1e-3;
+/// [s] Length of a step of rapier's dynamics: the default there.
+pub const ENGINE_STEP: f64 = 2.5e-4;
 
 /// A robot in front of an obstacle.
 pub struct Scene {
@@ -63,15 +58,12 @@ impl Scene {
         Checked::from_json(self.text).expect("the shared scenario is valid")
     }
 
-    /// The same in the bare engine, with its own default of 4 substeps; `None` unless each wheel has its own motor.
-    pub fn engine(&self) -> Option<EngineWorld> {
-        let scenario = self.scenario();
-        let settings = EngineSettings {
-            time_step: ENGINE_STEP,
-            substeps: 4,
-        };
-        let own_motors = scenario.robot.drivetrain.torque_sharing == TorqueSharing::Wheel;
-        own_motors.then(|| EngineWorld::new(&scenario, settings))
+    /// The same moved by rapier's dynamics; `None` if they cannot hold its robot.
+    pub fn in_rapier(&self) -> Option<Checked> {
+        let mut scenario = self.scenario();
+        scenario.solver.engine = Engine::Rapier;
+        (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(ENGINE_STEP));
+        Checked::new(&scenario).ok()
     }
 
     /// [s] An instant at which the robot is on its obstacle: one second, plus the time to the obstacle and a third of

@@ -60,7 +60,7 @@ impl Simulation {
 
     /// Writes the complete state.
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let snapshot = self.with(py, |simulation| Ok(simulation.snapshot()))?;
+        let snapshot = self.with(py, |simulation| simulation.snapshot())?;
         Ok(PyBytes::new(py, &snapshot))
     }
 

@@ -19,6 +19,7 @@ mod diagnosis;
 #[cfg(test)]
 mod draw;
 mod dynamics;
+mod engine;
 mod error;
 mod geometry;
 mod limits;
@@ -47,10 +48,10 @@ pub use run::{
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,
-    ContactMethod, Doubt, Drive, Drivetrain, End, Ends, FieldPattern, Flippers, ForceSupport,
-    ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels, MAX_POINTS,
-    Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria, ShoeShape, Solver,
-    Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    ContactMethod, Doubt, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers,
+    ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
+    MAX_POINTS, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria, ShoeShape,
+    Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

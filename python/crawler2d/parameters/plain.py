@@ -45,6 +45,8 @@ class Parameters:
     either: ClassVar[tuple[str, ...]] = ()
     """Fields of which only one may be set: a path that sets one takes the others off."""
 
+    unsaid: ClassVar[tuple[str, ...]] = ()
+    """Fields that texts leave out where they have their defaults: older texts do not have them."""
     besides: ClassVar[tuple[str, ...]] = ()
     """Properties that paths name like fields."""
 
@@ -125,6 +127,8 @@ def nested_classes(hint: Any) -> tuple[type[Parameters], ...]:
 def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
     """Convert a parameter object to dicts, lists, numbers and strings, with every field present.
 
+    But those of `Parameters.unsaid` that have their defaults.
+
     Raises
     ------
     ScenarioError
@@ -133,11 +137,17 @@ def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
     cls = type(parameters)
     plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
     for name, hint in field_hints(cls).items():
+        if name in cls.unsaid and getattr(parameters, name) == _default(cls, name):
+            continue
         numbers = parameters.in_place_of.get(name)
         for each in numbers or (name,):
             inner = f"{path}.{each}" if path else each
             plain[each] = _plain_field(getattr(parameters, each), float if numbers else hint, inner)
     return plain
+
+
+def _default(cls: type[Parameters], name: str) -> Any:
+    return next(f.default for f in dataclasses.fields(cls) if f.name == name)  # type: ignore[arg-type]
 
 
 def _plain_field(value: Any, hint: Any, path: str) -> Any:

@@ -63,6 +63,7 @@ class Start(Parameters):
 
 
 _ACCURACY = 3e-7
+_STEP_IN_RAPIER = 2.5e-4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +76,12 @@ class Solver(Parameters):
 
     Parameters
     ----------
+    engine : {"own", "rapier"}
+        What moves the robot: "own" is crawler2d's own dynamics; "rapier" builds the same robot of
+        bodies, joints and motors of the game engine rapier, and is there for comparison (see
+        docs/engines.md). It holds lines, circumferential and hybrid wheels and force tracks without
+        arms, on motors of their own or, if their radii are equal, on one; nothing else, no
+        snapshots, and no accuracy: its steps are 0.25 ms unless given.
     contact : {"own", "reference"}
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
         queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,
@@ -109,7 +116,9 @@ class Solver(Parameters):
 
     place: ClassVar[str] = "solver"
     either: ClassVar[tuple[str, ...]] = ("accuracy", "time_step")
+    unsaid: ClassVar[tuple[str, ...]] = ("engine",)
 
+    engine: Literal["own", "rapier"] = "own"
     contact: Literal["own", "reference"] = "own"
     accuracy: float | None = None
     time_step: float | None = None
@@ -120,10 +129,12 @@ class Solver(Parameters):
     prediction_distance: float = 0.0002
 
     def __post_init__(self) -> None:
-        """Take the default accuracy if nothing says how long steps are."""
+        """Take the default accuracy, or step in rapier, if nothing says how long steps are."""
         Parameters.__post_init__(self)
-        if self.accuracy is None and self.time_step is None:
-            object.__setattr__(self, "accuracy", _ACCURACY)
+        if self.time_step is None and self.accuracy in (None, _ACCURACY):
+            in_rapier = self.engine == "rapier"
+            object.__setattr__(self, "accuracy", None if in_rapier else _ACCURACY)
+            object.__setattr__(self, "time_step", _STEP_IN_RAPIER if in_rapier else None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,6 +23,7 @@ pub(crate) use dents::Dents;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;
+pub(crate) use reference::solids_of;
 
 /// A place where a part is on the ground or about to be.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -147,7 +147,7 @@ impl ReferenceContact {
 }
 
 /// The convex pieces of a part in its own frame; hulls use our own contacts and have none.
-fn solids_of(part: &Part) -> Vec<SharedShape> {
+pub(crate) fn solids_of(part: &Part) -> Vec<SharedShape> {
     match &part.shape {
         Shape::Disc { radius, .. } => vec![SharedShape::ball(*radius)],
         Shape::Gear { gear, .. } => {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Grip;
 use crate::contact::Contact;
-use crate::geometry::plausible;
+use crate::geometry::{Vector, plausible, right_of};
 use crate::robot::Model;
 use crate::terrain::Profile;
 
@@ -30,6 +30,12 @@ pub(crate) struct LoadedContact {
 }
 
 impl LoadedContact {
+    /// [N] Force on the robot.
+    pub(crate) fn force(&self) -> Vector {
+        let normal = self.contact.normal;
+        normal * self.normal_force + right_of(normal) * self.friction_force
+    }
+
     /// A contact that has not carried a load yet.
     pub(crate) fn open(contact: Contact) -> Self {
         Self {

@@ -189,6 +189,18 @@ impl Dynamics {
         self.loaded = contacts.iter().copied().map(LoadedContact::open).collect();
     }
 
+    /// Takes the contacts that something else has found in a step of `h` [s] in which nothing moved farther than `travel`
+    /// [m], and numbers them.
+    pub(crate) fn take_contacts(&mut self, mut found: Vec<LoadedContact>, travel: f64, h: f64) {
+        let mut contacts: Vec<Contact> = found.iter().map(|l| l.contact).collect();
+        self.recognise(&mut contacts, travel);
+        self.identity.keep(&self.loaded, h);
+        for (loaded, contact) in found.iter_mut().zip(contacts) {
+            loaded.contact = contact;
+        }
+        self.loaded = found;
+    }
+
     /// Prepares a step of `h` [s]. The contacts are those in its middle ([`State::pose_after`] half of it), numbered
     /// by [`Dynamics::recognise`].
     pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], h: f64) {

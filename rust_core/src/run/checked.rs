@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::needs;
 use super::simulation::FARTHEST_TURN;
+use crate::engine;
 use crate::error::Error;
 use crate::geometry::{Vector, end_discs};
 use crate::robot::{Model, Part, start_position};
@@ -131,7 +132,9 @@ impl Checked {
             Some(_) => None,
         };
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
-        check_sizes(&scenario, lumped.map_or(&[], |model| &model.parts))?;
+        let parts = lumped.map_or(&[][..], |model| &model.parts);
+        check_sizes(&scenario, parts)?;
+        engine::check(&scenario, parts)?;
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
         } else {

@@ -4,6 +4,7 @@ mod branch;
 mod clear;
 mod command;
 mod drive;
+mod engine;
 mod gait;
 mod moment;
 mod pace;
@@ -26,13 +27,14 @@ use super::record::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, Effort, LoadedContact, Shoe, State};
+use crate::engine::EngineWorld;
 use crate::error::Error;
 #[cfg(test)]
 use crate::geometry::Pose;
 use crate::geometry::Vector;
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
-use crate::scenario::Scenario;
+use crate::scenario::{Engine, Scenario};
 use crate::terrain::{Ground, Side};
 
 /// A simulation: what was built from the scenario, and the current state.
@@ -41,6 +43,8 @@ pub struct Simulation {
     ground: Arc<Ground>,
     contact: ContactFinder,
     dynamics: Dynamics,
+    /// What moves the robot in place of the dynamics, if the scenario says so.
+    engine: Option<EngineWorld>,
     monitor: Monitor,
     state: State,
     /// [s] Simulated time.
@@ -103,10 +107,15 @@ impl Simulation {
     fn at_rest(scenario: &Scenario, ground: Arc<Ground>, model: Model, position: Vector) -> Self {
         let start = &scenario.start;
         let state = State::at_rest(&model, position, start.angle, start.track_phase);
-        Self::of(scenario, ground, model, state)
+        let engine = (scenario.solver.engine == Engine::Rapier)
+            .then(|| EngineWorld::new(scenario, &model, &ground, &state));
+        Self {
+            engine,
+            ..Self::of(scenario, ground, model, state)
+        }
     }
 
-    /// A robot in a given state on a ground.
+    /// A robot in a given state on a ground, moved by our own dynamics.
     fn of(scenario: &Scenario, ground: Arc<Ground>, model: Model, state: State) -> Self {
         let method = scenario.solver.contact;
         let contact = ContactFinder::new(method, &model.parts, &ground.lanes);
@@ -127,6 +136,7 @@ impl Simulation {
             ground,
             contact,
             dynamics,
+            engine: None,
             monitor,
             before: state.clone(),
             earlier: state.clone(),
@@ -152,6 +162,11 @@ impl Simulation {
             effort: Effort::default(),
             reach,
         }
+    }
+
+    /// Whether another engine than our own dynamics moves it.
+    pub(crate) fn is_in_an_engine(&self) -> bool {
+        self.engine.is_some()
     }
 
     /// Contacts at the current instant.

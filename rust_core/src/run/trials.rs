@@ -32,11 +32,13 @@ pub(super) fn judge(
         return Ok(None);
     };
     let mut bench = Bench::new(stop, &found, cancel);
-    let passing = bench.frees(Change::Nothing)? || found.jammed && bench.frees(Change::Rebuilt)?;
-    if passing {
+    let passing = bench.frees(Change::Nothing)?;
+    let leaves = !passing && found.jammed && bench.frees(Change::Rebuilt)?;
+    if passing || leaves && !stop.is_in_an_engine() {
         found.outcome = Outcome::TimedOut;
     } else {
-        if found.jammed {
+        // Where our own dynamics do not hold the stop of another engine, they cannot say what would end it.
+        if found.jammed && !leaves {
             let in_pose = bench.frees(Change::ClosedTrack)?;
             let from_clear = bench.frees(Change::ClosedTrackClear)?;
             if in_pose || from_clear {
@@ -93,6 +95,9 @@ pub(super) fn what_if(
 
 /// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
 pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulation>, Error> {
+    if change == Change::Nothing {
+        return Ok(Some(stop.copy()));
+    }
     let Some((scenario, start)) = variant::of(stop.scenario(), change) else {
         return Ok(None);
     };

@@ -26,7 +26,7 @@ pub use error::ScenarioError;
 pub use flippers::{End, Ends, Flippers};
 pub use outline::TrackOutline;
 pub use robot::Robot;
-pub use settings::{ContactMethod, SeizureCriteria, Solver, Start};
+pub use settings::{ContactMethod, Engine, SeizureCriteria, Solver, Start};
 pub use terrain::{FieldPattern, MAX_POINTS, Stepfield, Terrain};
 pub(crate) use text::parse;
 pub use track::{

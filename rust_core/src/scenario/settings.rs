@@ -26,9 +26,30 @@ pub enum ContactMethod {
     Reference,
 }
 
+/// What moves the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Engine {
+    /// Our own dynamics.
+    #[default]
+    Own,
+    /// rapier's bodies, joints, motors and contacts.
+    Rapier,
+}
+
+impl Engine {
+    /// Texts leave it out, as those have it that are older than the choice.
+    fn is_own(&self) -> bool {
+        *self == Self::Own
+    }
+}
+
 /// How the equations of motion are solved; docs/decisions says how the defaults were found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solver {
+    /// What moves the robot.
+    #[serde(skip_serializing_if = "Engine::is_own")]
+    pub engine: Engine,
     /// How contacts are found.
     pub contact: ContactMethod,
     /// [m] Local error of a step; `None` if steps are of a given length.
@@ -107,7 +128,16 @@ impl Start {
 
 impl Solver {
     pub(super) fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        let engine = if f.has("engine") {
+            f.choice(
+                "engine",
+                &[("own", Engine::Own), ("rapier", Engine::Rapier)],
+            )?
+        } else {
+            Engine::Own
+        };
         let solver = Self {
+            engine,
             contact: f.choice(
                 "contact",
                 &[

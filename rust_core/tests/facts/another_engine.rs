@@ -1,9 +1,14 @@
 //! Who climbs, and where it stops, in the engine's own dynamics.
 
-use crawler2d_core::{TorqueSharing, Track, Wheel};
+use crawler2d_core::{Run, TorqueSharing, Track, Wheel};
 
 use crate::common::*;
-use crate::engine_world::{EngineSettings, EngineWorld};
+
+/// x, y [m] and angle [rad] at the end.
+fn pose(run: &Run) -> [f64; 3] {
+    let m = &run.metrics;
+    [m.final_x, m.final_y, m.final_angle]
+}
 
 #[test]
 fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
@@ -24,20 +29,8 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
         scenario.duration = 6.0;
         scenario.criteria.clear_time = 100.0; // run on to the same instant
         let ours = summary(&scenario);
-        let settings = EngineSettings {
-            time_step: 5e-4,
-            substeps: 8,
-        };
-        let mut engine = EngineWorld::new(&scenario, settings);
-        for _ in 0..(ours.metrics.time / settings.time_step).round() as u64 {
-            engine.step();
-        }
-        let theirs = engine.pose();
-        let own = [
-            ours.metrics.final_x,
-            ours.metrics.final_y,
-            ours.metrics.final_angle,
-        ];
+        let theirs = pose(&summary(&in_rapier(&scenario)));
+        let own = pose(&ours);
         println!(
             "{count} wheels, {height} m: {} {own:.4?}, the engine's bodies {theirs:.4?}",
             ours.outcome
@@ -47,18 +40,14 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
         assert_eq!(on_top(own), on_top(theirs));
         // A row of nine has several pockets to stop in, and momentum decides which.
         if ours.outcome.is_stop() && count == 3 {
-            // Its joints and motors give way by a few tenths of a millimetre under load.
-            assert!((own[0] - theirs[0]).abs() < 5e-3 && (own[2] - theirs[2]).abs() < 0.05);
+            // How it strikes the edge moves the place by up to 2 mm.
+            assert!((own[0] - theirs[0]).abs() < 3e-3 && (own[2] - theirs[2]).abs() < 0.05);
         }
     }
 }
 
 /// How many of some starts, spread over a grouser pitch, end on top: ours, and the engine's.
 fn climbs(track: &Track, torque: f64, height: f64) -> (u32, u32) {
-    let settings = EngineSettings {
-        time_step: 5e-4,
-        substeps: 8,
-    };
     let (mut ours, mut theirs) = (0, 0);
     for i in 0..STARTS {
         let mut scenario = engineer();
@@ -68,15 +57,12 @@ fn climbs(track: &Track, torque: f64, height: f64) -> (u32, u32) {
         scenario.terrain = step(height, 0.9);
         scenario.start.approach = 0.05 + 0.048 * f64::from(i) / f64::from(STARTS);
         scenario.duration = 6.0;
-        scenario.criteria.clear_time = 100.0;
-        let own = summary(&scenario).metrics;
-        let mut engine = EngineWorld::new(&scenario, settings);
-        for _ in 0..(own.time / settings.time_step).round() as u64 {
-            engine.step();
-        }
-        let on_top = |x: f64, y: f64| u32::from(x > 0.2 && y > height + 0.05);
-        ours += on_top(own.final_x, own.final_y);
-        theirs += on_top(engine.pose()[0], engine.pose()[1]);
+        let on_top = |run: &Run| {
+            let [x, y, _] = pose(run);
+            u32::from(x > 0.1 && y > height + 0.05)
+        };
+        ours += on_top(&summary(&scenario));
+        theirs += on_top(&summary(&in_rapier(&scenario)));
     }
     (ours, theirs)
 }

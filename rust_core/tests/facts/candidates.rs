@@ -59,7 +59,7 @@ impl Row {
         (0..self.count).all(|wheel| gap(wheel) > self.radius - 1e-9)
     }
 
-    pub fn candidates(&self) -> Vec<Candidate> {
+    pub(crate) fn candidates(&self) -> Vec<Candidate> {
         let mut found = Vec::new();
         for on_edge in 0..self.count - 1 {
             found.extend(self.pocket(on_edge));
@@ -166,7 +166,7 @@ impl Row {
         })
     }
 
-    pub fn scenario(&self) -> Scenario {
+    pub(crate) fn scenario(&self) -> Scenario {
         let mut scenario = slow_and_strong();
         let length = f64::from(self.count - 1) * self.spacing;
         let outline = &mut scenario.robot.outline;

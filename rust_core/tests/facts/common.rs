@@ -1,10 +1,10 @@
 //! Scenarios that the tests start from, and small tools to run them.
 
 use crawler2d_core::{
-    BeltTrack, Cancel, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Flippers,
-    ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold, HybridWheels,
-    LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape, Simulation,
-    Terrain, Track, Wheel, outcome_of, simulate,
+    BeltTrack, Cancel, ChainMechanism, Checked, CircumferentialWheels, Climb, Ends, Engine,
+    Flippers, ForceSupport, ForceTrack, Gait, GearWheel, Ground, GrouserBeltTrack, Hold,
+    HybridWheels, LineOfWheels, Outcome, Profile, Record, Run, Scenario, SegmentalTrack, ShoeShape,
+    Simulation, Terrain, Track, Wheel, outcome_of, simulate,
 };
 
 /// [m/s^2] The gravity of every scenario here.
@@ -112,6 +112,14 @@ pub(crate) fn articulated() -> Vec<(&'static str, Scenario)> {
 /// next steps on that.
 pub(crate) fn fixed(scenario: &mut Scenario, time_step: f64) {
     (scenario.solver.accuracy, scenario.solver.time_step) = (None, Some(time_step));
+}
+
+/// The same, moved by rapier's bodies, joints and motors, at the step that is usual there.
+pub(crate) fn in_rapier(scenario: &Scenario) -> Scenario {
+    let mut scenario = scenario.clone();
+    scenario.solver.engine = Engine::Rapier;
+    fixed(&mut scenario, 2.5e-4);
+    scenario
 }
 
 /// Whether grousers or shoes of a robot of that name strike the ground: blows pass differences of rounding on.

@@ -236,7 +236,8 @@ fn snapshots_go_on_with_the_same_bits() {
         scenario.drive.gait = Some(climb());
         let mut one = after(&scenario, 2.0);
         one.set_flipper_angle(End::Rear, 0.3).expect("it has them");
-        let mut other = Simulation::from_snapshot(&one.snapshot()).expect("a snapshot");
+        let mut other = Simulation::from_snapshot(&one.snapshot().expect("our own dynamics"))
+            .expect("a snapshot");
         for _ in 0..1000 {
             one.step().expect("finite");
             other.step().expect("finite");

@@ -4,11 +4,8 @@
 #![allow(clippy::print_stdout)]
 // A helper that fails fails its test; samples of one instant have exactly one time.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
-// The engine's world is shared with the benchmarks.
-#![allow(unreachable_pub)]
 
 mod common;
-mod engine_world;
 mod judge;
 
 mod accuracy;

@@ -21,14 +21,18 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
             whole.set_push(draw.between(-50.0, 50.0)).unwrap();
             whole.set_speed(0.0).unwrap();
         }
-        let snapshot = whole.snapshot();
+        let snapshot = whole.snapshot().expect("our own dynamics");
         largest = largest.max(snapshot.len());
         let mut copy = Simulation::from_snapshot(&snapshot).expect("it was just made");
         for simulation in [&mut whole, &mut copy] {
             advance(simulation, 0.3);
         }
         // The bytes hold pose, speeds, impulses of the solver and all that the monitor has seen.
-        assert!(whole.snapshot() == copy.snapshot(), "run {runs}");
+        assert!(
+            whole.snapshot().expect("our own dynamics")
+                == copy.snapshot().expect("our own dynamics"),
+            "run {runs}"
+        );
         assert_eq!(outcome_now(&whole), outcome_now(&copy));
     }
     println!(
@@ -38,7 +42,9 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
 
 #[test]
 fn damaged_snapshot_is_refused_at_every_byte() {
-    let snapshot = after(&engineer(), 0.5).snapshot();
+    let snapshot = after(&engineer(), 0.5)
+        .snapshot()
+        .expect("our own dynamics");
     let is_refused = |bytes: &[u8]| match Simulation::from_snapshot(bytes) {
         Err(Error::Scenario(e)) => e.path == "snapshot",
         _ => false,

@@ -17,13 +17,13 @@ impl Simulation {
     /// The robot of `variant` in this pose, with these speeds.
     ///
     /// What is unchanged continues bit by bit, also with another torque limit or without its belly. Another robot or
-    /// track takes over the pose and the speeds; ground inside it is let out without a push. Outcome, stops and
-    /// progress count from here.
+    /// track takes over the pose and the speeds; ground inside it is let out without a push; so does what another engine
+    /// has moved. Our own dynamics move the branch. Outcome, stops and progress count from here.
     #[must_use]
     pub fn branch(&self, variant: &Checked) -> Self {
         let (ground, model) = (Arc::clone(variant.ground()), variant.model().clone());
         let variant = variant.scenario();
-        if has_the_same_parts(&self.scenario.robot, &variant.robot) {
+        if self.engine.is_none() && has_the_same_parts(&self.scenario.robot, &variant.robot) {
             self.continued(variant, ground, model)
         } else {
             self.rebuilt(variant, ground, model)
@@ -74,10 +74,13 @@ impl Simulation {
         branch
     }
 
-    /// The same simulation, watched anew.
+    /// The same simulation, watched anew; the same engine moves it.
     pub(in crate::run) fn copy(&self) -> Self {
         let model = self.dynamics.model().clone();
-        self.continued(&self.scenario, Arc::clone(&self.ground), model)
+        Self {
+            engine: self.engine.clone(),
+            ..self.continued(&self.scenario, Arc::clone(&self.ground), model)
+        }
     }
 
     /// The same instant as a variant of the scenario; one that is not rebuilt must have the same parts, or no belly.
@@ -91,7 +94,7 @@ impl Simulation {
             Arc::new(Ground::new(&variant.terrain, variant.robot.gauge)?)
         };
         let model = Model::on(&variant.robot, &ground)?;
-        Ok(if rebuilt {
+        Ok(if rebuilt || self.engine.is_some() {
             self.rebuilt(variant, ground, model)
         } else {
             self.continued(variant, ground, model)

@@ -53,7 +53,15 @@ struct Moment {
 
 impl Simulation {
     /// The complete state, as bytes.
-    pub fn snapshot(&self) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// [`Error::Scenario`] if another engine moves the robot, whose worlds change from version to version.
+    pub fn snapshot(&self) -> Result<Vec<u8>, Error> {
+        if self.is_in_an_engine() {
+            let rule =
+                "must be own for a snapshot: what rapier keeps changes from version to version";
+            return Err(ScenarioError::new("solver.engine", "rapier", rule).into());
+        }
         let moment = Moment {
             scenario: self.scenario.to_json(),
             time: self.time,
@@ -79,7 +87,7 @@ impl Simulation {
         snapshot.extend(bytes(&image));
         let digest = Sha256::digest(&snapshot);
         snapshot.extend_from_slice(&digest);
-        snapshot
+        Ok(snapshot)
     }
 
     /// Restores the simulation of a snapshot; it continues bit by bit the same.

@@ -20,13 +20,13 @@ const GAIN: f64 = 2.0;
 /// A step that is cut short by more than this share looks for its contacts again.
 const CUT: f64 = 0.1;
 
-/// A step that was tried.
-struct Tried {
+/// A step that was taken, or tried.
+pub(super) struct Taken {
     /// [s] Its length.
-    h: f64,
+    pub h: f64,
     /// Whether something strikes the ground in it.
-    strikes: bool,
-    set_point: SetPoint,
+    pub strikes: bool,
+    pub set_point: SetPoint,
 }
 
 impl Simulation {
@@ -73,26 +73,14 @@ impl Simulation {
         };
         std::mem::swap(&mut self.before, &mut self.earlier);
         self.before.copy(&self.state);
-        let mut h = self
-            .pace
-            .next(self.rule, self.time, limit)
-            .min(self.known());
-        let tried = loop {
-            let tried = self.attempt(h, limit - self.time);
-            self.effort = self.effort.plus(self.dynamics.effort());
-            if tried.strikes && self.state.is_finite() {
-                break tried;
-            }
-            let error = self.local_error(tried.h);
-            match self.pace.judge(self.rule, tried.h, error) {
-                Ok(()) => break tried,
-                Err(shorter) => {
-                    self.state.copy(&self.before);
-                    self.dynamics.rewind();
-                    self.effort.repeated_steps += 1;
-                    h = shorter;
-                }
-            }
+        let h = self.pace.next(self.rule, self.time, limit);
+        let engine = self.engine.take();
+        let taken = if let Some(mut engine) = engine {
+            let taken = self.take_in(&mut engine, h);
+            self.engine = Some(engine);
+            taken
+        } else {
+            self.take(h.min(self.known()), limit)
         };
         self.steps += 1;
         if !self.state.is_finite() {
@@ -100,9 +88,33 @@ impl Simulation {
             let step = self.steps;
             return Err(SimulationError { step, body }.into());
         }
-        self.keep(&tried, limit);
+        self.keep_time(&taken, limit);
+        if self.engine.is_none() {
+            self.keep(&taken);
+        }
         self.observe();
         Ok(())
+    }
+
+    /// Takes a step of `h` [s] at most, as long as its accuracy allows.
+    fn take(&mut self, mut h: f64, limit: f64) -> Taken {
+        loop {
+            let tried = self.attempt(h, limit - self.time);
+            self.effort = self.effort.plus(self.dynamics.effort());
+            if tried.strikes && self.state.is_finite() {
+                return tried;
+            }
+            let error = self.local_error(tried.h);
+            match self.pace.judge(self.rule, tried.h, error) {
+                Ok(()) => return tried,
+                Err(shorter) => {
+                    self.state.copy(&self.before);
+                    self.dynamics.rewind();
+                    self.effort.repeated_steps += 1;
+                    h = shorter;
+                }
+            }
+        }
     }
 
     /// [m] The local error of the step that was tried, if that matters; infinite if the state is not finite.
@@ -119,7 +131,7 @@ impl Simulation {
 
     /// Tries a step of `h` [s], of `left` [s] until something changes. It ends just before a part strikes the ground; the
     /// next, with the impact, is short.
-    fn attempt(&mut self, h: f64, left: f64) -> Tried {
+    fn attempt(&mut self, h: f64, left: f64) -> Taken {
         let mut h = h;
         let strikes = loop {
             let travel = self.find_contacts(h);
@@ -145,7 +157,7 @@ impl Simulation {
         self.dynamics
             .command_flippers(&self.state, angles, keep_level, h, trend);
         self.dynamics.advance(&mut self.state, set_point, h);
-        Tried {
+        Taken {
             h,
             strikes,
             set_point,
@@ -199,16 +211,20 @@ impl Simulation {
         travel
     }
 
-    fn keep(&mut self, tried: &Tried, limit: f64) {
-        self.seen_ahead = self.seen_now;
-        (self.began, self.length) = (self.time, tried.h);
-        self.free = if tried.strikes { 0.0 } else { tried.h };
-        self.time = arrive(self.time + tried.h, limit);
+    /// Moves the time on by a step.
+    fn keep_time(&mut self, taken: &Taken, limit: f64) {
+        (self.began, self.length) = (self.time, taken.h);
+        self.free = if taken.strikes { 0.0 } else { taken.h };
+        self.time = arrive(self.time + taken.h, limit);
         self.set_point_before = self.set_point;
-        self.set_point = tried.set_point.end;
-        let h = tried.h;
+        self.set_point = taken.set_point.end;
+    }
+
+    /// Keeps what our own dynamics have found in a step, for the next one.
+    fn keep(&mut self, taken: &Taken) {
+        self.seen_ahead = self.seen_now;
         self.dynamics
-            .keep(&self.state, &self.contacts, h, tried.strikes);
+            .keep(&self.state, &self.contacts, taken.h, taken.strikes);
         std::mem::swap(&mut self.dents, &mut self.dents_now);
         let contacts = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents.heal(contacts);

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::Change;
 use crate::scenario::{
-    ClosedSurface, ClosedTrack, Gait, Hold, Robot, Scenario, TorqueSharing, Track,
+    ClosedSurface, ClosedTrack, Engine, Gait, Hold, Robot, Scenario, TorqueSharing, Track,
 };
 
 /// How a trial continues from a stop.
@@ -19,6 +19,8 @@ pub(super) enum Start {
 /// The variant that a change makes of a scenario; `None` if it makes no sense for its robot.
 pub(super) fn of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start)> {
     let mut variant = scenario.clone();
+    // Trials of another engine's stops are made by our own dynamics, at its time step.
+    variant.solver.engine = Engine::Own;
     let robot = &mut variant.robot;
     let start = match change {
         Change::Nothing => Start::Continued,

@@ -15,7 +15,7 @@ struct Genuine {
 impl Genuine {
     fn new() -> Self {
         let simulation = busy();
-        let snapshot = simulation.snapshot();
+        let snapshot = simulation.snapshot().expect("our own dynamics");
         let body = &snapshot[MAGIC.len()..snapshot.len() - DIGEST];
         let image: Image = postcard::from_bytes(body).expect("it was just made");
         let rest = image.rest;

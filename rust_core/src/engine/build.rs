@@ -1,0 +1,173 @@
+//! Builds a robot in a given state on its ground.
+
+use rapier2d_f64::prelude::{
+    CoefficientCombineRule, Collider, ColliderBuilder, Group, InteractionGroups,
+    InteractionTestMode, JointAxis, MassProperties, PhysicsWorld, RigidBodyBuilder,
+    RigidBodyHandle, SpringCoefficients,
+};
+
+use super::surface::pieces;
+use super::{EngineWorld, Robot, Wheel, joints};
+use crate::dynamics::State;
+use crate::geometry::{Pose, Rotation, Vector};
+use crate::robot::{Model, Part, Running, WheelBody};
+use crate::scenario::Scenario;
+use crate::terrain::{Ground, Profile};
+
+/// Substeps of a step; with 16 or 64, wheels on one shaft shake.
+const SUBSTEPS: usize = 4;
+/// [Hz] Natural frequency and damping ratio of its contacts, found by a study: docs/engines.md. Half of it lets robots sink in
+/// by four times as much; at 1000 Hz, stops rattle.
+const CONTACT: (f64, f64) = (240.0, 5.0);
+/// [m/s] Largest speed at which a penetration is pushed out.
+const PUSH_OUT: f64 = 0.5;
+/// Share of the inertia of wheels on one motor that is on their shaft. Sweeps over the joints settle the sooner the less a
+/// wheel has to say: with none on it, 24 wheels never do, and their motor's limit is not kept.
+const ON_SHAFT: f64 = 0.9;
+/// [m] Depth up to which the engine lets bodies sink in.
+const SLOP: f64 = 1e-5;
+/// [m/s^2] How fast parts may gain speed within a step, as far as the search for contacts looks ahead.
+const GAIN: f64 = 100.0;
+
+impl EngineWorld {
+    /// A robot at rest in a state.
+    pub(crate) fn new(scenario: &Scenario, model: &Model, ground: &Ground, state: &State) -> Self {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::new(0.0, -scenario.gravity);
+        set_up(&mut world, scenario);
+        for (k, lane) in ground.lanes.iter().enumerate() {
+            world.insert_collider(profile(lane, k), None);
+        }
+        let robot = build(&mut world, model, ground, state);
+        Self { world, robot }
+    }
+}
+
+/// Gives the engine the settings of a scenario.
+fn set_up(world: &mut PhysicsWorld, scenario: &Scenario) {
+    let step = scenario.solver.time_step.unwrap_or_default();
+    let fastest = scenario.robot.drivetrain.max_speed;
+    let p = &mut world.integration_parameters;
+    p.dt = step;
+    p.num_solver_iterations = SUBSTEPS;
+    p.contact_recycling = false;
+    p.max_ccd_substeps = 0;
+    p.normalized_max_corrective_velocity = PUSH_OUT;
+    // A surface that runs at its fastest over a corner must be seen before it arrives.
+    p.normalized_prediction_distance = 2.0 * (fastest + GAIN * step) * step;
+    p.normalized_allowed_linear_error = SLOP;
+    let (natural_frequency, damping_ratio) = CONTACT;
+    p.contact_softness = SpringCoefficients {
+        natural_frequency,
+        damping_ratio,
+    };
+    p.static_contact_softness = p.contact_softness;
+}
+
+fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State) -> Robot {
+    let mut running = Running::default();
+    state.running_after(0.0, model, &mut running);
+    let pose = state.pose(model);
+    // The chassis takes what the wheels leave of mass, centre of mass and inertia.
+    let (body, wheels) = model.bodies();
+    let mass = MassProperties::new(body.center_of_mass, body.mass, body.moment_of_inertia);
+    let chassis = insert(world, pose, mass);
+    for (i, part) in model.parts.iter().enumerate() {
+        if wheels.iter().all(|wheel| wheel.part != i) {
+            world.insert_collider(collider(part, i, ground), Some(chassis));
+        }
+    }
+    let mut built = Vec::new();
+    let mut motors = Vec::new();
+    for drive in 0..model.drives {
+        let is_of_drive = |wheel: &&WheelBody| model.parts[wheel.part].drive == Some(drive);
+        let of_drive: Vec<&WheelBody> = wheels.iter().filter(is_of_drive).collect();
+        let Some(first) = of_drive.first() else {
+            continue; // a force along the chassis
+        };
+        let on_shaft = of_drive.len() > 1;
+        let kept = if on_shaft { 1.0 - ON_SHAFT } else { 1.0 };
+        let mut axles = Vec::new();
+        for wheel in &of_drive {
+            let part = &model.parts[wheel.part];
+            let turn = Rotation::new(part.turn(part.run(&running)));
+            let place = pose * Pose::from_parts(wheel.center, turn);
+            let inertia = kept * wheel.moment_of_inertia;
+            let mass = MassProperties::new(Vector::ZERO, wheel.mass, inertia);
+            let body = insert(world, place, mass);
+            world.insert_collider(collider(part, wheel.part, ground), Some(body));
+            axles.push(joints::axle(world, [chassis, body], wheel.center));
+            built.push(Wheel {
+                body,
+                part: wheel.part,
+                drive,
+                radius: wheel.radius,
+                inertia: wheel.moment_of_inertia,
+                center_before: Vector::ZERO,
+                spin_before: 0.0,
+            });
+        }
+        let alike = &built[built.len() - axles.len()..];
+        let joint = if on_shaft {
+            let inertia = ON_SHAFT * of_drive.iter().map(|w| w.moment_of_inertia).sum::<f64>();
+            joints::shaft(world, chassis, alike, inertia)
+        } else {
+            axles[0]
+        };
+        if drive < model.motors && model.drive_force > 0.0 {
+            let torque = model.drive_force * first.radius;
+            joints::limit(world, (joint, JointAxis::AngX), torque);
+            motors.push((joint, first.radius));
+        }
+    }
+    let pushes = model.pushes_chassis && model.drive_force > 0.0;
+    let push = pushes.then(|| joints::push(world, chassis, pose.translation, model.drive_force));
+    Robot {
+        chassis,
+        wheels: built,
+        motors,
+        push,
+    }
+}
+
+fn insert(world: &mut PhysicsWorld, pose: Pose, mass: MassProperties) -> RigidBodyHandle {
+    let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(false);
+    world.insert_body(body.additional_mass_properties(mass))
+}
+
+/// A lane: one-sided, with its outside on the right of each segment, so from +x to -x.
+fn profile(lane: &Profile, number: usize) -> Collider {
+    let points: Vec<Vector> = lane.points.iter().rev().copied().collect();
+    let builder = ColliderBuilder::oriented_polyline(points, None);
+    on_lane(
+        builder,
+        lane.friction,
+        number,
+        [Group::GROUP_1, Group::GROUP_2],
+    )
+    .build()
+}
+
+/// A part; mass and inertia are those of its body.
+fn collider(part: &Part, number: usize, ground: &Ground) -> Collider {
+    let friction = ground.lanes[part.lane].friction.min(part.friction_limit);
+    let builder = ColliderBuilder::compound(pieces(part)).density(0.0);
+    let sides = [Group::GROUP_2, Group::GROUP_1];
+    on_lane(builder, friction, part.lane, sides)
+        .user_data(number as u128)
+        .build()
+}
+
+/// What collides with the ground of one lane alone; `sides` are its own group of each lane and that of the others.
+fn on_lane(
+    builder: ColliderBuilder,
+    friction: f64,
+    lane: usize,
+    sides: [Group; 2],
+) -> ColliderBuilder {
+    let [own, other] = sides.map(|side| Group::from(side.bits() << (2 * lane)));
+    builder
+        .friction(friction)
+        .friction_combine_rule(CoefficientCombineRule::Min)
+        .collision_groups(InteractionGroups::new(own, other, InteractionTestMode::And))
+}
