@@ -1,6 +1,6 @@
 //! The diagnosis of a stop as dictionaries and `NumPy` columns.
 
-use crawler2d_core::{Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial};
+use crawler2d_core::{Balance, Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -55,6 +55,19 @@ pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, 
         "flipper_angles",
         PyTuple::new(py, arms.collect::<Vec<_>>())?,
     )?;
+    Ok(result)
+}
+
+/// Whether forces could hold a stop.
+pub(crate) fn balance<'py>(py: Python<'py>, found: &Balance) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("holds", found.holds())?;
+    result.set_item("imbalance", found.imbalance)?;
+    result.set_item("tolerance", found.tolerance)?;
+    result.set_item("holds_between", found.holds_between)?;
+    let pulls = found.pulls.iter();
+    let pulls = pulls.map(|pull| (pull.body, (pull.point.x, pull.point.y), pull.force));
+    result.set_item("pulls", PyTuple::new(py, pulls.collect::<Vec<_>>())?)?;
     Ok(result)
 }
 

@@ -262,6 +262,20 @@ mod _core {
         Ok((found.low, found.high, found.tips))
     }
 
+    /// Whether forces could hold a stop: the least imbalance, its tolerance, between which factors of the friction, and by
+    /// how much each contact would have to pull.
+    #[pyfunction]
+    fn balance(py: Python<'_>, text: PyBackedStr, at: f64) -> PyResult<Option<Bound<'_, PyDict>>> {
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::balance(&Checked::from_json(&text)?, at, &asked)
+        })?;
+        found
+            .map(|found| diagnosis::balance(py, &found))
+            .transpose()
+    }
+
     /// Version and build of the compiled core.
     #[pyfunction]
     fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

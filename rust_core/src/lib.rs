@@ -31,7 +31,9 @@ mod terrain;
 mod version;
 
 pub use contact::Intrusion;
-pub use diagnosis::{Change, Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial, Wanted};
+pub use diagnosis::{
+    Balance, Change, Diagnosis, LoadedIntrusion, Mechanism, Pull, StopContact, Trial, Wanted,
+};
 pub use dynamics::ChainReading;
 pub use error::{Error, LimitError, MEMORY_VARIABLE, SimulationError, caught};
 pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
@@ -43,7 +45,7 @@ pub use robot::{
 };
 pub use run::{
     Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run,
-    Simulation, Trace, branch, diagnose, escape_force, make_trials, outcome_of, poses,
+    Simulation, Trace, balance, branch, diagnose, escape_force, make_trials, outcome_of, poses,
     run_of_trial, simulate, simulate_many, what_if,
 };
 pub use scenario::{

@@ -4,6 +4,7 @@
 //! Whether the ground inside is the reason is tried afterwards (`run/trials`). docs/decisions/0012 explains how,
 //! docs/conventions.md defines the words.
 
+mod balance;
 mod hinges;
 mod linear_program;
 mod mechanism;
@@ -21,11 +22,14 @@ use crate::contact::Intrusion;
 use crate::geometry::Vector;
 use crate::observe::{Outcome, Stance};
 use crate::robot::BodyKind;
+use crate::scenario::SeizureCriteria;
 use crate::terrain::Side;
 
+pub use balance::{Balance, Pull};
 pub use mechanism::Mechanism;
 pub use trial::{Change, Trial, Wanted};
 
+pub(crate) use balance::balance;
 pub(crate) use scene::Scene;
 
 /// Why a robot stopped although commanded to move.
@@ -129,6 +133,15 @@ pub(crate) struct Seen {
     pub progress: f64,
 }
 
+/// The share of the weight up to which an imbalance counts as none.
+pub(crate) fn tolerance(criteria: &SeizureCriteria, stationary: bool) -> f64 {
+    if stationary {
+        criteria.imbalance
+    } else {
+        criteria.mean_imbalance
+    }
+}
+
 /// Examines a stop; its outcome is the symptom until something has been tried.
 pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis {
     let criteria = scene.criteria;
@@ -145,11 +158,7 @@ pub(crate) fn examine(scene: &Scene, stance: &Stance, seen: &Seen) -> Diagnosis 
     let range = stance.range[0].max(stance.range[1]);
     let range = range.max(stance.range[2] * scene.half_length);
     let stationary = range <= criteria.stationary_distance;
-    let tolerance = if stationary {
-        criteria.imbalance
-    } else {
-        criteria.mean_imbalance
-    };
+    let tolerance = tolerance(criteria, stationary);
     let statics = scene.statics(stance);
     let imbalance = statics.as_ref().and_then(Statics::imbalance);
     let symptom = if range > criteria.cycling_distance {

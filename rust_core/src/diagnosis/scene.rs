@@ -180,13 +180,24 @@ impl Scene<'_> {
 
     /// The statics of a stop; `None` without a weight.
     pub(super) fn statics(&self, stance: &Stance) -> Option<Statics> {
+        let slides = |b: &Bearing| self.slides(b);
+        self.statics_where(stance, &slides)
+    }
+
+    /// The same by the motion of the surfaces alone: what moves on the ground slides, whatever force was found there.
+    pub(super) fn statics_of_surfaces(&self, stance: &Stance) -> Option<Statics> {
+        let slides = |b: &Bearing| self.is_moving(b.slip);
+        self.statics_where(stance, &slides)
+    }
+
+    fn statics_where(&self, stance: &Stance, slides: &dyn Fn(&Bearing) -> bool) -> Option<Statics> {
         let weight = self.model.mass * self.gravity;
         if weight <= 0.0 {
             return None;
         }
         let pose = Pose::new(stance.position, stance.angle);
         let supports = stance.bearings.iter().map(|b| {
-            let slides = if self.slides(b) { b.slip.signum() } else { 0.0 };
+            let slides = if slides(b) { b.slip.signum() } else { 0.0 };
             self.support(pose, &b.contact, slides)
         });
         let torque = self.model.drive_force / weight;

@@ -45,6 +45,19 @@ pub(super) struct Support {
     pub slides: f64,
 }
 
+impl Support {
+    /// The edges of its friction cone between which its force lies: one while it slides.
+    fn sides(&self) -> &'static [f64] {
+        if self.slides == 0.0 {
+            &[-1.0, 1.0]
+        } else if self.slides > 0.0 {
+            &[-1.0]
+        } else {
+            &[1.0]
+        }
+    }
+}
+
 /// The pivot of the arms at one end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hinge {
@@ -93,6 +106,40 @@ impl Statics {
         found.last().map(|residual| residual.max(0.0))
     }
 
+    /// The same with all friction times a factor.
+    pub(super) fn with_friction(&self, factor: f64) -> Self {
+        let supports = self.supports.iter().map(|support| Support {
+            friction: factor * support.friction,
+            ..support.clone()
+        });
+        Self {
+            supports: supports.collect(),
+            ..self.clone()
+        }
+    }
+
+    /// By how much each support would have to pull, in weights, in the balance in which they pull the least in all; `None` if
+    /// forces balance in none, up to a residual.
+    pub(super) fn least_pulls(&self, residual: f64) -> Option<Vec<f64>> {
+        let pushes = self.forces();
+        let count: usize = self.supports.iter().map(|s| s.sides().len()).sum();
+        let pulls = pushes[..count].iter().map(Force::reversed);
+        let forces: Vec<Force> = pushes.iter().cloned().chain(pulls).collect();
+        let mut rows = self.rows(&forces);
+        let mut at_most = vec![0.0; forces.len() + 1];
+        at_most[forces.len()] = 1.0;
+        rows.push(at_most, residual);
+        let mut cost = vec![0.0; forces.len() + 1];
+        cost[pushes.len()..forces.len()].fill(1.0);
+        let found = rows.minimise(&cost)?;
+        let mut pulled = found[pushes.len()..forces.len()].iter();
+        let of = |support: &Support| {
+            let own = pulled.by_ref().take(support.sides().len());
+            own.map(|pull| pull.max(0.0)).sum()
+        };
+        Some(self.supports.iter().map(of).collect())
+    }
+
     /// Two inequalities for each balance with the weight, and the bounds. The variables are the forces and, last, the
     /// residual.
     fn rows(&self, forces: &[Force]) -> Rows {
@@ -130,12 +177,7 @@ impl Statics {
     fn forces(&self) -> Vec<Force> {
         let mut forces = Vec::new();
         for support in &self.supports {
-            let sides: &[f64] = if support.slides == 0.0 {
-                &[-1.0, 1.0]
-            } else {
-                &[-support.slides.signum()]
-            };
-            for side in sides {
+            for side in support.sides() {
                 forces.push(Force {
                     effect: self.of_support(support, side * support.friction),
                     least: 0.0,
@@ -192,6 +234,7 @@ impl Statics {
 }
 
 /// A force that may act: the effect of a unit of it on each balance, and its bounds.
+#[derive(Clone)]
 struct Force {
     effect: Vec<f64>,
     least: f64,
@@ -199,6 +242,15 @@ struct Force {
 }
 
 impl Force {
+    /// A force of the same line the other way.
+    fn reversed(&self) -> Self {
+        Self {
+            effect: self.effect.iter().map(|share| -share).collect(),
+            least: 0.0,
+            most: f64::INFINITY,
+        }
+    }
+
     fn within(effect: Vec<f64>, most: f64) -> Self {
         Self {
             effect,

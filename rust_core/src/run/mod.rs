@@ -20,7 +20,8 @@ pub use metrics::Metrics;
 pub use poses::{Poses, poses};
 pub use record::Record;
 pub use simulate::{
-    Run, branch, diagnose, escape_force, make_trials, outcome_of, run_of_trial, simulate, what_if,
+    Run, balance, branch, diagnose, escape_force, make_trials, outcome_of, run_of_trial, simulate,
+    what_if,
 };
 pub use simulation::Simulation;
 pub use trace::Trace;

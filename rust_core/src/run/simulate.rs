@@ -8,7 +8,7 @@ use super::simulation::SAME_TIME;
 use super::trace::{Recorder, Trace};
 use super::trials::{self, EscapeForce};
 use super::{Checked, Metrics, Simulation, budget};
-use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};
+use crate::diagnosis::{Balance, Change, Diagnosis, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
@@ -142,6 +142,15 @@ pub fn run_of_trial(
 /// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
 pub fn escape_force(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<EscapeForce, Error> {
     trials::escape_force(&replay(scenario, at, cancel)?, cancel)
+}
+
+/// Simulates `scenario` up to the time `at` [s], where it has stopped, and says whether forces could hold it there; `None`
+/// if it has not stopped, or has no weight.
+///
+/// # Errors
+/// As [`simulate`], and [`Error::Interrupted`] once `cancel` is asked.
+pub fn balance(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Option<Balance>, Error> {
+    Ok(replay(scenario, at, cancel)?.balance())
 }
 
 /// Diagnoses a simulation's stop; `None` if it has not stopped.

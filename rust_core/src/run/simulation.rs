@@ -25,7 +25,7 @@ use super::Checked;
 use super::checked::fastest_turn;
 use super::record::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
-use crate::diagnosis::{self, Diagnosis, Scene};
+use crate::diagnosis::{self, Balance, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, Effort, LoadedContact, Shoe, State};
 use crate::engine::EngineWorld;
 use crate::error::Error;
@@ -255,9 +255,21 @@ impl Simulation {
             since,
             progress: self.monitor.progress(),
         };
+        Some(self.with_scene(|scene| diagnosis::examine(scene, &self.monitor.stance(), &seen)))
+    }
+
+    /// Whether forces could hold the present stop; `None` if the robot is not stopped, or has no weight.
+    pub(crate) fn balance(&self) -> Option<Balance> {
+        let stationary = self.examine()?.stationary;
+        let tolerance = diagnosis::tolerance(&self.scenario.criteria, stationary);
+        self.with_scene(|scene| diagnosis::balance(scene, &self.monitor.stance(), tolerance))
+    }
+
+    /// What a diagnosis needs besides the stop.
+    fn with_scene<T>(&self, of: impl FnOnce(&Scene) -> T) -> T {
         let running = self.running();
         let model = self.dynamics.model().as_one_body(&running);
-        let scene = Scene {
+        of(&Scene {
             model: &model,
             lanes: &self.ground.lanes,
             envelopes: self.monitor.envelopes(),
@@ -267,8 +279,7 @@ impl Simulation {
             set_point: self.set_point,
             half_length: 0.5 * self.scenario.robot.outline.axle_distance(),
             running,
-        };
-        Some(diagnosis::examine(&scene, &self.monitor.stance(), &seen))
+        })
     }
 
     /// [s] Time without progress that counts as a stop.
