@@ -22,6 +22,9 @@ __all__ = ["is_same_wheel", "wheel_on"]
 _TURNED = 1e-3
 """[rad] By how much a wheel may start turned otherwise: files round angles to so much."""
 
+_EXPLAINED = 0.01
+"""[-] A turn that leaves less than this share of what is off without one is there, be it small."""
+
 _ROUNDED = 0.01  # of the sizes of grousers, which files round to 0.1 mm
 _THICKNESSES = ("tip_thickness", "base_thickness")
 _PARALLEL = 1e-6
@@ -99,13 +102,7 @@ def wheel_on(
         for k, (pair, turned) in enumerate(zip(pairs, angles, strict=True))
         for runner in pair.both
     )
-    degrees = math.degrees(angle)
-    if off > _TURNED / angle:
-        reason = f"comes closest: gear wheels start up to {off * degrees:.3g} degrees off"
-        told.doubts.append((f"{path}.phase_fraction", found.share, reason))
-    elif found.offset:
-        turn = f"{found.offset * degrees:.3g} degrees"
-        told.notes.append(f"gear wheels: all start turned by {turn} more than they do here")
+    _tell(told, found, _named(pairs), off, angle=angle, path=path)
     tip, base = (float(np.mean([getattr(g, name) for g in gears])) for name in _THICKNESSES)
     is_parallel = base - tip <= _PARALLEL * gears[0].radius
     return GearWheel(
@@ -131,6 +128,41 @@ def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel)
     ]
     is_alike = bool(np.allclose(np.array(sizes[0]), np.array(sizes[1]), rtol=_ROUNDED))
     return is_alike and off <= _TURNED * count / (2.0 * math.pi)
+
+
+def _tell(
+    told: Telling, found: Phases, wheels: str, off: float, *, angle: float, path: str
+) -> None:
+    """Tell by how much wheels start turned otherwise than those of the robot that is made.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes it.
+    found : Phases
+        How they start.
+    wheels : str
+        Their names.
+    off : float
+        [-] The most by which one of them, left or right, starts turned otherwise.
+    angle : float
+        [rad] Between two grousers.
+    path : str
+        Of the wheel in a scenario.
+    """
+    is_turned, is_off = (abs(each) * angle > _TURNED for each in (found.offset, off))
+    turn, degrees = (f"{math.degrees(each * angle):.3g} degrees" for each in (found.offset, off))
+    if is_turned:
+        told.notes.append(f"{wheels}: all start turned by {turn} more than they do here")
+    if is_off:
+        more = ", besides a turn that all have" if is_turned else ""
+        reason = f"comes closest: {wheels} start up to {degrees} off{more}"
+        told.doubts.append((f"{path}.phase_fraction", float(f"{found.share:.4g}"), reason))
+
+
+def _named(pairs: list[Pair]) -> str:
+    """Return the names of the first and the last wheel on the left."""
+    return " to ".join(dict.fromkeys(pair.left[0].name for pair in (pairs[0], pairs[-1])))
 
 
 def _refuse_unlike(runner: Runner, first: Grousers) -> None:
@@ -166,13 +198,18 @@ def _wrapped(shares: Any) -> Any:
 
 def _fitted(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
     """Find how wheels are phased; in the first order, and without an offset, if that will do."""
-    found = [
-        _fit(own[order], order, has_offset=has_offset)
+    plain, turned = (
+        [_fit(own[order], order, has_offset=has_offset) for order in orders]
         for has_offset in (False, True)
-        for order in orders
-    ]
-    best = min(found, key=lambda each: each.off)
-    return next((each for each in found if each.off <= tolerance), best)
+    )
+    for each, other in zip(plain, turned, strict=True):
+        if each.off <= tolerance:
+            # A frame that is hardly tilted turns all by as little, which the share must not take
+            # up. Any two wheels have a turn and a share.
+            is_turned = len(own) > 2 and other.off < _EXPLAINED * each.off
+            return other if is_turned else each
+    best = min(plain + turned, key=lambda each: each.off)
+    return next((each for each in turned if each.off <= tolerance), best)
 
 
 def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
