@@ -64,6 +64,11 @@ def levelled(robot: c2d.Robot) -> c2d.Robot:
     return dataclasses.replace(robot, flippers=dataclasses.replace(robot.flippers, angle=0.0))
 
 
+def spacing(track: Any) -> float:
+    """[rad] The angle between two grousers of its wheels."""
+    return 2.0 * math.pi / float(track.wheel.grouser_count)
+
+
 def _other_wheel(
     track: Any, written: Any, accuracy: float, *, is_phased: bool = True
 ) -> Iterator[str]:
@@ -72,19 +77,19 @@ def _other_wheel(
         if getattr(got, field) != pytest.approx(getattr(expected, field), abs=accuracy):
             yield f"{field}: {got} for {expected}"
     ahead = _wrapped(got.phase_fraction - expected.phase_fraction, 1.0)
-    angle = 2.0 * math.pi / expected.grouser_count
-    if is_phased and abs(ahead) > accuracy / SMALLEST / angle:
+    if is_phased and abs(ahead) > accuracy / SMALLEST / spacing(written):
         yield f"phase_fraction: {got} for {expected}"
 
 
 def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
     """What is told of the wheels of the chassis, unless it is the tilt of the frame they are in."""
-    angle = 2.0 * math.pi / robot.track.wheel.grouser_count  # type: ignore[union-attr]
     _, (ahead, _) = frame_of(reading)
     turn = -math.atan2(ahead[1], ahead[0])
     words = [each for each in (*reading.doubts, *reading.notes) if "flipper_wheel" not in each]
     told = _degrees(words, TURNED)
-    if abs(_wrapped(turn - told, angle)) > (0.005 * abs(told) + 1e-9 if told else UNTOLD):
+    if abs(_wrapped(turn - told, spacing(robot.track))) > (
+        0.005 * abs(told) + 1e-9 if told else UNTOLD
+    ):
         yield f"wheels that all start turned by {math.degrees(turn)} degrees: {words}"
     yield from (each for each in words if re.search(OFF, each))
 
@@ -92,13 +97,12 @@ def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
 def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
     """What is told of wheels of flippers, unless they start so much otherwise in what was read."""
     assert robot.flippers is not None
-    angle = 2.0 * math.pi / robot.flippers.track.wheel.grouser_count  # type: ignore[union-attr]
     wheels, found = starts(robot), starts(reading.robot)
     for end in (end for end in ("front", "rear") if end in wheels):
         words = [*reading.doubts, *reading.notes]
         words = [each for each in words if f"{end}_left_flipper_wheel" in each]
         turn, off = (_degrees(words, rule) for rule in (TURNED, OFF))
-        left = _wrapped(wheels[end] - found[end] - turn, angle)
+        left = _wrapped(wheels[end] - found[end] - turn, spacing(robot.flippers.track))
         # Words have three digits. Of UNTOLD nothing is said, of a turn or else.
         rounding = 0.005 * (abs(turn) + off) + accuracy / SMALLEST
         most = off + rounding + (UNTOLD if not off else 0.0) + (UNTOLD if not turn else 0.0)
