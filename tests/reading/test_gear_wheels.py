@@ -106,6 +106,44 @@ def test_wheels_that_all_start_turned_by_more_are_noted(tmp_path: Path) -> None:
     assert not any("phase_fraction" in doubt for doubt in reading.doubts)
 
 
+def test_a_turn_too_small_to_tell_is_not_taken_for_a_share(tmp_path: Path) -> None:
+    """A share of 0.0004 would come as near as files round."""
+    turn = -0.5 * ANGLE + 0.0009
+    three = (gear(name, x, turn=turn) for name, x in (("a", 0.2), ("b", -0.2), ("c", 0.0)))
+    reading = read(tmp_path, urdf(*three))
+    found = reading.robot.track.wheel.phase_fraction  # type: ignore[union-attr]
+    assert found == pytest.approx(0.0, abs=1e-9)
+    assert not any("turned by" in note for note in reading.notes)
+
+
+def test_angles_of_two_wheels_that_a_file_rounds_are_no_turn_of_both(tmp_path: Path) -> None:
+    """Half a milliradian each way would be a turn of 1.5: more than is told."""
+    turns = [-0.5 * ANGLE + off for off in (0.0005, -0.0005)]
+    reading = read(
+        tmp_path, urdf(gear("rear", -0.2, turn=turns[0]), gear("front", 0.2, turn=turns[1]))
+    )
+    assert not any("turned by" in note for note in reading.notes)
+    assert not any("phase_fraction" in doubt for doubt in reading.doubts)
+
+
+def test_a_doubt_about_phases_names_the_wheels_and_the_turn_that_all_have(tmp_path: Path) -> None:
+    """One of six is 0.1 rad off; the turn and the share of all come nearest in squares."""
+    turn, places = -0.5 * ANGLE + math.radians(7.0), np.linspace(-0.2, 0.2, 6)
+    turns = turn + np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0])
+    parts = [
+        gear(f"w{number}", x, turn=each)
+        for number, (x, each) in enumerate(zip(places.tolist(), turns.tolist(), strict=True), 1)
+    ]
+    reading = read(tmp_path, urdf(*parts))
+    (note,) = (note for note in reading.notes if "all start turned by" in note)
+    (doubt,) = (doubt for doubt in reading.doubts if "phase_fraction" in doubt)
+    slope, level = np.polyfit(np.arange(1, 7), turns - turn, 1)
+    most = np.abs(turns - turn - level - slope * np.arange(1, 7)).max()
+    assert f"left_w1 to left_w6: all start turned by {7 + math.degrees(level):.3g} degrees" in note
+    off = f"left_w1 to left_w6 start up to {math.degrees(most):.3g} degrees off, besides a turn"
+    assert off in doubt
+
+
 def test_wheels_that_start_turned_without_a_rule_are_doubted(tmp_path: Path) -> None:
     turns = (("a", 0.2, 0.0), ("b", 0.0667, 0.3), ("c", -0.0667, 0.1), ("d", -0.2, 0.35))
     reading = read(tmp_path, urdf(*(gear(name, x, turn=turn) for name, x, turn in turns)))

@@ -18,10 +18,14 @@ DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
 NORMALS = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)])
 
 
-def read_again(robot: c2d.Robot, name: str, folder: Path) -> c2d.Reading:
+def written(robot: c2d.Robot, name: str, folder: Path, *, friction: float) -> Path:
     path = folder / f"robot.{SUFFIX[name]}"
-    getattr(robot, f"to_{name}")(path, friction=0.6)
-    return quietly(path, mesh="hull")
+    getattr(robot, f"to_{name}")(path, friction=friction)
+    return path
+
+
+def read_again(robot: c2d.Robot, name: str, folder: Path) -> c2d.Reading:
+    return quietly(written(robot, name, folder, friction=0.6), mesh="hull")
 
 
 def frame_of(reading: c2d.Reading) -> tuple[np.ndarray, np.ndarray]:

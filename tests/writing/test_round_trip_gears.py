@@ -1,16 +1,21 @@
 """Gear wheels that are written and read again are the same, as far as corners are kept."""
 
+import dataclasses
+import json
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import quietly
+from crawler2d.writing.carriers import carriers_of
+from crawler2d.writing.gears import grousers_of
 from tests.writing.drawn import drawn_on_gears
-from tests.writing.test_round_trip import SUFFIX, differences
+from tests.writing.test_round_trip import differences, frame_of, read_again
 
 BOXES, HULLS = 1e-9, 2e-7
 """[m] What is lost on the way: nothing but rounding of boxes, half a digit of the float32 in which
@@ -20,13 +25,12 @@ for their turning."""
 SMALLEST = 0.008
 """[m] The smallest radius that is drawn: a corner that is so much off turns it by that share."""
 
+UNTOLD = 1e-3
+"""[rad] A reader tells of wheels that start turned by more."""
+
+TURNED, OFF = r"all start turned by (\S+) degrees", r"start up to (\S+) degrees off"
+
 FIELDS = "grouser_count", "grouser_height", "tip_thickness", "base_thickness"
-
-
-def read_again(robot: c2d.Robot, name: str, folder: Path) -> c2d.Reading:
-    path = folder / f"robot.{SUFFIX[name]}"
-    getattr(robot, f"to_{name}")(path, friction=0.6)
-    return quietly(path, mesh="hull")
 
 
 def other_wheels(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
@@ -35,11 +39,34 @@ def other_wheels(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Ite
     yield from _other_wheel(again.track, robot.track, accuracy)
     arms, others = again.flippers, robot.flippers
     if arms is not None and others is not None:
-        # A raised flipper has turned its wheels by the radius of the sprocket. That of small wheels
-        # in a line is not in the file.
-        is_stated = again.outline.rear_radius == pytest.approx(robot.outline.rear_radius)
-        yield from _other_wheel(arms.track, others.track, accuracy, is_phased=is_stated)
-    yield from (doubt for doubt in reading.doubts if "phase_fraction" in doubt)
+        yield from _other_wheel(arms.track, others.track, accuracy, is_phased=is_stated(robot))
+    yield from _told_of_chassis(robot, reading)
+    if is_stated(robot):
+        words = [*reading.doubts, *reading.notes]
+        yield from (each for each in words if re.search(rf"flipper_wheel.*({TURNED}|{OFF})", each))
+    else:
+        yield from _told_of_flippers(robot, reading, accuracy)
+
+
+def is_stated(robot: c2d.Robot) -> bool:
+    """Whether the file states all that turned the wheels.
+
+    A raised flipper has turned its wheels by the radius of the sprocket, the rear end of the
+    outline. Small wheels in a line have another.
+    """
+    flippers, track = robot.flippers, robot.track
+    is_raised = flippers is not None and flippers.angle != 0.0
+    return not is_raised or getattr(track, "wheel_radius", None) is None
+
+
+def levelled(robot: c2d.Robot) -> c2d.Robot:
+    assert robot.flippers is not None
+    return dataclasses.replace(robot, flippers=dataclasses.replace(robot.flippers, angle=0.0))
+
+
+def spacing(track: Any) -> float:
+    """[rad] The angle between two grousers of its wheels."""
+    return 2.0 * math.pi / float(track.wheel.grouser_count)
 
 
 def _other_wheel(
@@ -49,21 +76,72 @@ def _other_wheel(
     for field in FIELDS:
         if getattr(got, field) != pytest.approx(getattr(expected, field), abs=accuracy):
             yield f"{field}: {got} for {expected}"
-    ahead = (got.phase_fraction - expected.phase_fraction + 0.5) % 1.0 - 0.5
-    angle = 2.0 * math.pi / expected.grouser_count
-    if is_phased and abs(ahead) > accuracy / SMALLEST / angle:
+    ahead = _wrapped(got.phase_fraction - expected.phase_fraction, 1.0)
+    if is_phased and abs(ahead) > accuracy / SMALLEST / spacing(written):
         yield f"phase_fraction: {got} for {expected}"
+
+
+def _told_of_chassis(robot: c2d.Robot, reading: c2d.Reading) -> Iterator[str]:
+    """What is told of the wheels of the chassis, unless it is the tilt of the frame they are in."""
+    _, (ahead, _) = frame_of(reading)
+    turn = -math.atan2(ahead[1], ahead[0])
+    words = [each for each in (*reading.doubts, *reading.notes) if "flipper_wheel" not in each]
+    told = _degrees(words, TURNED)
+    if abs(_wrapped(turn - told, spacing(robot.track))) > (
+        0.005 * abs(told) + 1e-9 if told else UNTOLD
+    ):
+        yield f"wheels that all start turned by {math.degrees(turn)} degrees: {words}"
+    yield from (each for each in words if re.search(OFF, each))
+
+
+def _told_of_flippers(robot: c2d.Robot, reading: c2d.Reading, accuracy: float) -> Iterator[str]:
+    """What is told of wheels of flippers, unless they start so much otherwise in what was read."""
+    assert robot.flippers is not None
+    wheels, found = starts(robot), starts(reading.robot)
+    for end in (end for end in ("front", "rear") if end in wheels):
+        words = [*reading.doubts, *reading.notes]
+        words = [each for each in words if f"{end}_left_flipper_wheel" in each]
+        turn, off = (_degrees(words, rule) for rule in (TURNED, OFF))
+        left = _wrapped(wheels[end] - found[end] - turn, spacing(robot.flippers.track))
+        # Words have three digits. Of UNTOLD nothing is said, of a turn or else.
+        rounding = 0.005 * (abs(turn) + off) + accuracy / SMALLEST
+        most = off + rounding + (UNTOLD if not off else 0.0) + (UNTOLD if not turn else 0.0)
+        if not off - rounding <= np.abs(left).max() <= most:
+            yield f"{end} wheels start {np.degrees(left)} degrees off: {words}"
+
+
+def _wrapped(turned: Any, angle: float) -> Any:
+    """[rad] Turned by whole spacings of grousers, a wheel is the same."""
+    return (turned + 0.5 * angle) % angle - 0.5 * angle
+
+
+def _degrees(words: list[str], rule: str) -> float:
+    """[rad] The angle that a sentence gives, 0 if none does."""
+    found = [match[1] for each in words if (match := re.search(rule, each))]
+    assert len(found) <= 1
+    return math.radians(float(found[0])) if found else 0.0
+
+
+def starts(robot: c2d.Robot) -> dict[str, np.ndarray]:
+    """[rad] Directions of a grouser of each wheel over the chassis at the start, by end."""
+    text = robot._alone()
+    found = {}
+    for carrier in carriers_of(json.loads(text)["robot"], text):
+        corners = [grousers_of(wheel.outline)[1][0] for wheel in carrier.wheels]  # type: ignore[arg-type]
+        found[carrier.end] = np.array([np.arctan2(*each.sum(axis=0)[::-1]) for each in corners])
+    return found
 
 
 def check(numbers: range, name: str, folder: Path, *, is_tapered: bool = False) -> None:
     found, accuracy = [], HULLS if is_tapered else BOXES
     for number in numbers:
-        robot = drawn_on_gears(number, is_tapered=is_tapered)
-        reading = read_again(robot, name, folder)
-        # Speed and force go with radii, of which hulls keep 2.5e-5: HULLS by SMALLEST.
-        wrong = [*differences(robot, reading, name, 2.5e-5 if is_tapered else 1e-9)]
-        wrong += other_wheels(robot, reading, accuracy)
-        found += [f"{number}: {each}" for each in wrong]
+        drawn = drawn_on_gears(number, is_tapered=is_tapered)
+        for robot in (drawn,) if is_stated(drawn) else (drawn, levelled(drawn)):
+            reading = read_again(robot, name, folder)
+            # Speed and force go with radii, of which hulls keep 2.5e-5: HULLS by SMALLEST.
+            wrong = [*differences(robot, reading, name, 2.5e-5 if is_tapered else 1e-9)]
+            wrong += other_wheels(robot, reading, accuracy)
+            found += [f"{number}: {each}" for each in wrong]
     assert found == []
 
 

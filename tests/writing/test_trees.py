@@ -15,9 +15,10 @@ from crawler2d.writing.sdf import SDF
 from crawler2d.writing.urdf import URDF
 from tests.writing.test_checkers import BELTED, WHEELED
 from tests.writing.test_engines import TAPERED
+from tests.writing.test_round_trip import written
 from tests.writing.test_shapes import tree_of
 
-FORMS = {"sdf": (SDF, "sdf"), "urdf": (URDF, "urdf"), "mjcf": (MJCF, "xml")}
+FORMS = {"sdf": SDF, "urdf": URDF, "mjcf": MJCF}
 CASES = [
     *(("sdf", each) for each in [*WHEELED.values(), *BELTED.values()]),
     *(("urdf", each) for each in WHEELED.values()),
@@ -28,8 +29,7 @@ CASES = [
 
 
 def read_again(robot: c2d.Robot, name: str, folder: Path) -> Tree:
-    path = folder / f"robot.{FORMS[name][1]}"
-    getattr(robot, f"to_{name}")(path, friction=1.0)
+    path = written(robot, name, folder, friction=1.0)
     return tree_in(path.read_bytes(), path, How(mesh="hull")).tree
 
 
@@ -80,7 +80,7 @@ def same_joint(got: Joint, expected: Joint) -> None:
 def test_what_is_read_is_what_was_written(name: str, robot: c2d.Robot, tmp_path: Path) -> None:
     if name == "mjcf":
         pytest.importorskip("mujoco")
-    expected, got = tree_of(robot, FORMS[name][0]), read_again(robot, name, tmp_path)
+    expected, got = tree_of(robot, FORMS[name]), read_again(robot, name, tmp_path)
     assert set(got.by_name) == set(expected.by_name)
     for link in expected.links:
         same_link(got.by_name[link.name], link)

@@ -15,7 +15,7 @@ from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Tr
 from crawler2d.reading.belts import belt_ends
 from crawler2d.reading.gear_wheels import is_same_wheel
 from crawler2d.reading.parts import Arm, Runner
-from crawler2d.reading.sides import Pair, paired
+from crawler2d.reading.sides import Pair, centers, paired
 from crawler2d.reading.silhouettes import silhouette
 from crawler2d.reading.telling import Telling
 from crawler2d.reading.tracks import Base, wheels_of
@@ -212,7 +212,7 @@ def at_end(
         rule = f"must pivot within {_NEAR:.0%} of the axle distance from an end axle"
         pair.refuse(f"{1e3 * off:.4g} mm from it", rule)
     root, tip = pair.pairs[0], pair.pairs[-1]
-    places = base.of(np.array([[p.x, p.y] for p in pair.pairs]))
+    places = base.of(centers(pair.pairs))
     pivot = base.of(pair.pivot[None, :])[0]
     from_pivot = np.hypot(*(places - pivot).T)
     has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= tolerance)

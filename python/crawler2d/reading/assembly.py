@@ -20,7 +20,7 @@ from crawler2d.reading.friction import combined
 from crawler2d.reading.masses import circulating, summed
 from crawler2d.reading.parts import Runner, RunningGear
 from crawler2d.reading.running_gear import running_gear_of
-from crawler2d.reading.sides import Pair, middle_of, paired
+from crawler2d.reading.sides import Pair, centers, middle_of, paired
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base, wheels_of
@@ -167,7 +167,7 @@ class Assembly:
             self.told.note("robot.belly", f"{self.tree.at}: no collision shape on the chassis")
             return None
         self.told.note("robot.belly", lines([shape.at for _, shape in gear.shapes], "hull"))
-        places = base.of(np.array([[pair.x, pair.y] for pair in driven]))
+        places = base.of(centers(driven))
         ground = min(float(y) - pair.radius for (_, y), pair in zip(places, driven, strict=True))
         lowest = min(y for _, y in corners)
         if lowest <= ground + self.tolerance:

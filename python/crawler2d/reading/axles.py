@@ -9,7 +9,7 @@ from crawler2d.parameters.robot import TrackOutline
 from crawler2d.reading.arms import ArmPair
 from crawler2d.reading.belts import belt_round, ends_among
 from crawler2d.reading.parts import RunningGear
-from crawler2d.reading.sides import Pair
+from crawler2d.reading.sides import Pair, centers
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base
@@ -97,7 +97,7 @@ def outline_of(told: Telling, base: Base, bent: list[Pair]) -> TrackOutline:
             axle_distance=base.length, front_radius=front, rear_radius=rear, **grousers
         )
     else:
-        places = base.of(np.array([[pair.x, pair.y] for pair in bent]))
+        places = base.of(centers(bent))
         outline = TrackOutline(discs=np.column_stack([places, radii]), **grousers)
     length = outline.axle_distance
     if length + outline.rear_radius + outline.front_radius > _LARGEST:

@@ -1,19 +1,17 @@
-"""The gear wheels of a track: what all have alike, and by how much each starts ahead of another."""
+"""The gear wheels of a track: what all have alike, and what is told of how they start turned."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
-from crawler2d.models.poses import Array
 from crawler2d.parameters.track import GearWheel, RoundWheel
 from crawler2d.reading.grousers import ALIKE
 from crawler2d.reading.parts import Grousers, Runner
-from crawler2d.reading.sides import Pair
+from crawler2d.reading.phases import Phases, fitted, round_belt, wrapped
+from crawler2d.reading.sides import Pair, centers
 from crawler2d.reading.telling import Telling
 from crawler2d.reading.view import SideView
 
@@ -27,26 +25,6 @@ _THICKNESSES = ("tip_thickness", "base_thickness")
 _PARALLEL = 1e-6
 """[-] Grousers whose thickness changes by less than this share of the radius have parallel flanks:
 MuJoCo keeps their corners as float32."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Phases:
-    """How the wheels of a track start turned: wheel n by n times a share, and all by an offset.
-
-    Parameters
-    ----------
-    share, offset : float
-        [-] Of the angle between two grousers.
-    off : float
-        [-] The most by which a wheel starts turned otherwise.
-    order : list of int
-        Which wheel is the first, the second, ...
-    """
-
-    share: float
-    offset: float
-    off: float
-    order: list[int]
 
 
 def wheel_on(
@@ -91,21 +69,15 @@ def wheel_on(
     angle = 2.0 * math.pi / gears[0].count
     first = [_turned(pair.left[0], view) for pair in pairs]
     own = (np.array(first) - angles) / angle
-    orders = [order] if is_line else [order, _round(pairs, own)]
-    found = _fitted(own, orders, _TURNED / angle)
+    orders = [order] if is_line else [order, round_belt(centers(pairs), own)]
+    found = fitted(own, orders, _TURNED / angle)
     shares = {k: found.share * n + found.offset for n, k in enumerate(found.order, 1)}
     off = max(
-        abs(_wrapped((_turned(runner, view) - turned) / angle - shares[k]))
+        abs(wrapped((_turned(runner, view) - turned) / angle - shares[k]))
         for k, (pair, turned) in enumerate(zip(pairs, angles, strict=True))
         for runner in pair.both
     )
-    degrees = math.degrees(angle)
-    if off > _TURNED / angle:
-        reason = f"comes closest: gear wheels start up to {off * degrees:.3g} degrees off"
-        told.doubts.append((f"{path}.phase_fraction", found.share, reason))
-    elif found.offset:
-        turn = f"{found.offset * degrees:.3g} degrees"
-        told.notes.append(f"gear wheels: all start turned by {turn} more than they do here")
+    _tell(told, found, _named(pairs), off, angle=angle, path=path)
     tip, base = (float(np.mean([getattr(g, name) for g in gears])) for name in _THICKNESSES)
     is_parallel = base - tip <= _PARALLEL * gears[0].radius
     return GearWheel(
@@ -124,13 +96,48 @@ def is_same_wheel(first: RoundWheel | GearWheel, second: RoundWheel | GearWheel)
     count = first.grouser_count
     if count is None or count != second.grouser_count:
         return False
-    off = abs(_wrapped(first.phase_fraction - second.phase_fraction))
+    off = abs(wrapped(first.phase_fraction - second.phase_fraction))
     sizes = [
         (gear.grouser_height, gear.tip_thickness, gear.base_thickness or gear.tip_thickness)
         for gear in (first, second)
     ]
     is_alike = bool(np.allclose(np.array(sizes[0]), np.array(sizes[1]), rtol=_ROUNDED))
     return is_alike and off <= _TURNED * count / (2.0 * math.pi)
+
+
+def _tell(
+    told: Telling, found: Phases, wheels: str, off: float, *, angle: float, path: str
+) -> None:
+    """Tell by how much wheels start turned otherwise than those of the robot that is made.
+
+    Parameters
+    ----------
+    told : Telling
+        Takes it.
+    found : Phases
+        How they start.
+    wheels : str
+        Their names.
+    off : float
+        [-] The most by which one of them, left or right, starts turned otherwise.
+    angle : float
+        [rad] Between two grousers.
+    path : str
+        Of the wheel in a scenario.
+    """
+    is_turned, is_off = (abs(each) * angle > _TURNED for each in (found.offset, off))
+    turn, degrees = (f"{math.degrees(each * angle):.3g} degrees" for each in (found.offset, off))
+    if is_turned:
+        told.notes.append(f"{wheels}: all start turned by {turn} more than they do here")
+    if is_off:
+        more = ", besides a turn that all have" if is_turned else ""
+        reason = f"comes closest: {wheels} start up to {degrees} off{more}"
+        told.doubts.append((f"{path}.phase_fraction", float(f"{found.share:.4g}"), reason))
+
+
+def _named(pairs: list[Pair]) -> str:
+    """Return the names of the first and the last wheel on the left."""
+    return " to ".join(dict.fromkeys(pair.left[0].name for pair in (pairs[0], pairs[-1])))
 
 
 def _refuse_unlike(runner: Runner, first: Grousers) -> None:
@@ -157,59 +164,3 @@ def _turned(runner: Runner, view: SideView) -> float:
     assert runner.grousers is not None
     x, y, _ = view.of(runner.grousers.direction)
     return math.atan2(y, x)
-
-
-def _wrapped(shares: Any) -> Any:
-    """Return shares of the angle between two grousers as the nearest to none, from -0.5 to 0.5."""
-    return (np.asarray(shares) + 0.5) % 1.0 - 0.5
-
-
-def _fitted(own: Array, orders: list[list[int]], tolerance: float) -> Phases:
-    """Find how wheels are phased; in the first order, and without an offset, if that will do."""
-    found = [
-        _fit(own[order], order, has_offset=has_offset)
-        for has_offset in (False, True)
-        for order in orders
-    ]
-    best = min(found, key=lambda each: each.off)
-    return next((each for each in found if each.off <= tolerance), best)
-
-
-def _fit(own: Array, order: list[int], *, has_offset: bool) -> Phases:
-    """Find the share, and the offset if there may be one, that comes closest."""
-    number = np.arange(1, len(own) + 1)
-    # Fine enough that the best of these is on the slope of the best of all.
-    shares = np.arange(16 * len(own)) / (16 * len(own))
-    sums = np.exp(2j * math.pi * (own - shares[:, None] * number)).sum(axis=1)
-    best = int((np.abs(sums) if has_offset else sums.real).argmax())
-    share, offset = float(shares[best]), 0.0
-    if has_offset:
-        offset = float(np.angle(sums[best])) / (2.0 * math.pi)
-    left = _wrapped(own - offset - share * number)
-    if has_offset and len(own) > 1:
-        more, rest = np.polyfit(number, left, 1)
-        share, offset = share + more, offset + rest
-    elif not has_offset:
-        share += float(number @ left / (number @ number))
-    share %= 1.0
-    if 1.0 - share < 1e-9:  # a turn of nothing, but for rounding
-        share = 0.0
-    off = float(np.abs(_wrapped(own - offset - share * number)).max())
-    return Phases(share=share, offset=float(offset), off=off, order=order)
-
-
-def _round(pairs: list[Pair], own: Array) -> list[int]:
-    """Return the wheels in the order of a belt round them, up at the rear and forward on top.
-
-    The first is where the phases of neighbours break off.
-    """
-    places = np.array([[pair.x, pair.y] for pair in pairs])
-    away = places - places.mean(axis=0)
-    loop = np.argsort(-np.arctan2(away[:, 1], away[:, 0]), kind="stable")
-    ahead = _wrapped(np.roll(own[loop], -1) - own[loop])
-    usual = ahead[np.abs(_wrapped(ahead[:, None] - ahead)).sum(axis=1).argmin()]
-    breaks = np.abs(_wrapped(ahead - usual))
-    last = int(breaks.argmax())
-    if breaks[last] < 1e-6:  # it closes on itself: the first is the one that says so
-        last = int(np.abs(_wrapped(own[loop] - usual)).argmin()) - 1
-    return [int(k) for k in np.roll(loop, -(last + 1))]

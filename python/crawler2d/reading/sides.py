@@ -6,11 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NoReturn
 
+import numpy as np
+
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Array
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
-__all__ = ["Pair", "middle_of", "paired"]
+__all__ = ["Pair", "centers", "middle_of", "paired"]
 
 _MOST = 400  # wheels of one track, on both sides: any two are compared
 
@@ -37,6 +40,11 @@ class Pair:
     def both(self) -> tuple[Runner, ...]:
         """All of them."""
         return self.left + self.right
+
+
+def centers(pairs: Iterable[Pair]) -> Array:
+    """[m] Return where pairs stand in side view, shape (n, 2)."""
+    return np.array([[pair.x, pair.y] for pair in pairs])
 
 
 def middle_of(runners: Iterable[Runner]) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from crawler2d.models.poses import Array
 from crawler2d.parameters.track import HybridWheels, LineOfWheels
 from crawler2d.reading.gear_wheels import wheel_on
-from crawler2d.reading.sides import Pair
+from crawler2d.reading.sides import Pair, centers
 from crawler2d.reading.telling import Telling
 from crawler2d.reading.view import SideView
 
@@ -105,7 +105,7 @@ def wheels_of(
         If some are gear wheels, and not all are alike.
     """
     radii = np.array([pair.radius for pair in pairs])
-    places = base.of(np.array([[pair.x, pair.y] for pair in pairs]))
+    places = base.of(centers(pairs))
     is_line = False
     if is_whole:
         even = np.linspace(-0.5 * base.length, 0.5 * base.length, len(pairs))
