@@ -65,6 +65,8 @@ class Case:
         [rad] At which the flippers are held, relative to the chassis, upwards > 0.
     cells : mapping of str to Cell
         What it drives over, by label.
+    files : tuple of str
+        Which of the files of `running.FILES` there are of it.
     how : mapping
         Keywords for `read_robot`.
     """
@@ -72,6 +74,7 @@ class Case:
     file: str
     angle: float
     cells: Mapping[str, Cell]
+    files: tuple[str, ...] = ("public", "export", "repair", "patch")
     how: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -146,6 +149,10 @@ CASES: dict[str, Case] = {
             "slow, stairs of 71 mm": Cell("stairs of 71 mm", 0.65, _SLOW),
             "slow, knife edge 71 mm": Cell("knife edge 71 mm", 0.72, _SLOW),
         },
+        files=(
+            *("public", "export", "repair", "patch"),
+            *("balanced", "on-axles", "balanced-on-axles"),
+        ),
     ),
     "engineer": Case(
         file="eng.xacro",
@@ -165,5 +172,18 @@ CASES: dict[str, Case] = {
         },
         how={"trusted": True, "mesh": "leave_out", "missing": "leave_out"},
     ),
+    "marv": Case(
+        file="marv.sdf",
+        angle=0.0,
+        cells={
+            "step 58 mm": Cell("step 58 mm", 0.5),
+            "step 93 mm": Cell("step 93 mm", 0.8),
+            "knife edge 47 mm": Cell("knife edge 47 mm", 0.5),
+            "barrier 93 mm": Cell("barrier 93 mm", 0.8),
+            "stairs of 93 mm": Cell("stairs of 93 mm", 0.8),
+        },
+        files=("public", "export"),
+    ),
 }
-"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest."""
+"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest.
+MARV's is a control: nothing of it was found to seize, so there is nothing to repair."""

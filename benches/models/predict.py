@@ -27,9 +27,9 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     Returns
     -------
     dict
-        By model, "original" and "repair": what it is, the robot in a scenario on level ground, and
-        by cell one entry for each start: outcome, mechanism, and the last pose of the chassis frame
-        [m, rad].
+        By model, "original" and, where one was found, "repair": what it is, the robot in a scenario
+        on level ground, and by cell one entry for each start: outcome, mechanism, and the last pose
+        of the chassis frame [m, rad].
     """
     own = case.robot()
     usual = {label: cell for label, cell in case.cells.items() if cell.speed is None}
@@ -38,16 +38,18 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     found = audit(
         own, grounds, drive=drive, unknown={}, vary=of_start(), repeats=20, threads=threads
     )
-    repair = next(each for each in found.repairs if each.kind == "wheels")
-    models = {"original": ("as it is", own), "repair": (repair.what, repair.robot)}
+    models = {"original": ("as it is", own, True)}
+    repair = next((each for each in found.repairs if each.kind == "wheels"), None)
+    if repair is not None:
+        models["repair"] = (repair.what, repair.robot, repair.confirmed)
     return {
         name: {
             "what": what,
             "scenario": json.loads(Scenario(robot, Flat()).to_json()),
-            "confirmed": name == "original" or repair.confirmed,
+            "confirmed": confirmed,
             "runs": {label: _runs(case.scenarios(label, robot), threads) for label in case.cells},
         }
-        for name, (what, robot) in models.items()
+        for name, (what, robot, confirmed) in models.items()
     }
 
 

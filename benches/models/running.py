@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from benches.models.cases import CASES
+from benches.models.changed import VARIANTS, patch, variant
 from benches.models.driving import driven
 from benches.models.engine import Engine
 from benches.models.files import ModelFile, exported, public
@@ -27,9 +28,16 @@ ENGINES = ("bullet", "bullet-prisms", "dart", "dart-dantzig")
 Coulomb's law, and with its usual solver."""
 
 
-FILES = {"public": "original", "export": "original", "repair": "repair"}
+FILES = {
+    "public": "original",
+    "export": "original",
+    "repair": "repair",
+    "patch": "repair",
+    **dict.fromkeys(VARIANTS, "original"),
+}
 """The files of a case, each with the prediction that it is to be compared with: the public one,
-crawler2d's of the same robot, and crawler2d's of the repaired one."""
+crawler2d's of the same robot, and of the repaired one, the public one with the wheels of the
+repair, and variants of the public one."""
 
 
 def engine_of(name: str, time_step: float | None = None) -> Engine:
@@ -88,13 +96,17 @@ def run(
 
 
 def model_of(engine: str, case: str, file: str, robot: Robot, folder: Path) -> ModelFile:
-    """Write one of the files of a case into a folder; the public one is not made of the robot.
+    """Write one of the files of a case into a folder; the public ones are not made of the robot.
 
     Bullet has true cylinders from URDF alone.
     """
     form = "urdf" if engine == "bullet" else CASES[case].form
     if file == "public":
         return public(CASES[case], form, folder)
+    if file == "patch":
+        return patch(CASES[case], robot, form, folder)
+    if file in VARIANTS:
+        return variant(CASES[case], file, folder)
     return exported(CASES[case], robot, form, f"{case}_{file}", folder)
 
 

@@ -45,8 +45,8 @@ def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
     found = []
     for name, case in CASES.items():
         for label, cell in case.cells.items():
-            for file, model in FILES.items():
-                predicted = predictions[name][model]["runs"][label]
+            for file in case.files:
+                predicted = predictions[name][FILES[file]]["runs"][label]
                 if not any(runs.get(f"{name} | {file} | {label}") for runs in results.values()):
                     continue
                 row = [name, f"{label}, {cell.friction:g}", file, summary(predicted)]
