@@ -29,6 +29,7 @@ _AMPLE = 20.0
 """[-] Times the torque that was read: no file limits its wheels below what makes them slip."""
 
 _FIRM = 1e4  # [N m] holds a flipper
+_FIRMEST = 1e6  # [N m] crawler2d takes no more
 _SEED = 23
 _SPEED, _SLOW = 0.4, 0.1  # [m/s] what an audit has for 0.41 m between the axles; no momentum
 _DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
@@ -100,6 +101,14 @@ class Case:
         if flippers is not None:
             flippers = replace(flippers, angle=self.angle, torque_limit=_FIRM)
         return replace(robot, drivetrain=drivetrain, flippers=flippers)
+
+    def firm(self, robot: Robot) -> Robot:
+        """Let the motors of a robot hold their speeds through impacts, too, as those of engines do.
+
+        An impact lasts 20 us in crawler2d, and a motor pushes no harder in it than its torque; in
+        an engine a motor that holds a speed has a whole step for it, or gives it as a constraint.
+        """
+        return replace(robot, drivetrain=replace(robot.drivetrain, max_torque=_FIRMEST))
 
     def ground(self, cell: Cell, robot: Robot) -> Terrain:
         """Return the obstacle of a cell, scaled to the robot as it is."""

@@ -29,7 +29,8 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     dict
         By model, "original" and, where one was found, "repair": what it is, the robot in a scenario
         on level ground, and by cell one entry for each start: outcome, mechanism, and the last pose
-        of the chassis frame [m, rad].
+        of the chassis frame [m, rad]; "runs" are those of the robot, "firm" those with motors that
+        hold their speeds through impacts.
     """
     own = case.robot()
     usual = {label: cell for label, cell in case.cells.items() if cell.speed is None}
@@ -47,7 +48,8 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
             "what": what,
             "scenario": json.loads(Scenario(robot, Flat()).to_json()),
             "confirmed": confirmed,
-            "runs": {label: _runs(case.scenarios(label, robot), threads) for label in case.cells},
+            "runs": _by_cell(case, robot, threads),
+            "firm": _by_cell(case, case.firm(robot), threads),
         }
         for name, (what, robot, confirmed) in models.items()
     }
@@ -56,6 +58,10 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
 def robot_of(entry: dict[str, Any]) -> Robot:
     """Return the robot of an entry of the predictions."""
     return Scenario.from_json(json.dumps(entry["scenario"])).robot
+
+
+def _by_cell(case: Case, robot: Robot, threads: int | None) -> dict[str, Any]:
+    return {label: _runs(case.scenarios(label, robot), threads) for label in case.cells}
 
 
 def _runs(scenarios: list[Scenario], threads: int | None) -> list[dict[str, Any]]:

@@ -23,9 +23,9 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 
-ENGINES = ("bullet", "bullet-prisms", "dart", "dart-dantzig")
-"""Bullet with true cylinders, and with what its readers make of them by default; DART with
-Coulomb's law, and with its usual solver."""
+ENGINES = ("bullet", "bullet-pyramid", "bullet-prisms", "dart", "dart-dantzig")
+"""Bullet with true cylinders, with these and friction limited along and across, and with what its
+readers make of cylinders by default; DART with Coulomb's law, and with its usual solver."""
 
 
 FILES = {
@@ -51,10 +51,10 @@ def engine_of(name: str, time_step: float | None = None) -> Engine:
     if name.startswith("bullet"):
         from benches.models.engine_bullet import Bullet  # noqa: PLC0415 - loads Bullet
 
-        is_round = name == "bullet"
+        is_round, is_cone = name != "bullet-prisms", name != "bullet-pyramid"
         if time_step is None:
-            return Bullet(is_round=is_round)
-        return Bullet(time_step, is_round=is_round)
+            return Bullet(is_round=is_round, is_cone=is_cone)
+        return Bullet(time_step, is_round=is_round, is_cone=is_cone)
     from benches.models.engine_dart import Dart  # noqa: PLC0415 - loads DART
 
     is_coulomb = name == "dart"
@@ -100,7 +100,7 @@ def model_of(engine: str, case: str, file: str, robot: Robot, folder: Path) -> M
 
     Bullet has true cylinders from URDF alone.
     """
-    form = "urdf" if engine == "bullet" else CASES[case].form
+    form = "urdf" if engine in ("bullet", "bullet-pyramid") else CASES[case].form
     if file == "public":
         return public(CASES[case], form, folder)
     if file == "patch":
