@@ -20,6 +20,8 @@ from crawler2d.writing.xml import document
 
 __all__ = ["VARIANTS", "balanced", "on_axles", "patch", "variant"]
 
+_AMPLE = 1e4  # [N m], [rad/s] far more than any wheel here needs
+
 
 def patch(case: Case, robot: Robot, form: str, folder: Path) -> ModelFile:
     """Return the public file with only its wheels changed to those of a robot: `Audit.patch`.
@@ -91,6 +93,19 @@ def on_axles(reading: Reading) -> Tree:
     return replace(tree, links=links, joints=joints)
 
 
+def _limited(tree: Tree) -> Tree:
+    """State the limits of motors that a file leaves out: DART's reader of URDF asks for them."""
+
+    def or_ample(limit: float | None) -> float:
+        return _AMPLE if limit is None else limit
+
+    joints = {
+        name: replace(joint, effort=or_ample(joint.effort), velocity=or_ample(joint.velocity))
+        for name, joint in tree.joints.items()
+    }
+    return replace(tree, joints=joints)
+
+
 def _moved(link: Link, by: np.ndarray) -> Link:
     def shape(each: Shape) -> Shape:
         return replace(each, pose=replace(each.pose, place=each.pose.place + by))
@@ -116,6 +131,7 @@ def variant(case: Case, name: str, folder: Path) -> ModelFile:
     reading = case.reading()
     path = folder / f"{Path(case.file).stem}_{name}.urdf"
     for change in VARIANTS[name]:
-        path.write_text(document(urdf_of(change(reading)), case.file), encoding="utf-8")
+        tree = _limited(change(reading))
+        path.write_text(document(urdf_of(tree), case.file), encoding="utf-8")
         reading = read_robot(path, **case.how)
     return of_reading(reading, "urdf", case.angle, folder)

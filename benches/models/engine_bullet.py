@@ -34,8 +34,9 @@ class Bullet:
     is_round : bool
         Whether cylinders are cylinders; only URDF can have that.
     is_cone : bool
-        Whether friction is limited as a vector; else along and across, each for itself. Where a
-        light wheel slides, the vector turns out of the plane, and what is left along is too little.
+        Whether friction is limited as a vector; else in two directions, each for itself. The vector
+        of a light wheel that slides may turn across, which leaves too little in the plane; with two
+        limits it may get too much.
     """
 
     name = "Bullet"
