@@ -63,7 +63,7 @@ bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over py
 
 # Bullet is built from source, which takes minutes.
 bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet and DART beside the predictions, hours; Ctrl-C loses little
-	for engine in dart dart-dantzig bullet bullet-prisms; do $(BIN)/python -m benches.models run $$engine || exit; done
+	for engine in dart dart-dantzig bullet bullet-pyramid bullet-prisms; do $(BIN)/python -m benches.models run $$engine || exit; done
 	$(BIN)/python -m benches.models table
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour

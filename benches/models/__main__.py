@@ -24,7 +24,10 @@ def main() -> None:
     """Parse the arguments and run."""
     parser = argparse.ArgumentParser(prog="python -m benches.models", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    verbs.add_parser("predict", help="search for repairs, and write the predictions down")
+    predictions = verbs.add_parser(
+        "predict", help="search for repairs, and write the predictions down"
+    )
+    predictions.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     runs = verbs.add_parser("run", help="drive; starts that the output has are not driven again")
     runs.add_argument("engine", choices=ENGINES)
     runs.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
@@ -38,11 +41,14 @@ def main() -> None:
     tables.add_argument("results", nargs="*", type=Path, help="others: only print these")
     given = parser.parse_args()
     if given.verb == "predict":
-        found = {name: predicted(case, threads=1) for name, case in CASES.items()}
+        found = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
+        found |= {name: predicted(CASES[name], threads=1) for name in given.cases}
         PREDICTIONS.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     elif given.verb == "run":
         path = given.output or RESULTS / f"{given.engine}.json"
         for case, file in product(given.cases, given.files):
+            if file not in CASES[case].files:
+                continue
             run(
                 given.engine,
                 case,

@@ -29,6 +29,7 @@ _AMPLE = 20.0
 """[-] Times the torque that was read: no file limits its wheels below what makes them slip."""
 
 _FIRM = 1e4  # [N m] holds a flipper
+_FIRMEST = 1e6  # [N m] crawler2d takes no more
 _SEED = 23
 _SPEED, _SLOW = 0.4, 0.1  # [m/s] what an audit has for 0.41 m between the axles; no momentum
 _DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
@@ -65,6 +66,8 @@ class Case:
         [rad] At which the flippers are held, relative to the chassis, upwards > 0.
     cells : mapping of str to Cell
         What it drives over, by label.
+    files : tuple of str
+        Which of the files of `running.FILES` there are of it.
     how : mapping
         Keywords for `read_robot`.
     """
@@ -72,6 +75,7 @@ class Case:
     file: str
     angle: float
     cells: Mapping[str, Cell]
+    files: tuple[str, ...] = ("public", "export", "repair", "patch")
     how: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -97,6 +101,14 @@ class Case:
         if flippers is not None:
             flippers = replace(flippers, angle=self.angle, torque_limit=_FIRM)
         return replace(robot, drivetrain=drivetrain, flippers=flippers)
+
+    def firm(self, robot: Robot) -> Robot:
+        """Let the motors of a robot hold their speeds through impacts, too, as those of engines do.
+
+        An impact lasts 20 us in crawler2d, and a motor pushes no harder in it than its torque; in
+        an engine a motor that holds a speed has a whole step for it, or gives it as a constraint.
+        """
+        return replace(robot, drivetrain=replace(robot.drivetrain, max_torque=_FIRMEST))
 
     def ground(self, cell: Cell, robot: Robot) -> Terrain:
         """Return the obstacle of a cell, scaled to the robot as it is."""
@@ -146,6 +158,10 @@ CASES: dict[str, Case] = {
             "slow, stairs of 71 mm": Cell("stairs of 71 mm", 0.65, _SLOW),
             "slow, knife edge 71 mm": Cell("knife edge 71 mm", 0.72, _SLOW),
         },
+        files=(
+            *("public", "export", "repair", "patch"),
+            *("balanced", "on-axles", "balanced-on-axles"),
+        ),
     ),
     "engineer": Case(
         file="eng.xacro",
@@ -165,5 +181,18 @@ CASES: dict[str, Case] = {
         },
         how={"trusted": True, "mesh": "leave_out", "missing": "leave_out"},
     ),
+    "marv": Case(
+        file="marv.sdf",
+        angle=0.0,
+        cells={
+            "step 58 mm": Cell("step 58 mm", 0.5),
+            "step 93 mm": Cell("step 93 mm", 0.8),
+            "knife edge 47 mm": Cell("knife edge 47 mm", 0.5),
+            "barrier 93 mm": Cell("barrier 93 mm", 0.8),
+            "stairs of 93 mm": Cell("stairs of 93 mm", 0.8),
+        },
+        files=("public", "export"),
+    ),
 }
-"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest."""
+"""The cases by name. In the slow cells no momentum carries a robot over what holds it at rest.
+MARV's is a control: nothing of it was found to seize, so there is nothing to repair."""

@@ -20,7 +20,7 @@ _NEAR = 0.002  # [m] gap up to which contacts are kept; Bullet's own 20 mm is mo
 
 
 class Bullet:
-    """Bullet with steps of a millisecond, 200 iterations and a friction cone.
+    """Bullet with steps of a millisecond and 200 iterations.
 
     Its readers make a prism of 32 sides of every cylinder, unless that of URDF is told not to.
 
@@ -33,24 +33,31 @@ class Bullet:
         [s] Of the engine.
     is_round : bool
         Whether cylinders are cylinders; only URDF can have that.
+    is_cone : bool
+        Whether friction is limited as a vector; else in two directions, each for itself. The vector
+        of a light wheel that slides may turn across, which leaves too little in the plane; with two
+        limits it may get too much.
     """
 
     name = "Bullet"
     version = version("pybullet")
 
-    def __init__(self, time_step: float = 1e-3, *, is_round: bool = True) -> None:
+    def __init__(
+        self, time_step: float = 1e-3, *, is_round: bool = True, is_cone: bool = True
+    ) -> None:
         self.time_step = time_step
         self.is_round = is_round
+        self.is_cone = is_cone
 
     def world(self, scene: Scene) -> BulletWorld:
         """Build a world."""
-        return BulletWorld(scene, self.is_round)
+        return BulletWorld(scene, self.is_round, self.is_cone)
 
 
 class BulletWorld:
     """A robot on its ground in Bullet."""
 
-    def __init__(self, scene: Scene, is_round: bool) -> None:
+    def __init__(self, scene: Scene, is_round: bool, is_cone: bool) -> None:
         self._model = scene.model
         self._client = pybullet.connect(pybullet.DIRECT)
         self._call("setGravity", 0.0, 0.0, -9.81)
@@ -60,7 +67,7 @@ class BulletWorld:
             numSolverIterations=_ITERATIONS,
             solverResidualThreshold=1e-7,
             contactBreakingThreshold=_NEAR,
-            enableConeFriction=1,
+            enableConeFriction=int(is_cone),
             deterministicOverlappingPairs=1,
         )
         self._ground = [self._box(box, scene.friction) for box in scene.ground]

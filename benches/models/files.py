@@ -16,7 +16,7 @@ from crawler2d.reading.reading import Reading, read_robot
 from crawler2d.writing.urdf import urdf_of
 from crawler2d.writing.xml import document
 
-__all__ = ["ModelFile", "cleaned", "exported", "model_file", "public"]
+__all__ = ["ModelFile", "cleaned", "exported", "of_reading", "public"]
 
 _LEFT = np.array([0.0, 1.0, 0.0])
 _SURFACE = 1.0  # [-] friction of robots in exported files: that of the ground decides
@@ -92,16 +92,8 @@ def cleaned(text: str) -> str:
 
 
 def public(case: Case, form: str, folder: Path) -> ModelFile:
-    """Return the public file of a case.
-
-    In another format than its own it has the same links, joints, shapes and inertias: those of the
-    tree that was read.
-    """
-    reading = case.reading()
-    path = folder / f"{Path(case.file).stem}.{form}"
-    text = reading.text if form == case.form else document(urdf_of(reading.tree), case.file)
-    path.write_text(cleaned(text), encoding="utf-8")
-    return model_file(path, reading, case.angle)
+    """Return the public file of a case."""
+    return of_reading(case.reading(), form, case.angle, folder)
 
 
 def exported(case: Case, robot: Robot, form: str, name: str, folder: Path) -> ModelFile:
@@ -109,22 +101,42 @@ def exported(case: Case, robot: Robot, form: str, name: str, folder: Path) -> Mo
     path = folder / f"{name}.{form}"
     text = robot.to_sdf(friction=_SURFACE) if form == "sdf" else robot.to_urdf(friction=_SURFACE)
     path.write_text(text, encoding="utf-8")
-    reading = read_robot(path)
+    return of_reading(read_robot(path), form, case.angle, folder)
+
+
+def of_reading(reading: Reading, form: str, angle: float, folder: Path) -> ModelFile:
+    """Write what was read from a file for an engine, and say what turns in it.
+
+    In another format than its own it has the same links, joints, shapes and inertias: those of the
+    tree that was read.
+
+    Parameters
+    ----------
+    reading : Reading
+        Of the file.
+    form : str
+        Format that the engine is to have, "sdf" or "urdf".
+    angle : float
+        [rad] At which flippers are held.
+    folder : Path
+        Where to write; a file of the same name there is written over.
+    """
+    tree = reading.tree
+    is_own = tree.format.lower().startswith(form)
+    text = reading.text if is_own else document(urdf_of(tree), tree.file)
+    path = folder / f"{reading.path.stem}.{form}"
     path.write_text(cleaned(text), encoding="utf-8")
-    return model_file(path, reading, case.angle)
+    return _model_file(path, reading, angle)
 
 
-def model_file(path: Path, reading: Reading, angle: float) -> ModelFile:
-    """Say of a file that was read what turns in it, with its flippers held at an angle."""
+def _model_file(path: Path, reading: Reading, angle: float) -> ModelFile:
     tree, wheels = reading.tree, reading.wheels
     names = [str(name) for name in wheels["name"]]
     places = np.column_stack([wheels["x"], wheels["z"], wheels["y"]])
     radii = dict(zip(names, wheels["radius"].tolist(), strict=True))
     carriers = dict(zip(names, wheels["carrier"].tolist(), strict=True))
     axles = dict(zip(names, places, strict=True))
-    chassis = np.array([axles[name] for name in names if carriers[name] == "chassis"])
-    ends = chassis[:, 0].min(), chassis[:, 0].max()
-    origin = np.array([0.5 * sum(ends), 0.0, chassis[:, 2].mean()])
+    origin = reading.frame.place
     flippers = reading.robot.flippers
     turn = 0.0 if flippers is None else angle - flippers.angle
     held, moved = {}, {}

@@ -27,9 +27,10 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     Returns
     -------
     dict
-        By model, "original" and "repair": what it is, the robot in a scenario on level ground, and
-        by cell one entry for each start: outcome, mechanism, and the last pose of the chassis frame
-        [m, rad].
+        By model, "original" and, where one was found, "repair": what it is, the robot in a scenario
+        on level ground, and by cell one entry for each start: outcome, mechanism, and the last pose
+        of the chassis frame [m, rad]; "runs" are those of the robot, "firm" those with motors that
+        hold their speeds through impacts.
     """
     own = case.robot()
     usual = {label: cell for label, cell in case.cells.items() if cell.speed is None}
@@ -38,22 +39,29 @@ def predicted(case: Case, threads: int | None) -> dict[str, Any]:
     found = audit(
         own, grounds, drive=drive, unknown={}, vary=of_start(), repeats=20, threads=threads
     )
-    repair = next(each for each in found.repairs if each.kind == "wheels")
-    models = {"original": ("as it is", own), "repair": (repair.what, repair.robot)}
+    models = {"original": ("as it is", own, True)}
+    repair = next((each for each in found.repairs if each.kind == "wheels"), None)
+    if repair is not None:
+        models["repair"] = (repair.what, repair.robot, repair.confirmed)
     return {
         name: {
             "what": what,
             "scenario": json.loads(Scenario(robot, Flat()).to_json()),
-            "confirmed": name == "original" or repair.confirmed,
-            "runs": {label: _runs(case.scenarios(label, robot), threads) for label in case.cells},
+            "confirmed": confirmed,
+            "runs": _by_cell(case, robot, threads),
+            "firm": _by_cell(case, case.firm(robot), threads),
         }
-        for name, (what, robot) in models.items()
+        for name, (what, robot, confirmed) in models.items()
     }
 
 
 def robot_of(entry: dict[str, Any]) -> Robot:
     """Return the robot of an entry of the predictions."""
     return Scenario.from_json(json.dumps(entry["scenario"])).robot
+
+
+def _by_cell(case: Case, robot: Robot, threads: int | None) -> dict[str, Any]:
+    return {label: _runs(case.scenarios(label, robot), threads) for label in case.cells}
 
 
 def _runs(scenarios: list[Scenario], threads: int | None) -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from benches.models.cases import CASES
+from benches.models.changed import VARIANTS, patch, variant
 from benches.models.driving import driven
 from benches.models.engine import Engine
 from benches.models.files import ModelFile, exported, public
@@ -22,14 +23,21 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 
-ENGINES = ("bullet", "bullet-prisms", "dart", "dart-dantzig")
-"""Bullet with true cylinders, and with what its readers make of them by default; DART with
-Coulomb's law, and with its usual solver."""
+ENGINES = ("bullet", "bullet-pyramid", "bullet-prisms", "dart", "dart-dantzig")
+"""Bullet with true cylinders, with these and friction limited along and across, and with what its
+readers make of cylinders by default; DART with Coulomb's law, and with its usual solver."""
 
 
-FILES = {"public": "original", "export": "original", "repair": "repair"}
+FILES = {
+    "public": "original",
+    "export": "original",
+    "repair": "repair",
+    "patch": "repair",
+    **dict.fromkeys(VARIANTS, "original"),
+}
 """The files of a case, each with the prediction that it is to be compared with: the public one,
-crawler2d's of the same robot, and crawler2d's of the repaired one."""
+crawler2d's of the same robot, and of the repaired one, the public one with the wheels of the
+repair, and variants of the public one."""
 
 
 def engine_of(name: str, time_step: float | None = None) -> Engine:
@@ -43,10 +51,10 @@ def engine_of(name: str, time_step: float | None = None) -> Engine:
     if name.startswith("bullet"):
         from benches.models.engine_bullet import Bullet  # noqa: PLC0415 - loads Bullet
 
-        is_round = name == "bullet"
+        is_round, is_cone = name != "bullet-prisms", name != "bullet-pyramid"
         if time_step is None:
-            return Bullet(is_round=is_round)
-        return Bullet(time_step, is_round=is_round)
+            return Bullet(is_round=is_round, is_cone=is_cone)
+        return Bullet(time_step, is_round=is_round, is_cone=is_cone)
     from benches.models.engine_dart import Dart  # noqa: PLC0415 - loads DART
 
     is_coulomb = name == "dart"
@@ -88,13 +96,17 @@ def run(
 
 
 def model_of(engine: str, case: str, file: str, robot: Robot, folder: Path) -> ModelFile:
-    """Write one of the files of a case into a folder; the public one is not made of the robot.
+    """Write one of the files of a case into a folder; the public ones are not made of the robot.
 
     Bullet has true cylinders from URDF alone.
     """
-    form = "urdf" if engine == "bullet" else CASES[case].form
+    form = "urdf" if engine in ("bullet", "bullet-pyramid") else CASES[case].form
     if file == "public":
         return public(CASES[case], form, folder)
+    if file == "patch":
+        return patch(CASES[case], robot, form, folder)
+    if file in VARIANTS:
+        return variant(CASES[case], file, folder)
     return exported(CASES[case], robot, form, f"{case}_{file}", folder)
 
 

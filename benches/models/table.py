@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from benches.models.running import FILES
 from crawler2d.reports.markdown import markdown_table
 
 __all__ = ["agreement", "counts", "rows", "summary", "table"]
+
+_KINDS = ("runs", "firm")
 
 
 def summary(runs: Sequence[dict[str, Any]]) -> str:
@@ -40,16 +43,19 @@ def agreement(predicted: Sequence[dict[str, Any]], found: Sequence[dict[str, Any
 
 
 def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each cell that was run: what it is, the prediction, and each engine."""
+    """Return a row for each cell that was run: what it is, the predictions, and each engine."""
     predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
     found = []
     for name, case in CASES.items():
         for label, cell in case.cells.items():
-            for file, model in FILES.items():
-                predicted = predictions[name][model]["runs"][label]
+            for file in case.files:
+                predicted = predictions[name][FILES[file]]["runs"][label]
                 if not any(runs.get(f"{name} | {file} | {label}") for runs in results.values()):
                     continue
+                firm = predictions[name][FILES[file]]["firm"][label]
+                is_same = agreement(predicted, firm) == len(predicted)
                 row = [name, f"{label}, {cell.friction:g}", file, summary(predicted)]
+                row.append("the same" if is_same else summary(firm))
                 for runs in results.values():
                     own = runs.get(f"{name} | {file} | {label}", [])
                     same = f" ({agreement(predicted, own)} of {len(own)})" if own else ""
@@ -59,24 +65,32 @@ def rows(results: dict[str, dict[str, Any]]) -> list[list[str]]:
 
 
 def counts(results: dict[str, dict[str, Any]]) -> list[list[str]]:
-    """Return a row for each engine: in how many starts it agrees, by what was predicted."""
+    """Return a row for each engine: in how many starts it agrees, by what was predicted.
+
+    First with the predictions that were written before, then with those of firm motors.
+    """
     predictions = json.loads(PREDICTIONS.read_text(encoding="utf-8"))
     found = []
     for engine, runs in results.items():
-        same, of = Counter[str](), Counter[str]()
+        same, of = Counter[tuple[str, bool]](), Counter[tuple[str, bool]]()
         for key, own in runs.items():
             name, file, label = key.split(" | ")
-            for a, b in zip(predictions[name][FILES[file]]["runs"][label], own, strict=False):
-                end = "clears" if a["end"] == "cleared" else "stops"
-                of[end] += 1
-                same[end] += agreement([a], [b])
-        found.append([engine, *(f"{same[end]} of {of[end]}" for end in ("stops", "clears"))])
+            for kind in _KINDS:
+                predicted = predictions[name][FILES[file]][kind][label]
+                for a, b in zip(predicted, own, strict=False):
+                    cell = kind, a["end"] == "cleared"
+                    of[cell] += 1
+                    same[cell] += agreement([a], [b])
+        cells = product(_KINDS, (False, True))
+        found.append([engine, *(f"{same[cell]} of {of[cell]}" for cell in cells)])
     return found
 
 
 def table(paths: Sequence[Path]) -> str:
     """Return the tables in Markdown; results are named after their files."""
     results = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
-    header = ["robot", "cell, friction", "file", "crawler2d", *results]
-    sums = markdown_table(["engine", "predicted to stop", "predicted to clear"], counts(results))
+    header = ["robot", "cell, friction", "file", "crawler2d", "firm motors", *results]
+    ends = ("predicted to stop", "predicted to clear")
+    firm = (f"{end}, firm motors" for end in ends)
+    sums = markdown_table(["engine", *ends, *firm], counts(results))
     return f"{markdown_table(header, rows(results))}\n\nStarts that agree, of all cells:\n\n{sums}"
