@@ -350,6 +350,11 @@ def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
 
 def test_joints_of_missing_links_are_left_out_on_request_only(tmp_path: Path) -> None:
     mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
-    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves such joints out')
+    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves joints')
     reading = read(tmp_path, urdf(WHEELS, mount), missing="leave_out")
     assert "mount" in reading.doubts[0]
+
+
+def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:
+    text = urdf(WHEELS).replace('<parent link="hull"/>', '<parent link="hul"/>', 1)
+    refused(tmp_path, text, "of which the nearest is hull; missing=")
