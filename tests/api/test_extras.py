@@ -120,3 +120,16 @@ def test_progress_is_a_line_where_the_import_of_tqdm_fails(
     with reporter(True, 1) as report:
         report(1)
     assert capsys.readouterr().err.startswith("1 of 1 runs")
+
+
+def test_a_log_gets_a_line_for_every_tenth_and_no_carriage_return(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with reporter(True, 1000) as report:
+        for _ in range(1000):
+            report(1)
+    text = capsys.readouterr().err
+    assert [line.partition(" runs")[0] for line in text.splitlines()] == [
+        f"{done} of 1000" for done in range(100, 1001, 100)
+    ]
+    assert "\r" not in text

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,6 +14,17 @@ from crawler2d.parameters.scenario import Scenario
 from tests.shared import GEAR, PLACEMENTS, POINTS, ROBOT, refusal
 
 OUTLINE = ROBOT.outline
+
+
+def test_a_robot_with_a_servo_a_wheel_gets_a_motor_a_belt() -> None:
+    servos = replace(ROBOT.drivetrain, torque_sharing="wheel")
+    wheeled = replace(ROBOT, track=c2d.LineOfWheels(4), drivetrain=servos)
+    belted = wheeled.with_track(c2d.BeltTrack())
+    belted.wheels()  # breaks no rule
+    assert belted.drivetrain.torque_sharing == "track"
+    assert wheeled.with_track(c2d.LineOfWheels(5)).drivetrain.torque_sharing == "wheel"
+
+
 # Counts and sizes
 
 

@@ -18,6 +18,7 @@ from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.population import unknown_of_file
 from crawler2d.audits.runs import raised, scenario_of
+from crawler2d.audits.words import wheels_a_side
 from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
 
@@ -332,3 +333,11 @@ def test_bad_input_is_refused(arguments: Any, how: Any, path: str) -> None:
 def test_reading_an_audited_file_is_quiet() -> None:
     """What reading doubts is in the lint, not a warning: warnings are errors here."""
     assert quietly(FILES / "cart.urdf").doubts == ()
+
+
+def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
+    assert "0 wheels a side" not in found.in_words
+    for each in found.repairs:
+        expected = "belt" if each.kind == "belt" else f"{each.wheels} wheels a side"
+        assert wheels_a_side(each) == expected
+    assert any(each.kind == "belt" for each in found.repairs)

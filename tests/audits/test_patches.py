@@ -2,6 +2,7 @@
 
 import html
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -68,6 +69,9 @@ def test_the_command_writes_the_changed_file(
     printed = capsys.readouterr()
     assert printed.out.startswith(audited.in_words)
     assert f"The changed file is {path}" in printed.out
+    summary = printed.out[len(audited.in_words) :].strip().splitlines()[0]
+    assert re.fullmatch(r"wheels: .*2 added.*; lines: \d+ new, \d+ gone", summary)
+    assert "+++" not in printed.out
     assert main(["audit", "any.sdf", "--no-html", "--json", "--patch", str(path)]) == 1
     assert json.loads(capsys.readouterr().out)["seizes"]
     assert audited.reading is not None

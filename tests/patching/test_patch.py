@@ -4,12 +4,16 @@ import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
 import crawler2d as c2d
-from crawler2d.patching.patch import patched
+from crawler2d.patching.document import Document
+from crawler2d.patching.patch import _summary, patched
+from crawler2d.patching.spans import spans_of
 from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
 
 CARTS = ("cart.sdf", "cart.urdf", "cart.xml")
@@ -211,3 +215,19 @@ def test_a_patch_warns_of_nothing() -> None:
         warnings.simplefilter("error")
         reading = c2d.read_robot(FILES / "cart.sdf")
         patched(reading, on_chassis(reading, 4))
+
+
+def test_a_count_of_wheels_in_a_plugin_is_named_when_wheels_are_added() -> None:
+    setting = b"<plugin><num_wheel_pairs>4</num_wheel_pairs></plugin>"
+    root = spans_of(b"<model>" + setting + b"</model>")
+    added: Any = SimpleNamespace(fate="added", is_none=False)
+    changed: Any = SimpleNamespace(fate="changed", is_none=False)
+    assert "num_wheel_pairs is still 4" in _summary([added, added], [], root)
+    assert "by hand" not in _summary([changed], [], root)
+
+
+def test_lengths_have_no_digits_of_rounding_and_inertias_every_bit() -> None:
+    for is_exact, expected in ((False, "0.3"), (True, "0.30000000000000004")):
+        document = Document('<radius v="0.1"/>')
+        document.multiply(document.root, [3.0], "v", is_exact=is_exact)
+        assert document.text == f'<radius v="{expected}"/>'

@@ -183,7 +183,17 @@ def test_flippers_that_differ_from_end_to_end_are_refused(tmp_path: Path) -> Non
 
 def test_a_bar_on_a_flipper_that_reaches_out_of_its_wheels_is_refused(tmp_path: Path) -> None:
     bar = collision('<box size="0.2 0.02 0.02"/>', '<origin xyz="0.1 0 0"/>')
-    refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within a wheel of its flipper")
+    refused(tmp_path, urdf(WHEELS, flippers(shape=bar)), "must lie within the envelope")
+
+
+def test_a_plate_within_the_envelope_of_a_flipper_is_left_out_aloud(tmp_path: Path) -> None:
+    plate = collision('<box size="0.04 0.02 0.08"/>', '<origin xyz="0.1 0 0"/>')
+    arms = flippers(shape=plate)
+    for side, _ in SIDES:
+        arms += wheel(f"{side}_root", "0 0 0", parent=f"{side}_arm0.2", radius="0.05")
+    reading = read(tmp_path, urdf(WHEELS, arms))
+    assert "within the envelope of its flipper's wheels" in reading.doubts[0]
+    assert "collision[" in reading.doubts[0]
 
 
 def test_a_skid_that_rubs_on_level_ground_is_doubted(tmp_path: Path) -> None:
@@ -340,6 +350,11 @@ def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
 
 def test_joints_of_missing_links_are_left_out_on_request_only(tmp_path: Path) -> None:
     mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
-    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves such joints out')
+    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves joints')
     reading = read(tmp_path, urdf(WHEELS, mount), missing="leave_out")
     assert "mount" in reading.doubts[0]
+
+
+def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:
+    text = urdf(WHEELS).replace('<parent link="hull"/>', '<parent link="hul"/>', 1)
+    refused(tmp_path, text, "of which the nearest is hull; missing=")

@@ -62,8 +62,7 @@ def belt_of(robot: Robot) -> Belt:
     elif any(isinstance(each, HybridWheels) for each in tracks):
         why = "some are placed one by one, which no outline follows"
     else:
-        smooth = replace(robot.drivetrain, torque_sharing="track")
-        belted = replace(robot, track=BeltTrack(), drivetrain=smooth)
+        belted = robot.with_track(BeltTrack())
         if arms is not None:
             belted = replace(belted, flippers=replace(arms, track=BeltTrack()))
             return Belt(belted, "BeltTrack, along the outlines of chassis and flippers")

@@ -42,6 +42,7 @@ __all__ = [
     "span",
     "subject",
     "verdict",
+    "wheels_a_side",
     "worst",
 ]
 
@@ -190,8 +191,13 @@ def repair_sentence(repair: Repair) -> str:
     return (
         f"{confirmed(repair)}: {repair.what}; clears at least {share(cleared)} of the runs that the"
         f" belt clears where it seized; seizes at most {share(seized)}{where};"
-        f" {repair.wheels} wheels a side; simulated {repair.speed:.2g} times as fast"
+        f" {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
     )
+
+
+def wheels_a_side(repair: Repair) -> str:
+    """Say how many wheels carry a side, or that a belt does."""
+    return f"{repair.wheels} wheels a side" if repair.wheels else "belt"
 
 
 def confirmed(repair: Repair) -> str:

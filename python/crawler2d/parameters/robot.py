@@ -239,8 +239,22 @@ class Robot(Parameters):
         Returns
         -------
         Robot
-            A copy; nothing else changes.
+            A copy; nothing else changes, but that a `BeltTrack`, which has one drive a side, has a
+            motor a track, ``torque_sharing="track"``.
+
+        Examples
+        --------
+        >>> from dataclasses import replace
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(4), flippers=None)
+        >>> servos = replace(robot.drivetrain, torque_sharing="wheel")
+        >>> robot = replace(robot, drivetrain=servos)
+        >>> robot.with_track(c2d.BeltTrack()).drivetrain.torque_sharing
+        'track'
         """
+        if isinstance(track, BeltTrack) and self.drivetrain.torque_sharing == "wheel":
+            drive = replace(self.drivetrain, torque_sharing="track")
+            return replace(self, track=track, drivetrain=drive)
         return replace(self, track=track)
 
     def with_flippers(self, flippers: Flippers) -> Robot:

@@ -89,16 +89,26 @@ class Document:
         moved = [round(float(word) + more, 6) for word, more in zip(words, shift, strict=False)]
         self._write(span, attribute, " ".join([written(moved), *words[len(shift) :]]))
 
-    def multiply(self, span: Span | None, factors: Sequence[float], attribute: str = "") -> None:
-        """Multiply the first numbers of a text or an attribute, if there is one."""
+    def multiply(
+        self,
+        span: Span | None,
+        factors: Sequence[float],
+        attribute: str = "",
+        *,
+        is_exact: bool = False,
+    ) -> None:
+        """Multiply the first numbers of a text or an attribute, if there is one, to 12 digits.
+
+        Exact ones keep every bit: moments of inertia that just obey their inequality still do.
+        """
         if span is None or set(factors) == {1.0}:
             return
         text = span.attributes.get(attribute, "") if attribute else span.text
         words = text.split()
         if words:
             many = zip(words, factors, strict=False)
-            # To the last bit: moments of inertia that just obey their inequality still do.
-            first = numbers(float(word) * factor for word, factor in many)
+            products = [float(word) * factor for word, factor in many]
+            first = numbers(each if is_exact else float(f"{each:.12g}") for each in products)
             self._write(span, attribute, " ".join([first, *words[len(factors) :]]))
 
     def _write(self, span: Span, attribute: str, value: str) -> None:

@@ -62,7 +62,7 @@ def _change_body(document: Document, body: Span, change: Change, link: Link) -> 
     if inertial is not None:
         document.multiply(inertial, [change.share], "mass")
         for name, count in (("diaginertia", 3), ("fullinertia", 6)):
-            document.multiply(inertial, [change.inertia] * count, name)
+            document.multiply(inertial, [change.inertia] * count, name, is_exact=True)
     geoms = [geom for geom in body.all("geom") if geom.attributes.get("type") not in _NOT_ROUND]
     for geom in geoms:
         if "size" in geom.attributes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NoReturn
@@ -32,6 +33,9 @@ _FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
 _SIZES = ("wheel_radius", "wheelRadius", "wheel_diameter", "wheelDiameter")
 """Settings of plugins that drive wheels by their speed."""
 
+_COUNTS = ("num_wheel_pairs", "wheel_torque", "max_wheel_torque")
+"""Settings of plugins that are right for a number of wheels only, and are not changed."""
+
 _MASS = 1e-4  # of the whole: far above what rounding leaves
 _CENTER = 0.01  # of the axle distance: wheels of unlike masses are spread anew
 
@@ -46,10 +50,14 @@ class Patch:
         All of it.
     diff : str
         What differs from the file that was read, as a unified diff.
+    summary : str
+        How many wheels were added, removed and changed, how many lines differ, and which settings
+        of plugins that may depend on wheels stay as they are.
     """
 
     text: str
     diff: str
+    summary: str
 
 
 def patched(reading: Reading, robot: Robot) -> Patch:
@@ -83,13 +91,34 @@ def patched(reading: Reading, robot: Robot) -> Patch:
     text = document.text
     _check(reading, robot, text)
     name = reading.tree.file
-    lines = difflib.unified_diff(
+    diff = difflib.unified_diff(
         reading.text.splitlines(keepends=True),
         text.splitlines(keepends=True),
         name,
         f"{name} (other wheels)",
     )
-    return Patch(text=text, diff="".join(lines))
+    lines = list(diff)
+    return Patch(text=text, diff="".join(lines), summary=_summary(changes, lines, document.root))
+
+
+def _summary(changes: list[Change], diff: list[str], root: Span) -> str:
+    """Say what becomes of the wheels, and what is left to be set by hand."""
+    fates = Counter(change.fate for change in changes if not change.is_none)
+    parts = [f"{fates[fate]} {fate}" for fate in ("added", "removed", "changed") if fates[fate]]
+    marks = Counter(line[0] for line in diff[2:])
+    text = f"wheels: {', '.join(parts)}; lines: {marks['+']} new, {marks['-']} gone"
+    more = fates["added"] - fates["removed"]
+    if not more:
+        return text
+    left = [
+        f"{setting.tag} is still {setting.text}"
+        for plugin in root.within()
+        if plugin.tag == "plugin"
+        for setting in plugin.within()
+        if setting.tag in _COUNTS
+    ]
+    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
+    return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text
 
 
 def _change(document: Document, changes: list[Change], tree: Tree) -> None:

@@ -42,7 +42,7 @@ def change_sdf(document: Document, scope: Span, change: Change, tree: Tree) -> N
         document.multiply(link.only("inertial/mass"), [change.share])
         inertia = link.only("inertial/inertia")
         for moment in inertia.children if inertia is not None else ():
-            document.multiply(moment, [change.inertia])
+            document.multiply(moment, [change.inertia], is_exact=True)
         for shape in link.all("collision", "visual"):
             for kind in _ROUNDS:
                 document.multiply(shape.only(f"geometry/{kind}/radius"), [change.round_size])

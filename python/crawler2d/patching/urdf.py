@@ -43,7 +43,7 @@ def change_urdf(document: Document, scope: Span, change: Change, tree: Tree) -> 
         document.multiply(link.only("inertial/mass"), [change.share], "value")
         inertia = link.only("inertial/inertia")
         for name in inertia.attributes if inertia is not None else ():
-            document.multiply(inertia, [change.inertia], name)
+            document.multiply(inertia, [change.inertia], name, is_exact=True)
         for shape in link.all("collision", "visual"):
             for each in (shape.only(f"geometry/{kind}") for kind in _ROUNDS):
                 document.multiply(each, [change.round_size], "radius")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -28,6 +29,9 @@ _NEAR = 0.05
 
 _ALIKE = 0.01
 """[-] By how much the masses of two arms may differ, as a share: scales and cables."""
+
+_DIRECTIONS = 360
+"""In which shapes are held against wheels; 0.004 % of a length lies between two of them."""
 
 _SAME_ANGLE = 1e-3
 """[rad] By how much the angles of two arms may differ: files round them."""
@@ -96,7 +100,13 @@ class AtEnd:
 
 
 def arm_pairs(
-    arms: list[Arm], view: SideView, *, middle: float, tolerance: float, at: Where
+    told: Telling,
+    arms: list[Arm],
+    view: SideView,
+    *,
+    middle: float,
+    tolerance: float,
+    at: Where,
 ) -> list[ArmPair]:
     """Pair the flippers, and what each carries.
 
@@ -104,7 +114,7 @@ def arm_pairs(
     ------
     ScenarioError
         If a flipper has no partner, has wheels and drums, differs in mass from its partner, or has
-        shapes that neither turn nor are moved and reach out of its wheels.
+        shapes that neither turn nor are moved and reach out of the envelope of its wheels.
     """
     pairs = []
     waiting = list(arms)
@@ -118,7 +128,7 @@ def arm_pairs(
             partner = _partner(arm, waiting, tolerance)
             waiting.remove(partner)
             together = (arm, partner)
-        pairs.append(_pair(together, view, middle=middle, tolerance=tolerance, at=at))
+        pairs.append(_pair(told, together, view, middle=middle, tolerance=tolerance, at=at))
     return pairs
 
 
@@ -134,7 +144,13 @@ def _partner(arm: Arm, others: list[Arm], tolerance: float) -> Arm:
 
 
 def _pair(
-    arms: tuple[Arm, ...], view: SideView, *, middle: float, tolerance: float, at: Where
+    told: Telling,
+    arms: tuple[Arm, ...],
+    view: SideView,
+    *,
+    middle: float,
+    tolerance: float,
+    at: Where,
 ) -> ArmPair:
     runners = [runner for arm in arms for runner in arm.runners]
     found = paired(runners, middle=middle, tolerance=tolerance, at=at)
@@ -154,22 +170,36 @@ def _pair(
         value = " and ".join(f"{mass:.4g} kg" for mass in masses)
         pair.refuse(value, f"must have flippers whose masses differ by at most {_ALIKE:.0%}")
     for arm in arms:
-        _refuse_bare(arm, runners, view, tolerance)
+        _leave_out_bare(told, arm, view, tolerance)
     return pair
 
 
-def _refuse_bare(arm: Arm, runners: list[Runner], view: SideView, tolerance: float) -> None:
-    """Refuse shapes of an arm that could touch the ground and do not move."""
+def _leave_out_bare(told: Telling, arm: Arm, view: SideView, tolerance: float) -> None:
+    """Leave out shapes of an arm that do not move and lie within its track; refuse others."""
     for _, shape in arm.shapes:
         flat = silhouette(shape, view)
-        hidden = any(
-            np.hypot(flat[:, 0] - r.x, flat[:, 1] - r.y).max() <= r.radius + tolerance
-            for r in runners
-        )
-        if not hidden:
-            path = f"{shape.at}: collision[{shape.name}]"
-            rule = "must lie within a wheel of its flipper: arms touch with wheels or belts only"
+        if any(_is_within(flat, (runner,), tolerance) for runner in arm.runners):
+            continue
+        path = f"{shape.at}: collision[{shape.name}]"
+        if not _is_within(flat, arm.runners, tolerance):
+            rule = (
+                "must lie within the envelope of its flipper's wheels: arms touch with wheels or"
+                " belts only; make it smaller, or fix it to the chassis, whose shapes are the belly"
+            )
             raise ScenarioError(path, shape.kind, rule)
+        reason = "left out: within the envelope of its flipper's wheels, where edges reach it"
+        told.doubts.append((path, shape.kind, f"{reason} only between two of them"))
+
+
+def _is_within(flat: Array, runners: Sequence[Runner], tolerance: float) -> bool:
+    """Whether points lie within the convex envelope of some wheels.
+
+    They do where they reach no farther than a wheel in any direction.
+    """
+    angles = np.linspace(0.0, 2.0 * math.pi, _DIRECTIONS, endpoint=False)
+    away = np.stack([np.cos(angles), np.sin(angles)])
+    reach = np.max([np.array([r.x, r.y]) @ away + r.radius for r in runners], axis=0)
+    return bool(((flat @ away).max(axis=0) <= reach + tolerance).all())
 
 
 def at_end(

@@ -74,7 +74,7 @@ class Assembly:
         runners = gear.runners + [r for arm in gear.arms for r in arm.runners]
         self.middle = middle = middle_of(gear.runners or runners)
         pairs = paired(gear.runners, middle=middle, tolerance=tolerance, at=at)
-        arms = arm_pairs(gear.arms, view, middle=middle, tolerance=tolerance, at=at)
+        arms = arm_pairs(self.told, gear.arms, view, middle=middle, tolerance=tolerance, at=at)
         is_belt = bool(pairs) and pairs[0].left[0].joint is None
         if len({runner.joint is None for runner in gear.runners}) > 1:
             raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")

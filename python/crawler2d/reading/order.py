@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+
 from crawler2d.errors import ScenarioError
 from crawler2d.models.where import Where
 
@@ -48,7 +50,9 @@ def checked(
         named.add(name)
         for end in (parent, child):
             if end not in seen:
-                rule = f"must join links of the model{remedy}"
+                near = difflib.get_close_matches(end, seen, n=1)
+                meant = f", of which the nearest is {near[0]}" if near else ""
+                rule = f"must join links of the model{meant}{remedy}"
                 raise ScenarioError(f"{where}: joint[{name}]", end, rule)
         if child in parent_of:
             rule = "must be the only joint that holds its child: a chain of links must be open"

@@ -58,7 +58,7 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
         [(link.attribute("name"), link.where) for link in root.all("link")],
         [(name, parent, child, joint.where) for joint, name, parent, child in ends],
         root.where,
-        remedy=': missing="leave_out" leaves such joints out',
+        remedy='; missing="leave_out" leaves joints of links that are meant to be missing out',
     )
     by_child = {child: (joint, parent) for joint, _, parent, child in ends}
     frictions = _frictions(root)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TextIO, get_args
 
 from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
+from crawler2d.audits.patches import patch_of
 from crawler2d.audits.plain import plain_of
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
@@ -49,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--patch",
         type=Path,
         metavar="FILE",
-        help="write the file with the wheels of the first repair that is confirmed, print the diff",
+        help="write the file with the wheels of the first repair that is confirmed",
     )
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
@@ -109,13 +110,14 @@ def _show(found: Audit, options: argparse.Namespace) -> None:
 
 
 def _patch(found: Audit, path: Path, beside: TextIO) -> None:
-    """Write the file with other wheels and print the diff, or say why there is none."""
+    """Write the file with other wheels and say what changed, or why there is none."""
     try:
-        diff = found.patch(path)
+        patch = patch_of(found, None)
     except ScenarioError as error:
         print(f"\nNo changed file: {_as_options(str(error))}", file=sys.stderr)
     else:
-        print(f"\n{diff}\nThe changed file is {path}", file=beside)
+        path.write_text(patch.text, encoding="utf-8")
+        print(f"\n{patch.summary}\nThe changed file is {path}", file=beside)
 
 
 _OPTIONS = {

@@ -1,4 +1,4 @@
-"""Progress of a batch: a bar if tqdm is installed, else a line of text."""
+"""Progress of a batch: a bar on a terminal if tqdm is installed, else lines of text."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from crawler2d.errors import ScenarioError
 Progress = Callable[[int, int], None]
 """Called with the number of finished runs and of all runs."""
 
-# [s] Time between two lines if the output is not a terminal.
-_BETWEEN_LINES = 5.0
+_LINES = 10
+"""At most, if the output is not a terminal: one whenever so many parts more are finished."""
 
 
 class Reporter:
@@ -75,6 +75,10 @@ def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Ite
 
 @contextlib.contextmanager
 def _bar(total: int, begun: int) -> Iterator[Progress]:
+    # Notebooks draw their own bar and are no terminal; a log would get one copy of it a second.
+    if not sys.stderr.isatty() and "ipykernel" not in sys.modules:
+        yield _line()
+        return
     try:
         tqdm = extra("tqdm.auto", "progress").tqdm
     except ImportError:  # then a line must do
@@ -90,16 +94,18 @@ def _bar(total: int, begun: int) -> Iterator[Progress]:
 
 
 def _line() -> Progress:
-    """Write one line, overwritten on a terminal; elsewhere a new line every few seconds."""
-    begin = last = time.monotonic()
+    """Write one line, overwritten on a terminal; elsewhere a new line for every tenth."""
+    begin = time.monotonic()
+    last = 0
 
     def write(done: int, total: int) -> None:
         nonlocal last
         now = time.monotonic()
         terminal = sys.stderr.isatty()
-        if not terminal and done < total and now - last < _BETWEEN_LINES:
+        part = _LINES * done // max(total, 1)
+        if not terminal and part <= last:
             return
-        last = now
+        last = part
         end = "\r" if terminal and done < total else "\n"
         sys.stderr.write(f"{done} of {total} runs, {now - begin:.0f} s{end}")
         sys.stderr.flush()

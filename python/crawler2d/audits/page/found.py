@@ -141,7 +141,7 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
                 words.share(cleared),
                 words.share(seized),
                 escaped(where),
-                str(each.wheels),
+                str(each.wheels or "belt"),
                 f"{each.speed:.2g} times",
             )
         )
