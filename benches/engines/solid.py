@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benches.models.files import cleaned
 from crawler2d.models.poses import Array, Pose
 from crawler2d.models.tree import Link, Shape, Tree
 from crawler2d.parameters.robot import Robot
@@ -82,7 +83,7 @@ class Solid:
 
     def urdf(self) -> str:
         """Return it as a file, with a friction of 1: that of the ground decides."""
-        return document(urdf_of(self.tree), "a robot of the comparison of engines")
+        return cleaned(document(urdf_of(self.tree), "a robot of the comparison of engines"))
 
     def plain(self) -> list[dict[str, Any]]:
         """Return its links as data for JSON, the chassis first, each with its motor if it has one.

@@ -1,0 +1,109 @@
+"""Find the cells: heights at which some runs clear and some do not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
+
+from benches.engines.cells import Cell
+from benches.engines.robots import MODELS
+from crawler2d.runs.batch import simulate_many
+
+__all__ = ["scanned"]
+
+_HEIGHTS = (0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8)
+"""[-] times the radius, for a first look."""
+
+_RUNS = 8
+_FEW, _MANY = 0.2, 0.8
+_HALVINGS = 4
+_FRICTIONS = (0.7, 0.85, 0.55, 1.0)
+
+_OTHERS = ("line of 3", "line of 5", "line of 9", "5 gears")
+_PAPER = (0.05, 0.075, 0.1)  # [m] steps; its knife edge is 40 mm high
+
+
+def wanted() -> Iterator[Cell]:
+    """Yield what cells are to be found for, their height and friction still open."""
+    usual = [model for model in MODELS if model != "public 3"]
+    for model, robot in product(usual, ("engineer", "engineer, ahead")):
+        for drive in ("6 N m, track", "6 N m, servos", "60 N m, track", "60 N m, servos"):
+            yield _open("plane", robot, model, drive, "step")
+        for drive in ("6 N m, servos", "60 N m, servos"):
+            yield _open("plane", robot, model, drive, "knife edge")
+    for robot, model, ground in product(("absolem", "marv"), _OTHERS, ("step", "knife edge")):
+        yield _open("plane", robot, model, "60 N m, servos", ground)
+    for model, ground in product(usual, ("oblique edge", "one-sided edge")):
+        yield _open("space", "engineer", model, "60 N m, servos", ground)
+
+
+def paper() -> Iterator[Cell]:
+    """Yield the cells at the settings of the public simulation model."""
+    for model in MODELS:
+        cell = replace(
+            _open("paper", "engineer", model, "100 N m a wheel", "knife edge"), friction=1.0
+        )
+        yield replace(cell, height=0.04)
+        for height in _PAPER:
+            yield replace(cell, ground="step", height=height)
+
+
+def scanned() -> Iterator[tuple[Cell, float]]:
+    """Yield each cell with its rate of clearing; a friction further where a first one has none."""
+    for number, cell in enumerate(wanted()):
+        first = number % len(_FRICTIONS)
+        order = _FRICTIONS[first:] + _FRICTIONS[:first]
+        found = [_search(replace(cell, friction=friction)) for friction in order[:1]]
+        for friction in order[1:]:
+            if _FEW <= found[-1][1] <= _MANY:
+                break
+            found.append(_search(replace(cell, friction=friction)))
+        yield min(found, key=lambda each: abs(each[1] - 0.5))
+    for cell in paper():
+        yield cell, _rate(cell)
+
+
+def _open(group: str, robot: str, model: str, drive: str, ground: str) -> Cell:
+    return Cell(
+        group=group,
+        robot=robot,
+        model=model,
+        drive=drive,
+        ground=ground,
+        height=0.0,
+        friction=0.0,
+    )
+
+
+def _search(cell: Cell) -> tuple[Cell, float]:
+    """Return the cell at the height whose rate is nearest to one half, and that rate."""
+    radius = cell.built().outline.front_radius
+    looked: list[tuple[Cell, float]] = []
+    for share in _HEIGHTS:
+        looked.append(_look(cell, share * radius))
+        if _FEW <= looked[-1][1] <= _MANY:
+            return looked[-1]
+        if len(looked) > 1 and _crosses(looked[-2:]):
+            low, high = looked[-2:]
+            for _ in range(_HALVINGS):
+                middle = _look(cell, 0.5 * (low[0].height + high[0].height))
+                looked.append(middle)
+                if _FEW <= middle[1] <= _MANY:
+                    return middle
+                low, high = (low, middle) if _crosses((low, middle)) else (middle, high)
+    return min(looked, key=lambda each: abs(each[1] - 0.5))
+
+
+def _crosses(pair: Sequence[tuple[Cell, float]]) -> bool:
+    return (pair[0][1] > 0.5) != (pair[1][1] > 0.5)
+
+
+def _look(cell: Cell, height: float) -> tuple[Cell, float]:
+    made = replace(cell, height=round(height, 4))
+    return made, _rate(made)
+
+
+def _rate(cell: Cell) -> float:
+    runs = simulate_many(cell.scenarios(_RUNS), record="summary", threads=1)
+    return sum(str(run.outcome) == "cleared" for run in runs) / _RUNS
