@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import Any
 
@@ -58,7 +59,7 @@ def driven(engine: Engine, scenario: Scenario) -> dict[str, Any]:
         angles = pose.rpy
         roll, yaw = max(roll, abs(angles[0])), max(yaw, abs(angles[2]))
         x = float(pose.at((rear[0], 0.0, rear[1]))[0])
-        end = judge.end(step * count, x, angles) if x == x else "not a number"
+        end = judge.end(step * count, x, angles) if math.isfinite(x) else "not a number"
     world.close()
     return {
         "end": end,

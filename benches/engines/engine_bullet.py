@@ -74,10 +74,14 @@ class BulletWorld:
         self._client = pybullet.connect(pybullet.DIRECT)
         self._is_default = setting.is_default
         self._call("setGravity", 0.0, 0.0, -9.81)
-        more = {} if setting.is_default else {
-            "contactBreakingThreshold": _NEAR,
-            "solverResidualThreshold": _RESIDUAL,
-        }
+        more = (
+            {}
+            if setting.is_default
+            else {
+                "contactBreakingThreshold": _NEAR,
+                "solverResidualThreshold": _RESIDUAL,
+            }
+        )
         self._call(
             "setPhysicsEngineParameter",
             fixedTimeStep=setting.time_step,
@@ -118,11 +122,15 @@ class BulletWorld:
         return getattr(pybullet, name)(*arguments, physicsClientId=self._client, **more)
 
     def _surface(self, body: int, link: int, friction: float) -> None:
-        damping = {} if self._is_default else {
-            "linearDamping": 0.0,
-            "angularDamping": 0.0,
-            "jointDamping": 0.0,
-        }
+        damping = (
+            {}
+            if self._is_default
+            else {
+                "linearDamping": 0.0,
+                "angularDamping": 0.0,
+                "jointDamping": 0.0,
+            }
+        )
         self._call("changeDynamics", body, link, lateralFriction=friction, **damping)
 
     def _block(self, block: TurnedBox, friction: float) -> None:

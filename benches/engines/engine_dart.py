@@ -39,10 +39,11 @@ GZ = Setting(time_step=1e-3, sweeps=0)
 FINE = Setting(time_step=1e-3, sweeps=300)
 
 _TOLERANCE = 1e-7
+_ABOVE = 10.0  # [-] friction of the robot
 
 
 class Dart:
-    """DART, which takes the smaller friction of two surfaces: the robot's is far above the ground's.
+    """DART, which takes the smaller friction of two surfaces: the ground's.
 
     Parameters
     ----------
@@ -120,9 +121,6 @@ class DartWorld:
 
     def close(self) -> None:
         """Free what the world holds."""
-
-
-_ABOVE = 10.0  # [-]
 
 
 def _block(block: TurnedBox, number: int, friction: float) -> Any:

@@ -16,11 +16,10 @@ import numpy as np
 from benches.engines.engine import Scene
 from crawler2d.models.poses import Pose
 
-__all__ = ["GAZEBO", "FINE", "Ode", "Setting", "interpreter"]
+__all__ = ["FINE", "GAZEBO", "Ode", "Setting", "interpreter"]
 
 _WORKER = Path(__file__).with_name("ode_worker.py")
 _CANDIDATES = (sys.executable, "/usr/bin/python3")
-_VERSION = "ode {}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -50,9 +50,7 @@ class Pymunk:
     def world(self, scene: Scene) -> PymunkWorld:
         """Build a world."""
         is_coupled = scene.robot.is_coupled
-        return PymunkWorld(
-            scene, self.time_step, self.geared if is_coupled else self.iterations
-        )
+        return PymunkWorld(scene, self.time_step, self.geared if is_coupled else self.iterations)
 
 
 class PymunkWorld:
@@ -84,9 +82,7 @@ class PymunkWorld:
                 continue
             body = self._body(link, _SIDES, -scene.phase / link["radius"])
             at = np.array(link["axle"])[[0, 2]]
-            pin = pymunk.PivotJoint(
-                self._chassis, body, tuple(at - self._center), (0.0, 0.0)
-            )
+            pin = pymunk.PivotJoint(self._chassis, body, tuple(at - self._center), (0.0, 0.0))
             pin.error_bias = _BIAS
             self._space.add(pin)
             if before is None or not scene.robot.is_coupled:

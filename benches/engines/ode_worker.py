@@ -8,6 +8,7 @@ library under it, so the library's own are here (`ode/common.h`, `ode/contact.h`
 import json
 import math
 import sys
+from typing import Any
 
 import ode
 
@@ -19,12 +20,12 @@ _MOST = 20  # contacts of two shapes, as in Gazebo classic
 class World:
     """A robot on its ground.
 
-    `message` has `bodies` (see `Solid.plain`), `ground`, `friction`, `x`, `z`, `phase` and `setting`:
-    `time_step` [s], `iterations`, `cfm`, `erp`, `layer` [m], `correcting` [m/s], and of contacts
-    `soft_cfm` and `soft_erp`.
+    The message has `bodies` (see `Solid.plain`), `ground`, `friction`, `x`, `z`, `phase` and
+    `setting`: `time_step` [s], `iterations`, `cfm`, `erp`, `layer` [m], `correcting` [m/s], and of
+    contacts `soft_cfm` and `soft_erp`.
     """
 
-    def __init__(self, message):
+    def __init__(self, message: dict[str, Any]) -> None:
         setting = message["setting"]
         self.step = setting["time_step"]
         self.world = ode.World()
@@ -38,19 +39,22 @@ class World:
         self.friction = message["friction"]
         self.contacts = ode.JointGroup()
         self.ground = [self._block(each) for each in message["ground"]]
-        start = message["x"], 0.0, message["z"]
-        self.shapes, self.bodies, self.motors = [], [], []
+        start = [message["x"], 0.0, message["z"]]
+        self.shapes: list[Any] = []
+        self.bodies: list[Any] = []
+        self.motors: list[tuple[Any, float]] = []
+        self.center = [0.0, 0.0, 0.0]
         for data in message["bodies"]:
             self._body(data, start, message["phase"])
 
-    def _block(self, data):
+    def _block(self, data: dict[str, Any]) -> Any:
         block = ode.GeomBox(None, data["size"])
         block.setPosition(data["center"])
         cos, sin = math.cos(data["yaw"]), math.sin(data["yaw"])
         block.setRotation((cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0))
         return block
 
-    def _body(self, data, start, phase):
+    def _body(self, data: dict[str, Any], start: list[float], phase: float) -> None:
         body, mass = ode.Body(self.world), ode.Mass()
         xx, xy, xz, _, yy, yz, _, _, zz = data["inertia"]
         mass.setParameters(data["mass"], 0.0, 0.0, 0.0, xx, yy, zz, xy, xz, yz)
@@ -65,7 +69,7 @@ class World:
             else:
                 raise ValueError(f"{shape['kind']}: ODE gets cylinders and boxes alone")
             geom.setBody(body)
-            geom.setOffsetPosition([a - b for a, b in zip(shape["place"], center)])
+            geom.setOffsetPosition([a - b for a, b in zip(shape["place"], center, strict=True)])
             geom.setOffsetRotation(shape["turn"])
             self.shapes.append(geom)
         self.bodies.append(body)
@@ -83,7 +87,7 @@ class World:
         cos, sin = math.cos(angle), math.sin(angle)
         body.setRotation((cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos))
 
-    def advance(self, speeds):
+    def advance(self, speeds: list[float]) -> dict[str, list[float]]:
         """Take a step for each set-point [m/s]."""
         for speed in speeds:
             for hinge, radius in self.motors:
@@ -93,7 +97,7 @@ class World:
             self.world.quickStep(self.step)
         return self.pose()
 
-    def _touch(self):
+    def _touch(self) -> None:
         for shape in self.shapes:
             low_x, high_x, low_y, high_y, low_z, _ = shape.getAABB()
             for block in self.ground:
@@ -108,27 +112,29 @@ class World:
                     joint = ode.ContactJoint(self.world, self.contacts, contact)
                     joint.attach(shape.getBody(), None)
 
-    def pose(self):
+    def pose(self) -> dict[str, list[float]]:
         """Return where the chassis frame is, and how it is turned, row by row."""
         chassis = self.bodies[0]
         place, turn = chassis.getPosition(), chassis.getRotation()
         rows = [turn[0:3], turn[3:6], turn[6:9]]
-        offset = [sum(a * b for a, b in zip(row, self.center)) for row in rows]
-        return {"place": [a - b for a, b in zip(place, offset)], "turn": list(turn)}
+        offset = [sum(a * b for a, b in zip(row, self.center, strict=True)) for row in rows]
+        return {"place": [a - b for a, b in zip(place, offset, strict=True)], "turn": list(turn)}
 
 
-def _sum(one, other):
-    return [a + b for a, b in zip(one, other)]
+def _sum(one: list[float], other: list[float]) -> list[float]:
+    return [a + b for a, b in zip(one, other, strict=True)]
 
 
-def main():
+def main() -> None:
     """Answer every line until there are no more."""
-    world = None
+    world: World | None = None
     for line in sys.stdin:
         message = json.loads(line)
         if message["do"] == "build":
             world = World(message)
             answer = world.pose()
+        elif world is None:
+            raise ValueError("nothing was built")
         else:
             answer = world.advance(message["speeds"])
         sys.stdout.write(json.dumps(answer) + "\n")

@@ -11,8 +11,9 @@ from typing import Any
 import crawler2d
 from benches.engines.cells import Cell
 from benches.engines.own import simulated
+from benches.engines.telling import tell
 
-__all__ = ["PREDICTIONS", "check", "hash_of", "predict"]
+__all__ = ["PREDICTIONS", "check", "hash_of", "predict", "read"]
 
 PREDICTIONS = Path(__file__).with_name("predictions.json")
 
@@ -25,7 +26,7 @@ def predict(cells: Sequence[Cell], path: Path = PREDICTIONS) -> None:
         for run in runs:
             del run["cost"]  # would make another file each time
         lines.append(f"{json.dumps(cell.label)}: {json.dumps(runs)}")
-        print(f"{number} of {len(cells)}: {cell.label}", flush=True)
+        tell(f"{number} of {len(cells)}: {cell.label}")
     version = json.dumps(crawler2d.__version__)
     body = ",\n".join(lines)
     path.write_text(f'{{"version": {version}, "cells": {{\n{body}\n}}}}\n', encoding="utf-8")

@@ -24,9 +24,7 @@ _AHEAD = (0.026, 0.02)  # [m] 26 mm ahead of the preset's
 
 ROBOTS: dict[str, Callable[[Track], Robot]] = {
     "engineer": lambda track: engineer(flippers=None, track=track),
-    "engineer, ahead": lambda track: engineer(
-        flippers=None, center_of_mass=_AHEAD, track=track
-    ),
+    "engineer, ahead": lambda track: engineer(flippers=None, center_of_mass=_AHEAD, track=track),
     "absolem": lambda track: absolem(flippers=None, track=track),
     "marv": lambda track: marv(flippers=None, track=track),
 }

@@ -14,6 +14,7 @@ from benches.engines.driving import driven
 from benches.engines.engines import engine_of, holds
 from benches.engines.own import has_rapier, simulated
 from benches.engines.predict import check
+from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 
 __all__ = ["RESULTS", "run"]
@@ -39,7 +40,7 @@ def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -
     now = check(cells, results)
     drive, version = _driver(name)
     if drive is None:
-        print(f"{name} is left out: {version}", flush=True)
+        tell(f"{name} is left out: {version}")
         return
     results = results or {"predictions": now, "engine": version, "runs": {}}
     held = [cell for cell in cells if holds(name, cell)]
@@ -54,10 +55,7 @@ def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -
             if time.monotonic() - kept > _KEEP:
                 _keep(path, results)
                 kept = time.monotonic()
-                print(
-                    f"{name}: start {start + 1} of {starts}, cell {number} of {len(held)}",
-                    flush=True,
-                )
+                tell(f"{name}: start {start + 1} of {starts}, cell {number} of {len(held)}")
         _keep(path, results)
 
 

@@ -82,8 +82,8 @@ def _search(cell: Cell) -> tuple[Cell, float]:
     looked: list[tuple[Cell, float]] = []
     for share in _HEIGHTS:
         looked.append(_look(cell, share * radius))
-        if _FEW <= looked[-1][1] <= _MANY:
-            return looked[-1]
+        if _FEW <= looked[-1][1] <= _MANY or looked[0][1] == 0.0:
+            return looked[-1]  # what the lowest one stops is not tried at higher ones
         if len(looked) > 1 and _crosses(looked[-2:]):
             low, high = looked[-2:]
             for _ in range(_HALVINGS):
