@@ -1,7 +1,7 @@
 """Compare crawler2d with other physics engines on the same scenarios.
 
-Usage, from the repository root: ``python -m benches.engines scan``, ``predict``, ``run``, ``costs``
-or ``table``.
+Usage, from the repository root: ``python -m benches.engines scan``, ``predict``, ``run``,
+``converge``, ``costs`` or ``table``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ import sys
 from pathlib import Path
 
 from benches.engines import costs
-from benches.engines.cells import STARTS, read, write
+from benches.engines.cells import STARTS, Cell, read, write
+from benches.engines.convergence import LADDERS, converge
 from benches.engines.engines import ENGINES
 from benches.engines.predict import predict
 from benches.engines.running import RESULTS, run
@@ -21,8 +22,9 @@ from benches.engines.telling import tell
 from crawler2d.reports.markdown import spliced
 
 _PAGE = Path(__file__).parents[2] / "docs" / "engines.md"
-_EVERY, _FEW = 6, 2  # cells and starts of a quick look
-_QUICK = tuple(name for name in ENGINES if name != "dart-fine")
+_QUICK = Path("out") / "engines"  # a look, from nothing
+_EVERY, _FEW = 6, 2  # cells and starts of it
+_SLOW = "dart-fine"
 
 
 def main() -> None:
@@ -32,46 +34,72 @@ def main() -> None:
     verbs.add_parser("scan", help="find the cells; predictions and results are void then")
     verbs.add_parser("predict", help="write down what crawler2d says; results are void then")
     runs = verbs.add_parser("run", help="run the engines, where they stopped the last time")
-    runs.add_argument("engines", nargs="*", choices=[[], *ENGINES], help="default: all")
+    engines = ", ".join(ENGINES)
+    runs.add_argument("--engines", nargs="+", choices=ENGINES, metavar="ENGINE", help=engines)
     runs.add_argument("--starts", type=int, default=STARTS, help="runs of each cell")
     runs.add_argument("--group", choices=("plane", "space", "paper"), help="default: all cells")
-    runs.add_argument("--every", type=int, default=1, help="take each n-th cell only")
-    runs.add_argument("--quick", action="store_true", help="some cells and starts, ten minutes")
+    finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
+    finer.add_argument("engine", choices=LADDERS)
+    finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
     sitting = verbs.add_parser("costs", help="time a simulated second in each engine")
-    tables = verbs.add_parser("table", help="write the tables into docs/engines.md")
-    for verb in (runs, sitting, tables):
-        verb.add_argument("--output", type=Path, default=RESULTS, help="folder of the results")
+    tables = verbs.add_parser("table", help="print the tables, and put them into the page")
+    for verb in (runs, finer, sitting, tables):
+        verb.add_argument("--output", type=Path, help=f"default: {RESULTS.name} beside this file")
+    for verb in (runs, tables):
+        verb.add_argument("--quick", action="store_true", help=f"a look, kept in {_QUICK}")
     given = parser.parse_args()
     match given.verb:
         case "scan":
-            cells = []
-            for cell, rate in scanned():
-                cells.append(cell)
-                tell(f"{rate:.2f} {cell.label}")
-            write(cells)
+            _scan()
         case "predict":
             predict(read())
         case "run":
             _run(given)
+        case "converge":
+            converge(given.engine, _told(), given.starts, given.output or RESULTS)
         case "costs":
-            costs.measure(given.output)
+            costs.measure(given.output or RESULTS)
         case _:
-            _tell(given.output)
+            _tables(given.output or (_QUICK if given.quick else RESULTS))
+
+
+def _scan() -> None:
+    cells = []
+    for cell, rate in scanned():
+        cells.append(cell)
+        tell(f"{rate:.2f} {cell.label}")
+    write(cells)
 
 
 def _run(given: argparse.Namespace) -> None:
     cells = [cell for cell in read() if given.group in (None, cell.group)]
-    every, starts, engines = given.every, given.starts, given.engines or ENGINES
+    engines, starts = given.engines or list(ENGINES), given.starts
     if given.quick:
-        every, starts, engines = _EVERY, _FEW, given.engines or _QUICK
+        cells, starts = cells[::_EVERY], _FEW
+        engines = given.engines or [name for name in ENGINES if name != _SLOW]
+    folder = given.output or (_QUICK if given.quick else RESULTS)
     for name in engines:
         try:
-            run(name, cells[::every], starts, given.output)
+            run(name, cells, starts, folder)
         except ValueError as error:
             sys.exit(f"{name}: {error}")
 
 
-def _tell(folder: Path) -> None:
+def _told() -> list[Cell]:
+    """Return undecided cells of three models, which are refined."""
+    cells, found = read(), []
+    for model in ("line of 3", "line of 5", "5 gears"):
+        found.append(
+            next(
+                cell
+                for cell in cells
+                if cell.model == model and cell.drive == "60 N m, servos" and cell.ground == "step"
+            )
+        )
+    return found
+
+
+def _tables(folder: Path) -> None:
     found = parts(read(), folder)
     for name, text in found.items():
         sys.stdout.write(f"{name}:\n\n{text}\n\n")

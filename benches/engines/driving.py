@@ -11,6 +11,7 @@ from benches.engines.ground import blocks_of, goal_of
 from benches.engines.solid import solid_of
 from benches.models.judge import Judge
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import Lanes
 
 __all__ = ["driven", "scene_of"]
 
@@ -21,7 +22,7 @@ def scene_of(scenario: Scenario) -> Scene:
     """Return what an engine builds: the robot level, its lowest wheel on the ground."""
     robot, ground = solid_of(scenario.robot), scenario.terrain
     phase = scenario.start.track_phase
-    friction = getattr(ground, "left", ground).friction
+    friction = (ground.left if isinstance(ground, Lanes) else ground).friction
     return Scene(
         robot=robot,
         ground=blocks_of(ground, scenario.robot.gauge),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benches.engines import costs
+from benches.engines import convergence, costs
 from benches.engines.agreement import Run, Runs, apart, cleared, pairs, rate, share
 from benches.engines.cells import GROUNDS, Cell
 from benches.engines.engines import ENGINES, holds
@@ -63,6 +63,7 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "space": _space(groups["space"], predicted, results),
         "paper": _paper(groups["paper"], predicted, results),
         "costs": costs.table(folder),
+        "convergence": convergence.table(folder),
         "cells": _cells(plane, predicted, results),
     }
 
