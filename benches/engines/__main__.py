@@ -37,7 +37,7 @@ def main() -> None:
     engines = ", ".join(ENGINES)
     runs.add_argument("--engines", nargs="+", choices=ENGINES, metavar="ENGINE", help=engines)
     runs.add_argument("--starts", type=int, default=STARTS, help="runs of each cell")
-    runs.add_argument("--group", choices=("plane", "space", "paper"), help="default: all cells")
+    runs.add_argument("--only", default="", metavar="TEXT", help="cells with this in their label")
     finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
     finer.add_argument("engine", choices=LADDERS)
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
@@ -72,7 +72,7 @@ def _scan() -> None:
 
 
 def _run(given: argparse.Namespace) -> None:
-    cells = [cell for cell in read() if given.group in (None, cell.group)]
+    cells = [cell for cell in read() if given.only in cell.label]
     engines, starts = given.engines or list(ENGINES), given.starts
     if given.quick:
         cells, starts = cells[::_EVERY], _FEW

@@ -25,7 +25,7 @@ def scene_of(scenario: Scenario) -> Scene:
     friction = (ground.left if isinstance(ground, Lanes) else ground).friction
     return Scene(
         robot=robot,
-        ground=blocks_of(ground, scenario.robot.gauge),
+        ground=blocks_of(scenario),
         friction=friction,
         x=-scenario.start.approach - robot.foremost,
         z=-robot.lowest(phase),
@@ -43,7 +43,7 @@ def driven(engine: Engine, scenario: Scenario) -> dict[str, Any]:
         roll [rad], and what a simulated second took [s].
     """
     outline, drivetrain = scenario.robot.outline, scenario.robot.drivetrain
-    goal = goal_of(scenario.terrain, scenario.robot.gauge) + outline.rear_radius
+    goal = goal_of(scenario) + outline.rear_radius
     judge = Judge(goal=goal, duration=scenario.duration)
     rear = (outline.ends[0][0], outline.ends[0][1], 0.0)
     step = engine.time_step

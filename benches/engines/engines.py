@@ -77,8 +77,4 @@ def holds(name: str, cell: Cell) -> bool:
     A ground that is not the same across needs three dimensions. The limit of one motor a track
     needs gears between wheels, which only Chipmunk has here.
     """
-    if name == "rapier":
-        return cell.group != "space"
-    if not ENGINES[name].in_space:
-        return cell.group != "space"
-    return not cell.is_coupled
+    return not cell.is_coupled if ENGINES[name].in_space else cell.is_even

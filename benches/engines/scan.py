@@ -21,7 +21,14 @@ _HALVINGS = 4
 _FRICTIONS = (0.7, 0.85, 0.55, 1.0)
 
 _OTHERS = ("line of 3", "line of 5", "line of 9", "5 gears")
-_PAPER = (0.05, 0.075, 0.1)  # [m] steps; its knife edge is 40 mm high
+_PAPER = (
+    ("knife edge", 0.04),
+    ("step", 0.05),
+    ("step", 0.075),
+    ("step", 0.1),
+    ("step field", 0.025),
+)
+"""Grounds, and [m] their heights, at the settings of the public model."""
 
 
 def wanted() -> Iterator[Cell]:
@@ -41,12 +48,9 @@ def wanted() -> Iterator[Cell]:
 def paper() -> Iterator[Cell]:
     """Yield the cells at the settings of the public simulation model."""
     for model in MODELS:
-        cell = replace(
-            _open("paper", "engineer", model, "100 N m a wheel", "knife edge"), friction=1.0
-        )
-        yield replace(cell, height=0.04)
-        for height in _PAPER:
-            yield replace(cell, ground="step", height=height)
+        for ground, height in _PAPER:
+            cell = _open("paper", "engineer", model, "100 N m a wheel", ground)
+            yield replace(cell, height=height, friction=1.0)
 
 
 def scanned() -> Iterator[tuple[Cell, float]]:

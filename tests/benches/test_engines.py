@@ -19,7 +19,16 @@ from benches.engines.predict import PREDICTIONS, check, hash_of
 from benches.engines.predict import read as predictions
 from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
 from benches.engines.solid import solid_of
-from crawler2d.parameters.terrain import Barrier, DiagonalBarrier, Flat, Lanes, Step
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import (
+    Barrier,
+    DiagonalBarrier,
+    Flat,
+    Lanes,
+    RandomStepfield,
+    Step,
+    Terrain,
+)
 
 CELL = Cell(
     group="plane",
@@ -89,7 +98,7 @@ def test_the_runs_of_a_cell_are_the_same_however_many_are_made() -> None:
 
 
 def test_an_engine_without_gears_has_no_cell_where_one_motor_reaches_its_limit() -> None:
-    coupled, oblique = replace(CELL, drive="6 N m, track"), replace(CELL, group="space")
+    coupled, oblique = replace(CELL, drive="6 N m, track"), replace(CELL, ground="oblique edge")
     assert [name for name in ENGINES if holds(name, coupled)] == ["pymunk", "rapier"]
     assert [name for name in ENGINES if not holds(name, oblique)] == ["pymunk", "rapier"]
 
@@ -126,24 +135,47 @@ def test_a_motor_of_a_track_has_the_torque_of_all_its_wheels() -> None:
     assert strong == pytest.approx(100.0)
 
 
+def on(ground: Terrain) -> Scenario:
+    return Scenario(robot_of("engineer", "line of 5", "60 N m, servos"), ground)
+
+
 def test_an_oblique_edge_meets_the_left_track_first_at_0() -> None:
     gauge, yaw, thick = 0.2, 0.35, 0.01
-    ground = DiagonalBarrier(yaw, height=0.05, thickness=thick)
-    level, edge = blocks_of(ground, gauge)
+    scenario = on(DiagonalBarrier(yaw, height=0.05, thickness=thick))
+    level, edge = blocks_of(scenario)
     assert level.center[2] + 0.5 * level.size[2] == 0.0
     assert edge.center[2] + 0.5 * edge.size[2] == pytest.approx(0.05)
     # A point of the front face, in the frame of the block.
     away = np.array([0.0, 0.5 * gauge]) - edge.center[:2]
     assert away @ [np.cos(yaw), np.sin(yaw)] == pytest.approx(-0.5 * thick)
-    assert goal_of(ground, gauge) == pytest.approx(gauge * np.tan(yaw) + thick / np.cos(yaw))
+    assert goal_of(scenario) == pytest.approx(gauge * np.tan(yaw) + thick / np.cos(yaw))
 
 
 def test_a_one_sided_edge_is_under_the_left_track_alone() -> None:
-    ground = Lanes(Barrier(0.05, 0.01), Flat())
-    edge = blocks_of(ground, 0.2)[1]
+    scenario = on(Lanes(Barrier(0.05, 0.01), Flat()))
+    edge = blocks_of(scenario)[1]
     assert edge.center[1] - 0.5 * edge.size[1] == 0.0
-    assert goal_of(ground, 0.2) == 0.01
-    assert goal_of(Step(0.05), 0.2) == 0.0
+    assert goal_of(scenario) == 0.01
+    assert goal_of(on(Step(0.05))) == 0.0
+
+
+def test_a_step_field_has_a_row_of_posts_for_each_track() -> None:
+    scenario = on(RandomStepfield(seed=3, posts=6, rise=0.03))
+    blocks = blocks_of(scenario)
+    tops = [block.center[2] + 0.5 * block.size[2] for block in blocks]
+    assert {round(top / 0.03, 9) for top in tops} <= {0.0, 1.0, 2.0, 3.0, 4.0}
+    for side in (-1.0, 1.0):
+        mine = [block for block in blocks if block.center[1] * side > 0.0]
+        assert {abs(block.center[1]) - 0.5 * block.size[1] for block in mine} == {0.0}
+        ends = [block.center[0] + 0.5 * block.size[0] for block in mine]
+        starts = [block.center[0] - 0.5 * block.size[0] for block in mine]
+        assert starts[1:] == pytest.approx(ends[:-1])
+    left, right = (
+        [top for top, block in zip(tops, blocks, strict=True) if block.center[1] * side > 0.0]
+        for side in (1.0, -1.0)
+    )
+    assert left != right
+    assert goal_of(scenario) == pytest.approx(0.6)
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if name != "rapier"])
