@@ -1,7 +1,7 @@
 """Compare crawler2d with other physics engines on the same scenarios.
 
 Usage, from the repository root: ``python -m benches.engines scan``, ``predict``, ``run``,
-``converge``, ``costs`` or ``table``.
+``converge``, ``refine``, ``costs`` or ``table``.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from benches.engines.cells import STARTS, Cell, read, write
 from benches.engines.convergence import LADDERS, converge
 from benches.engines.engines import ENGINES
 from benches.engines.predict import predict
+from benches.engines.refining import refine
 from benches.engines.running import RESULTS, run
 from benches.engines.scan import scanned
 from benches.engines.table import parts
@@ -41,9 +42,11 @@ def main() -> None:
     finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
     finer.add_argument("engine", choices=LADDERS)
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
+    again = verbs.add_parser("refine", help="make runs that differ again, finer in both")
+    again.add_argument("--most", type=int, default=3, help="runs of a cell")
     sitting = verbs.add_parser("costs", help="time a simulated second in each engine")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
-    for verb in (runs, finer, sitting, tables):
+    for verb in (runs, finer, again, sitting, tables):
         verb.add_argument("--output", type=Path, help=f"default: {RESULTS.name} beside this file")
     for verb in (runs, tables):
         verb.add_argument("--quick", action="store_true", help=f"a look, kept in {_QUICK}")
@@ -57,6 +60,8 @@ def main() -> None:
             _run(given)
         case "converge":
             converge(given.engine, _told(), given.starts, given.output or RESULTS)
+        case "refine":
+            refine(read(), given.output or RESULTS, given.most)
         case "costs":
             costs.measure(given.output or RESULTS)
         case _:

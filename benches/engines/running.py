@@ -17,10 +17,19 @@ from benches.engines.predict import check
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 
-__all__ = ["RESULTS", "run"]
+__all__ = ["RESULTS", "results_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 _KEEP = 20.0  # [s] between two writings of the file
+
+
+def results_of(name: str, folder: Path) -> dict[str, Any] | None:
+    """Return the results of an engine, with its version and the hash of the predictions."""
+    path = folder / f"{name}.json"
+    if not path.exists():
+        return None
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
 
 
 def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -> None:
@@ -34,9 +43,7 @@ def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -
         If the cells are not predicted, or the results are for other predictions.
     """
     path = folder / f"{name}.json"
-    results: dict[str, Any] = {}
-    if path.exists():
-        results = json.loads(path.read_text(encoding="utf-8"))
+    results = results_of(name, folder) or {}
     now = check(cells, results)
     drive, version = _driver(name)
     if drive is None:

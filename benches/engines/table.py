@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from benches.engines import convergence, costs
+from benches.engines import convergence, costs, refining
 from benches.engines.agreement import Run, Runs, apart, cleared, pairs, rate, share
 from benches.engines.cells import GROUNDS, Cell
 from benches.engines.engines import ENGINES, holds
-from benches.engines.predict import PREDICTIONS, hash_of, read
+from benches.engines.predict import hash_of, read
 from benches.engines.robots import MODELS
+from benches.engines.running import results_of
 from crawler2d.reports.markdown import markdown_table
 
 __all__ = ["load", "parts"]
@@ -36,11 +36,10 @@ def load(folder: Path) -> tuple[dict[str, dict[str, list[Run]]], dict[str, str]]
     results, versions = {}, {}
     now = hash_of()
     for name in ENGINES:
-        path = folder / f"{name}.json"
-        if path.exists():
-            data = json.loads(path.read_text(encoding="utf-8"))
+        data = results_of(name, folder)
+        if data is not None:
             if data["predictions"] != now:
-                raise ValueError(f"{path.name} is for other predictions than {PREDICTIONS.name}")
+                raise ValueError(f"{name} has results for other predictions")
             results[name], versions[name] = data["runs"], data["engine"]
     return results, versions
 
@@ -64,6 +63,7 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "paper": _paper(groups["paper"], predicted, results),
         "costs": costs.table(folder),
         "convergence": convergence.table(folder),
+        "refined": refining.table(folder),
         "cells": _cells(plane, predicted, results),
     }
 
