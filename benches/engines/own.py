@@ -42,7 +42,7 @@ def simulated(scenario: Scenario, engine: str | None = None) -> dict[str, Any]:
         (run,) = simulate_many([scenario], record="summary", threads=1)
     except ScenarioError as error:
         return {"end": f"refused: {error.path}"}
-    took, lasted = time.perf_counter() - begun, run.metrics["final_time"]
+    took, lasted = time.perf_counter() - begun, run.metrics["time"]
     return {
         "end": str(run.outcome),
         "mechanism": str(run.mechanism or ""),
