@@ -67,8 +67,8 @@ GAZEBO = Setting(
 """Gazebo classic's: its `min_depth` and `max_vel` of a link stand in place of layer and speed."""
 
 FINE = Setting(
-    time_step=2.5e-4,
-    iterations=300,
+    time_step=5e-4,
+    iterations=150,
     cfm=1e-8,
     erp=0.2,
     layer=1e-5,
