@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from typing import Any
 
 from benches.engines.engine import Engine, Scene
@@ -29,12 +30,24 @@ def scene_of(scenario: Scenario) -> Scene:
         friction=friction,
         x=-scenario.start.approach - robot.foremost,
         z=-robot.lowest(phase),
+        angle=0.0,
         phase=phase,
     )
 
 
-def driven(engine: Engine, scenario: Scenario) -> dict[str, Any]:
+def driven(
+    engine: Engine, scenario: Scenario, start: tuple[float, float, float] | None = None
+) -> dict[str, Any]:
     """Drive through what a scenario says; the speed rises as in crawler2d.
+
+    Parameters
+    ----------
+    engine : Engine
+        In which.
+    scenario : Scenario
+        Robot, ground, command and longest time.
+    start : tuple of float, optional
+        [m], [m], [rad] Pose of the chassis at rest, in place of the scenario's start.
 
     Returns
     -------
@@ -50,7 +63,10 @@ def driven(engine: Engine, scenario: Scenario) -> dict[str, Any]:
     looks = max(1, round(_LOOK / step))
     rise, top = drivetrain.max_acceleration, scenario.drive.speed
     begun = time.perf_counter()
-    world = engine.world(scene_of(scenario))
+    scene = scene_of(scenario)
+    if start is not None:
+        scene = replace(scene, x=start[0], z=start[1], angle=start[2])
+    world = engine.world(scene)
     count, end, yaw, roll = 0, "", 0.0, 0.0
     while not end:
         steps = range(count + 1, count + looks + 1)

@@ -25,8 +25,8 @@ class Scene:
         The ground.
     friction : float
         [-] Between robot and ground.
-    x, z : float
-        [m] Of the chassis frame at time 0; the chassis is level.
+    x, z, angle : float
+        [m], [rad] Of the chassis frame at time 0, nose up > 0.
     phase : float
         [m] By which the surface of every wheel has advanced at time 0.
     """
@@ -36,6 +36,7 @@ class Scene:
     friction: float
     x: float
     z: float
+    angle: float
     phase: float
 
 

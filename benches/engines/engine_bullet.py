@@ -110,8 +110,9 @@ class BulletWorld:
         self._torques = [wheel.torque for _, wheel in self._wheels]
         offset, inner = self._call("getDynamicsInfo", self._body, -1)[3:5]
         self._inverse = pybullet.invertTransform(offset, inner)
-        middle = (np.array([scene.x, 0.0, scene.z]) + offset).tolist()
-        self._call("resetBasePositionAndOrientation", self._body, middle, inner)
+        tilt = pybullet.getQuaternionFromEuler((0.0, -scene.angle, 0.0))
+        middle, turned = pybullet.multiplyTransforms((scene.x, 0.0, scene.z), tilt, offset, inner)
+        self._call("resetBasePositionAndOrientation", self._body, middle, turned)
         for joint, wheel in self._wheels:
             self._call("resetJointState", self._body, joint, scene.phase / wheel.radius)
         loaded = sum(self._call("getDynamicsInfo", self._body, i)[0] for i in (-1, *range(count)))

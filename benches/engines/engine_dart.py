@@ -100,7 +100,7 @@ class DartWorld:
             joint.setForceLowerLimit(0, -wheel.torque)
             joint.setForceUpperLimit(0, wheel.torque)
             joint.setPosition(0, scene.phase / wheel.radius)
-        self._root.getParentJoint().setPositions([0.0, 0.0, 0.0, scene.x, 0.0, scene.z])
+        self._root.getParentJoint().setPositions([0.0, -scene.angle, 0.0, scene.x, 0.0, scene.z])
         self._world.addSkeleton(skeleton)
         if abs(skeleton.getMass() - scene.robot.mass) > 1e-5 * scene.robot.mass:
             raise ValueError(

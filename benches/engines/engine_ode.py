@@ -146,6 +146,7 @@ class OdeWorld:
             friction=scene.friction,
             x=scene.x,
             z=scene.z,
+            angle=scene.angle,
             phase=scene.phase,
             setting=asdict(setting),
         )

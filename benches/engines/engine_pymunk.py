@@ -40,9 +40,7 @@ class Pymunk:
     version = f"pymunk {pymunk.version}"
     in_space = False
 
-    def __init__(
-        self, time_step: float = 2.5e-4, *, iterations: int = 60, geared: int = 300
-    ) -> None:
+    def __init__(self, time_step: float = 5e-4, *, iterations: int = 60, geared: int = 300) -> None:
         self.time_step = time_step
         self.iterations = iterations
         self.geared = geared
@@ -73,7 +71,7 @@ class PymunkWorld:
             self._add_shape(shape, _GROUND, scene.friction)
         chassis, *links = scene.robot.plain()
         self._center = np.array(chassis["center"])[[0, 2]]
-        self._start = np.array([scene.x, scene.z])
+        self._start, self._angle = np.array([scene.x, scene.z]), scene.angle
         self._chassis = self._body(chassis, 1.0, 0.0)
         self._motors: list[tuple[pymunk.SimpleMotor, float]] = []
         before: pymunk.Body | None = None
@@ -99,8 +97,10 @@ class PymunkWorld:
     def _body(self, link: dict[str, Any], sides: float, angle: float) -> pymunk.Body:
         center = np.array(link["center"])[[0, 2]]
         body = pymunk.Body(sides * link["mass"], sides * link["inertia"][4])
-        body.position = tuple(self._start + center)
-        body.angle = angle
+        cos, sin = math.cos(self._angle), math.sin(self._angle)
+        turned = np.array([[cos, -sin], [sin, cos]]) @ center
+        body.position = tuple(self._start + turned)
+        body.angle = self._angle + angle
         self._space.add(body)
         for data in link["shapes"]:
             place = np.array(data["place"])[[0, 2]] - center

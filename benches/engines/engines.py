@@ -30,7 +30,7 @@ class Entry:
 
 
 ENGINES: dict[str, Entry] = {
-    "pymunk": Entry("Chipmunk, 0.25 ms", True, False),
+    "pymunk": Entry("Chipmunk, finely", True, False),
     "rapier": Entry("crawler2d's own door to rapier", True, False),
     "ode": Entry("ODE as Gazebo classic sets it", False, True),
     "ode-fine": Entry("ODE, finely", True, True),

@@ -20,9 +20,9 @@ _MOST = 20  # contacts of two shapes, as in Gazebo classic
 class World:
     """A robot on its ground.
 
-    The message has `bodies` (see `Solid.plain`), `ground`, `friction`, `x`, `z`, `phase` and
-    `setting`: `time_step` [s], `iterations`, `cfm`, `erp`, `layer` [m], `correcting` [m/s], and of
-    contacts `soft_cfm` and `soft_erp`.
+    The message has `bodies` (see `Solid.plain`), `ground`, `friction`, `x`, `z`, `angle`, `phase`
+    and `setting`: `time_step` [s], `iterations`, `cfm`, `erp`, `layer` [m], `correcting` [m/s], and
+    of contacts `soft_cfm` and `soft_erp`.
     """
 
     def __init__(self, message: dict[str, Any]) -> None:
@@ -39,13 +39,14 @@ class World:
         self.friction = message["friction"]
         self.contacts = ode.JointGroup()
         self.ground = [self._block(each) for each in message["ground"]]
-        start = [message["x"], 0.0, message["z"]]
+        self.start = [message["x"], 0.0, message["z"]]
+        self.angle = message["angle"]
         self.shapes: list[Any] = []
         self.bodies: list[Any] = []
         self.motors: list[tuple[Any, float]] = []
         self.center = [0.0, 0.0, 0.0]
         for data in message["bodies"]:
-            self._body(data, start, message["phase"])
+            self._body(data, message["phase"])
 
     def _block(self, data: dict[str, Any]) -> Any:
         block = ode.GeomBox(None, data["size"])
@@ -54,13 +55,14 @@ class World:
         block.setRotation((cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0))
         return block
 
-    def _body(self, data: dict[str, Any], start: list[float], phase: float) -> None:
+    def _body(self, data: dict[str, Any], phase: float) -> None:
         body, mass = ode.Body(self.world), ode.Mass()
         xx, xy, xz, _, yy, yz, _, _, zz = data["inertia"]
         mass.setParameters(data["mass"], 0.0, 0.0, 0.0, xx, yy, zz, xy, xz, yz)
         body.setMass(mass)
         center = data["center"]
-        body.setPosition(_sum(start, center))
+        body.setPosition(self._placed(center))
+        body.setRotation(_about_y(-self.angle))
         for shape in data["shapes"]:
             if shape["kind"] == "cylinder":
                 geom = ode.GeomCylinder(None, shape["radius"], shape["length"])
@@ -79,13 +81,18 @@ class World:
         hinge = ode.HingeJoint(self.world)
         # ODE has the rate of the first body relative to the second.
         hinge.attach(body, self.bodies[0])
-        hinge.setAnchor(_sum(start, data["axle"]))
+        hinge.setAnchor(self._placed(data["axle"]))
         hinge.setAxis((0.0, 1.0, 0.0))
         hinge.setParam(_PARAM_FMAX, data["torque"])
         self.motors.append((hinge, data["radius"]))
-        angle = phase / data["radius"]
-        cos, sin = math.cos(angle), math.sin(angle)
-        body.setRotation((cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos))
+        body.setRotation(_about_y(phase / data["radius"] - self.angle))
+
+    def _placed(self, point: list[float]) -> list[float]:
+        """[m] Return where a point of the chassis frame is at the start."""
+        turn = _about_y(-self.angle)
+        rows = [turn[0:3], turn[3:6], turn[6:9]]
+        turned = [sum(a * b for a, b in zip(row, point, strict=True)) for row in rows]
+        return [a + b for a, b in zip(self.start, turned, strict=True)]
 
     def advance(self, speeds: list[float]) -> dict[str, list[float]]:
         """Take a step for each set-point [m/s]."""
@@ -121,8 +128,9 @@ class World:
         return {"place": [a - b for a, b in zip(place, offset, strict=True)], "turn": list(turn)}
 
 
-def _sum(one: list[float], other: list[float]) -> list[float]:
-    return [a + b for a, b in zip(one, other, strict=True)]
+def _about_y(angle: float) -> tuple[float, ...]:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos
 
 
 def main() -> None:
