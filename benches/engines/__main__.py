@@ -1,7 +1,7 @@
 """Compare crawler2d with other physics engines on the same scenarios.
 
 Usage, from the repository root: ``python -m benches.engines scan``, ``predict``, ``run``,
-``converge``, ``refine``, ``costs`` or ``table``.
+``converge``, ``refine``, ``speeds``, ``costs`` or ``table``.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from benches.engines import costs
 from benches.engines.cells import STARTS, Cell, read, write
 from benches.engines.convergence import LADDERS, converge
 from benches.engines.engines import ENGINES
+from benches.engines.momentum import speed_up
 from benches.engines.predict import predict
 from benches.engines.refining import refine
 from benches.engines.running import RESULTS, run
@@ -44,9 +45,12 @@ def main() -> None:
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
     again = verbs.add_parser("refine", help="make runs that differ again, finer in both")
     again.add_argument("--most", type=int, default=3, help="runs of a cell")
+    faster = verbs.add_parser("speeds", help="from which speed on is a robot carried past a stop?")
+    faster.add_argument("--engines", nargs="+", choices=ENGINES, default=["pymunk", "ode-fine"])
+    faster.add_argument("--starts", type=int, default=3, help="runs of each cell")
     sitting = verbs.add_parser("costs", help="time a simulated second in each engine")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
-    for verb in (runs, finer, again, sitting, tables):
+    for verb in (runs, finer, again, faster, sitting, tables):
         verb.add_argument("--output", type=Path, help=f"default: {RESULTS.name} beside this file")
     for verb in (runs, tables):
         verb.add_argument("--quick", action="store_true", help=f"a look, kept in {_QUICK}")
@@ -62,6 +66,8 @@ def main() -> None:
             converge(given.engine, _told(), given.starts, given.output or RESULTS)
         case "refine":
             refine(read(), given.output or RESULTS, given.most)
+        case "speeds":
+            speed_up(_jam(), given.engines, given.starts, given.output or RESULTS)
         case "costs":
             costs.measure(given.output or RESULTS)
         case _:
@@ -102,6 +108,15 @@ def _told() -> list[Cell]:
             )
         )
     return found
+
+
+def _jam() -> Cell:
+    """Return a cell whose runs seize, in which strong motors drive many small wheels."""
+    return next(
+        cell
+        for cell in read()
+        if (cell.group, cell.model, cell.ground) == ("paper", "24 all round", "step")
+    )
 
 
 def _tables(folder: Path) -> None:

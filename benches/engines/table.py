@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benches.engines import convergence, costs, refining
+from benches.engines import convergence, costs, momentum, refining
 from benches.engines.agreement import Run, Runs, apart, cleared, pairs, rate, share
 from benches.engines.cells import GROUNDS, Cell
 from benches.engines.engines import ENGINES, holds
@@ -63,6 +63,7 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "paper": _paper(groups["paper"], predicted, results),
         "costs": costs.table(folder),
         "convergence": convergence.table(folder),
+        "speeds": momentum.table(folder),
         "refined": refining.table(folder),
         "cells": _cells(plane, predicted, results),
     }
