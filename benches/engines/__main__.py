@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benches.engines import costs
 from benches.engines.cells import STARTS, Cell, read, write
-from benches.engines.convergence import LADDERS, converge
+from benches.engines.convergence import FINER, JAM, LADDERS, USUAL, converge
 from benches.engines.engines import ENGINES
 from benches.engines.momentum import speed_up
 from benches.engines.predict import predict
@@ -42,6 +42,7 @@ def main() -> None:
     runs.add_argument("--only", default="", metavar="TEXT", help="cells with this in their label")
     finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
     finer.add_argument("engine", choices=LADDERS)
+    finer.add_argument("--jam", action="store_true", help="of Chipmunk, one stop, with finer steps")
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
     again = verbs.add_parser("refine", help="make runs that differ again, finer in both")
     again.add_argument("--most", type=int, default=3, help="runs of a cell")
@@ -63,7 +64,7 @@ def main() -> None:
         case "run":
             _run(given)
         case "converge":
-            converge(given.engine, _told(), given.starts, given.output or RESULTS)
+            _converge(given)
         case "refine":
             refine(read(), given.output or RESULTS, given.most)
         case "speeds":
@@ -94,6 +95,12 @@ def _run(given: argparse.Namespace) -> None:
             run(name, cells, starts, folder)
         except ValueError as error:
             sys.exit(f"{name}: {error}")
+
+
+def _converge(given: argparse.Namespace) -> None:
+    folder = given.output or RESULTS
+    ladders, cells, file = (FINER, [_jam()], JAM) if given.jam else (LADDERS, _told(), USUAL)
+    converge(ladders[given.engine](), given.engine, cells, given.starts, folder / file)
 
 
 def _told() -> list[Cell]:

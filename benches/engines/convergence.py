@@ -17,18 +17,24 @@ from benches.engines.predict import read
 from benches.engines.telling import tell
 from crawler2d.reports.markdown import markdown_table
 
-__all__ = ["LADDERS", "converge", "table"]
-
-_FILE = "convergence.json"
+__all__ = ["FINER", "JAM", "LADDERS", "USUAL", "converge", "table"]
 
 
-def _pymunk() -> dict[str, Engine]:
+def _chipmunk(settings: Sequence[tuple[float, int]]) -> dict[str, Engine]:
     from benches.engines.engine_pymunk import Pymunk  # noqa: PLC0415 - loads Chipmunk
 
     return {
         f"{1e3 * step:g} ms, {many} iterations": Pymunk(step, iterations=many)
-        for step, many in ((1e-3, 30), (5e-4, 60), (2.5e-4, 60), (1.25e-4, 120))
+        for step, many in settings
     }
+
+
+def _pymunk() -> dict[str, Engine]:
+    return _chipmunk(((1e-3, 30), (5e-4, 60), (2.5e-4, 60), (1.25e-4, 120)))
+
+
+def _finer() -> dict[str, Engine]:
+    return _chipmunk(((5e-4, 60), (1e-4, 100), (5e-5, 100), (2e-5, 100), (1e-5, 100)))
 
 
 def _ode() -> dict[str, Engine]:
@@ -78,14 +84,21 @@ LADDERS: Mapping[str, Callable[[], Mapping[str, Engine]]] = {
 }
 """The settings of each engine by name, the finest last."""
 
+FINER: Mapping[str, Callable[[], Mapping[str, Engine]]] = {"pymunk": _finer}
+"""Those for stops that a robot is carried past."""
 
-def converge(name: str, cells: Sequence[Cell], starts: int, folder: Path) -> None:
-    """Make the first runs of cells at all settings of an engine, and keep them."""
-    path = folder / _FILE
+USUAL, JAM = "convergence.json", "jam.json"
+"""Files in the folder of the results."""
+
+
+def converge(
+    ladder: Mapping[str, Engine], name: str, cells: Sequence[Cell], starts: int, path: Path
+) -> None:
+    """Make the first runs of cells at all settings of an engine, and keep them in a file."""
     found: dict[str, Any] = {}
     if path.exists():
         found = json.loads(path.read_text(encoding="utf-8"))
-    for setting, engine in LADDERS[name]().items():
+    for setting, engine in ladder.items():
         for cell in cells:
             runs = found.setdefault(name, {}).setdefault(setting, {}).setdefault(cell.label, [])
             for scenario in cell.scenarios(starts)[len(runs) :]:
@@ -94,9 +107,8 @@ def converge(name: str, cells: Sequence[Cell], starts: int, folder: Path) -> Non
             path.write_text(json.dumps(found) + "\n", encoding="utf-8")
 
 
-def table(folder: Path) -> str:
+def table(path: Path) -> str:
     """Return rates, poses against crawler2d's and costs by engine and setting."""
-    path = folder / _FILE
     if not path.exists():
         return "Not tried."
     predicted = read()
