@@ -25,6 +25,8 @@ def measure(folder: Path) -> None:
 
     A run's time contains building its world, and in ODE starting the process.
     """
+    path = folder / _FILE
+    path.parent.mkdir(parents=True, exist_ok=True)
     found: dict[str, dict[str, float]] = {}
     for model in _MODELS:
         cell = Cell(
@@ -54,8 +56,7 @@ def measure(folder: Path) -> None:
             if times:
                 found.setdefault(name, {})[model] = min(times)
                 tell(f"{name}, {model}: {min(times):g} s a simulated second")
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / _FILE).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+                path.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def table(folder: Path) -> str:
@@ -65,6 +66,7 @@ def table(folder: Path) -> str:
         return "Not measured."
     found = json.loads(path.read_text(encoding="utf-8"))
     rows = [
-        [name, *(f"{1e3 * costs[model]:.3g}" for model in _MODELS)] for name, costs in found.items()
+        [name, *(f"{1e3 * costs[model]:.3g}" if model in costs else "" for model in _MODELS)]
+        for name, costs in found.items()
     ]
     return markdown_table(["ms a simulated second", *_MODELS], rows)
