@@ -68,7 +68,7 @@ def main() -> None:
         case "refine":
             refine(read(), given.output or RESULTS, given.most)
         case "speeds":
-            speed_up(_jam(), given.engines, given.starts, given.output or RESULTS)
+            speed_up(_jams()[0], given.engines, given.starts, given.output or RESULTS)
         case "costs":
             costs.measure(given.output or RESULTS)
         case _:
@@ -99,7 +99,7 @@ def _run(given: argparse.Namespace) -> None:
 
 def _converge(given: argparse.Namespace) -> None:
     folder = given.output or RESULTS
-    ladders, cells, file = (FINER, [_jam()], JAM) if given.jam else (LADDERS, _told(), USUAL)
+    ladders, cells, file = (FINER, _jams(), JAM) if given.jam else (LADDERS, _told(), USUAL)
     converge(ladders[given.engine](), given.engine, cells, given.starts, folder / file)
 
 
@@ -117,13 +117,12 @@ def _told() -> list[Cell]:
     return found
 
 
-def _jam() -> Cell:
-    """Return a cell whose runs seize, in which strong motors drive many small wheels."""
-    return next(
-        cell
-        for cell in read()
-        if (cell.group, cell.model, cell.ground) == ("paper", "24 all round", "step")
-    )
+def _jams() -> list[Cell]:
+    """Return cells of many small wheels: one whose runs seize, one whose first run clears."""
+    wheels = [cell for cell in read() if cell.model == "24 all round" and cell.ground == "step"]
+    strong = next(cell for cell in wheels if cell.group == "paper")
+    weak = next(cell for cell in wheels if cell.drive == "60 N m, servos")
+    return [strong, weak]
 
 
 def _tables(folder: Path) -> None:

@@ -34,7 +34,8 @@ def _pymunk() -> dict[str, Engine]:
 
 
 def _finer() -> dict[str, Engine]:
-    return _chipmunk(((5e-4, 60), (1e-4, 100), (5e-5, 100), (2e-5, 100), (1e-5, 100)))
+    steps = (5e-4, 60), (1e-4, 100), (5e-5, 100), (2e-5, 100), (1e-5, 100), (1e-5, 300)
+    return _chipmunk(steps)
 
 
 def _ode() -> dict[str, Engine]:
