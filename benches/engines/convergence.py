@@ -115,11 +115,11 @@ def table(path: Path) -> str:
     predicted = read()
     rows: list[list[str]] = []
     for name, settings in json.loads(path.read_text(encoding="utf-8")).items():
-        for setting, cells in settings.items():
-            if not rows:
+        for number, (setting, cells) in enumerate(settings.items()):
+            if number == 0:
                 own = [predicted[label][: len(runs)] for label, runs in cells.items()]
                 rates = [f"{cleared(runs)}/{len(runs)}" for runs in own]
-                rows.append(["crawler2d", "predicted", ", ".join(rates), "", ""])
+                rows.append(["crawler2d", f"the runs of {name}", ", ".join(rates), "", ""])
             rates = [f"{cleared(runs)}/{len(runs)}" for runs in cells.values()]
             away = [each for label, runs in cells.items() for each in _away(predicted[label], runs)]
             cost = np.median([run["cost"] for runs in cells.values() for run in runs])
