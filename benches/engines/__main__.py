@@ -42,7 +42,7 @@ def main() -> None:
     runs.add_argument("--only", default="", metavar="TEXT", help="cells with this in their label")
     finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
     finer.add_argument("engine", choices=LADDERS)
-    finer.add_argument("--jam", action="store_true", help="of Chipmunk, one stop, with finer steps")
+    finer.add_argument("--jam", action="store_true", help="Chipmunk's smallest steps")
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
     again = verbs.add_parser("refine", help="make runs that differ again, finer in both")
     again.add_argument("--most", type=int, default=3, help="runs of a cell")
@@ -100,6 +100,8 @@ def _run(given: argparse.Namespace) -> None:
 def _converge(given: argparse.Namespace) -> None:
     folder = given.output or RESULTS
     ladders, cells, file = (FINER, _jams(), JAM) if given.jam else (LADDERS, _told(), USUAL)
+    if given.engine not in ladders:
+        sys.exit(f"--jam: must be with {', '.join(ladders)}")
     converge(ladders[given.engine](), given.engine, cells, given.starts, folder / file)
 
 

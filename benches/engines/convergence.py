@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +40,6 @@ def _finer() -> dict[str, Engine]:
 
 
 def _ode() -> dict[str, Engine]:
-    from dataclasses import replace  # noqa: PLC0415
-
     from benches.engines.engine_ode import FINE, GAZEBO, Ode  # noqa: PLC0415 - asks for ODE
 
     fine = {
