@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-models bench-peers bench-scaling format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -71,6 +71,11 @@ bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, abo
 
 bench-scaling: $(VENV)/.built ## cost against wheels, ground, threads and accuracy, some minutes
 	$(BIN)/python -m benches.scaling $(ARGS)
+
+# ODE is not in the package index in a form that builds: it is used where an interpreter has it (Debian: python3-pyode).
+compare-engines: $(VENV)/.built $(VENV)/.peers $(VENV)/.engines ## the same runs in other engines, hours; Ctrl-C loses little; ARGS=--quick is a look in ten minutes
+	$(BIN)/python -m benches.engines run $(ARGS)
+	$(BIN)/python -m benches.engines table $(ARGS)
 
 format: $(VENV)/.dependencies ## format all code
 	cargo fmt --all

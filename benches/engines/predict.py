@@ -1,0 +1,68 @@
+"""What crawler2d says will happen, written down before the engines run, and its hash."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import crawler2d
+from benches.engines.cells import Cell
+from benches.engines.own import simulated
+from benches.engines.telling import tell
+
+__all__ = ["PREDICTIONS", "check", "hash_of", "predict", "read"]
+
+PREDICTIONS = Path(__file__).with_name("predictions.json")
+
+
+def predict(cells: Sequence[Cell], path: Path = PREDICTIONS) -> None:
+    """Write a line for each cell: its runs, in the order of their draws."""
+    lines = []
+    for number, cell in enumerate(cells, 1):
+        runs = [simulated(scenario) for scenario in cell.scenarios()]
+        for run in runs:
+            del run["cost"]  # would make another file each time
+        lines.append(f"{json.dumps(cell.label)}: {json.dumps(runs)}")
+        tell(f"{number} of {len(cells)}: {cell.label}")
+    version = json.dumps(crawler2d.__version__)
+    body = ",\n".join(lines)
+    path.write_text(f'{{"version": {version}, "cells": {{\n{body}\n}}}}\n', encoding="utf-8")
+
+
+def read(path: Path = PREDICTIONS) -> dict[str, list[dict[str, Any]]]:
+    """Read the predicted runs by cell."""
+    found: dict[str, list[dict[str, Any]]] = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return found
+
+
+def hash_of(path: Path = PREDICTIONS) -> str:
+    """Return the SHA-256 of the predictions.
+
+    Raises
+    ------
+    FileNotFoundError
+        If nothing was predicted.
+    """
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def check(cells: Sequence[Cell], results: dict[str, Any], path: Path = PREDICTIONS) -> str:
+    """Return the hash of the predictions, if runs may be added to results.
+
+    Raises
+    ------
+    ValueError
+        If there are none, a cell has none, or the results were made for others.
+    """
+    if not path.exists():
+        raise ValueError(f"{path.name} is missing: predict before an engine runs")
+    now = hash_of(path)
+    if results and results["predictions"] != now:
+        raise ValueError(f"the results are for predictions {results['predictions'][:12]}")
+    missing = {cell.label for cell in cells} - read(path).keys()
+    if missing:
+        raise ValueError(f"not predicted: {min(missing)}")
+    return now

@@ -1,0 +1,241 @@
+"""benches/engines: cells are well formed, all engines get one robot, nothing runs unpredicted."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benches.engines import running
+from benches.engines.agreement import apart, pairs, rate, share
+from benches.engines.cells import GROUNDS, STARTS, Cell, read, write
+from benches.engines.driving import driven, scene_of
+from benches.engines.engine import Engine
+from benches.engines.engine_ode import GAZEBO, Ode, interpreter
+from benches.engines.engines import ENGINES, engine_of, holds
+from benches.engines.ground import blocks_of, goal_of
+from benches.engines.predict import PREDICTIONS, check, hash_of
+from benches.engines.predict import read as predictions
+from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
+from benches.engines.solid import solid_of
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.terrain import (
+    Barrier,
+    DiagonalBarrier,
+    Flat,
+    Lanes,
+    RandomStepfield,
+    Step,
+    Terrain,
+)
+
+CELL = Cell(
+    group="plane",
+    robot="engineer",
+    model="line of 5",
+    drive="60 N m, servos",
+    ground="step",
+    height=0.05,
+    friction=0.9,
+)
+
+
+def engine(name: str) -> Engine:
+    try:
+        return engine_of(name)
+    except ImportError as error:
+        pytest.skip(str(error))
+
+
+def test_there_are_cells_enough_and_half_of_those_in_the_plane_are_undecided() -> None:
+    cells = read()
+    assert len({cell.label for cell in cells}) == len(cells) >= 120
+    assert {cell.robot for cell in cells} == set(ROBOTS)
+    assert {cell.model for cell in cells} == set(MODELS)
+    assert {cell.drive for cell in cells} == set(DRIVES)
+    assert {cell.ground for cell in cells} == set(GROUNDS)
+    predicted = predictions()
+    plane = [predicted[cell.label] for cell in cells if cell.group == "plane"]
+    rates = np.array([np.mean([run["end"] == "cleared" for run in runs]) for runs in plane])
+    assert np.mean((rates >= 0.1) & (rates <= 0.9)) >= 0.5
+
+
+def test_the_predictions_are_for_these_cells_and_the_results_for_these_predictions() -> None:
+    predicted = predictions()
+    assert list(predicted) == [cell.label for cell in read()]
+    assert {len(runs) for runs in predicted.values()} == {STARTS}
+    for name in ENGINES:
+        path = running.RESULTS / f"{name}.json"
+        if path.exists():
+            results = json.loads(path.read_text(encoding="utf-8"))
+            assert results["predictions"] == hash_of(), name
+            assert set(results["runs"]) <= set(predicted), name
+
+
+def test_nothing_runs_without_its_prediction(tmp_path: Path) -> None:
+    cells = read()[:1]
+    with pytest.raises(ValueError, match="predict before"):
+        check(cells, {}, tmp_path / "predictions.json")
+    with pytest.raises(ValueError, match="not predicted"):
+        check([replace(CELL, height=0.777)], {})
+    with pytest.raises(ValueError, match="for predictions 0000"):
+        check(cells, {"predictions": "0" * 64})
+    assert check(cells, {"predictions": hash_of()}) == hash_of(PREDICTIONS)
+
+
+def test_cells_are_read_as_they_were_written(tmp_path: Path) -> None:
+    path = tmp_path / "cells.json"
+    write([CELL, replace(CELL, drive="6 N m, track")], path)
+    assert read(path)[0] == CELL
+    assert [cell.is_coupled for cell in read(path)] == [False, True]
+
+
+def test_the_runs_of_a_cell_are_the_same_however_many_are_made() -> None:
+    few, many = CELL.scenarios(2), CELL.scenarios(3)
+    assert few == many[:2]
+    assert len({scenario.start.approach for scenario in many}) == 3
+
+
+def test_an_engine_without_gears_has_no_cell_where_one_motor_reaches_its_limit() -> None:
+    coupled, oblique = replace(CELL, drive="6 N m, track"), replace(CELL, ground="oblique edge")
+    assert [name for name in ENGINES if holds(name, coupled)] == ["pymunk", "rapier"]
+    assert [name for name in ENGINES if not holds(name, oblique)] == ["pymunk", "rapier"]
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_robot_in_space_has_the_masses_of_the_robot_and_stands_on_its_wheels(
+    model: str,
+) -> None:
+    robot = robot_of("engineer", model, "60 N m, servos")
+    solid = solid_of(robot)
+    links = solid.plain()
+    assert solid.mass == pytest.approx(robot.mass, rel=1e-12)
+    center = sum(link["mass"] * np.array(link["center"]) for link in links) / robot.mass
+    assert center == pytest.approx(
+        [robot.center_of_mass[0], 0.0, robot.center_of_mass[1]], abs=1e-9
+    )
+    wheels = robot.wheels()
+    found = [(wheel.axle[0], wheel.axle[2], wheel.radius) for wheel in solid.wheels]
+    expected = np.column_stack([wheels["x"], wheels["y"], wheels["radius"]])
+    assert np.array(found) == pytest.approx(expected, abs=1e-9)
+    # A gear wheel between two grousers stands lower than its radius.
+    low = -min(y - radius for _, y, radius in found)
+    assert 0.9 * low < -solid.lowest(0.0) <= low + 1e-12
+
+
+def test_a_motor_of_a_track_has_the_torque_of_all_its_wheels() -> None:
+    servos, track, strong = (
+        solid_of(robot_of("engineer", "line of 5", drive)).wheels[0].torque
+        for drive in ("60 N m, servos", "60 N m, track", "100 N m a wheel")
+    )
+    # The sprocket's torque acts at the belt, 52 mm from the axle, a wheel's at 64 mm.
+    assert servos == pytest.approx(60.0 / 5 * 64 / 52)
+    assert track == pytest.approx(5 * servos)
+    assert strong == pytest.approx(100.0)
+
+
+def on(ground: Terrain) -> Scenario:
+    return Scenario(robot_of("engineer", "line of 5", "60 N m, servos"), ground)
+
+
+def test_an_oblique_edge_meets_the_left_track_first_at_0() -> None:
+    gauge, yaw, thick = 0.2, 0.35, 0.01
+    scenario = on(DiagonalBarrier(yaw, height=0.05, thickness=thick))
+    level, edge = blocks_of(scenario)
+    assert level.center[2] + 0.5 * level.size[2] == 0.0
+    assert edge.center[2] + 0.5 * edge.size[2] == pytest.approx(0.05)
+    # A point of the front face, in the frame of the block.
+    away = np.array([0.0, 0.5 * gauge]) - edge.center[:2]
+    assert away @ [np.cos(yaw), np.sin(yaw)] == pytest.approx(-0.5 * thick)
+    assert goal_of(scenario) == pytest.approx(gauge * np.tan(yaw) + thick / np.cos(yaw))
+
+
+def test_a_one_sided_edge_is_under_the_left_track_alone() -> None:
+    scenario = on(Lanes(Barrier(0.05, 0.01), Flat()))
+    edge = blocks_of(scenario)[1]
+    assert edge.center[1] - 0.5 * edge.size[1] == 0.0
+    assert goal_of(scenario) == 0.01
+    assert goal_of(on(Step(0.05))) == 0.0
+
+
+def test_a_step_field_has_a_row_of_posts_for_each_track() -> None:
+    scenario = on(RandomStepfield(seed=3, posts=6, rise=0.03))
+    blocks = blocks_of(scenario)
+    tops = [block.center[2] + 0.5 * block.size[2] for block in blocks]
+    assert {round(top / 0.03, 9) for top in tops} <= {0.0, 1.0, 2.0, 3.0, 4.0}
+    for side in (-1.0, 1.0):
+        mine = [block for block in blocks if block.center[1] * side > 0.0]
+        assert {abs(block.center[1]) - 0.5 * block.size[1] for block in mine} == {0.0}
+        ends = [block.center[0] + 0.5 * block.size[0] for block in mine]
+        starts = [block.center[0] - 0.5 * block.size[0] for block in mine]
+        assert starts[1:] == pytest.approx(ends[:-1])
+    left, right = (
+        [top for top, block in zip(tops, blocks, strict=True) if block.center[1] * side > 0.0]
+        for side in (1.0, -1.0)
+    )
+    assert left != right
+    assert goal_of(scenario) == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("name", [name for name in ENGINES if name != "rapier"])
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_an_engine_drives_robots_forward_at_their_speed(name: str) -> None:
+    made = engine(name)
+    for model in ("line of 3", "5 gears"):
+        cell = replace(CELL, model=model)
+        scenario = cell.scenarios(1)[0].replace(
+            {"terrain": Flat(friction=0.9), "start.track_phase": 0.013, "duration": 0.5}
+        )
+        found = driven(made, scenario)
+        assert found["end"] == "timed out"
+        # 0.2 m/s, reached at 1 m/s^2: 0.08 m in half a second, less what wheels slip and grousers
+        # that roll on are slower than their circles.
+        assert found["x"] - scene_of(scenario).x == pytest.approx(0.08, abs=0.006), model
+        assert max(found["yaw"], found["roll"], abs(found["angle"])) < 0.03, model
+
+
+@pytest.mark.skipif(interpreter() is None, reason="no interpreter has ODE")
+def test_ode_has_the_geometry_of_the_robot_and_pushes_it_up_no_farther_than_gazebo_does() -> None:
+    scenario = replace(CELL, model="line of 3").scenarios(1)[0]
+    scene = scene_of(scenario)
+    world = Ode(GAZEBO).world(scene)
+    try:
+        start = world.pose()
+        assert start.place == pytest.approx([scene.x, 0.0, scene.z], abs=1e-12)
+        assert start.turn == pytest.approx(np.eye(3), abs=1e-12)
+        world.advance([0.0] * 500)
+        # Wheels sink by what their contacts give way: gravity for a step, less than 0.1 mm.
+        assert world.pose().place == pytest.approx([scene.x, 0.0, scene.z], abs=1e-4)
+    finally:
+        world.close()
+
+
+def test_rates_are_told_with_their_intervals_and_pairs_by_their_draw() -> None:
+    stops, clears = {"end": "stopped"}, {"end": "cleared"}
+    assert rate([clears] * 8) == "8/8 (68 to 100)"  # Wilson, 95 %
+    assert rate([]) == ""
+    assert rate([{"end": "refused: robot.track"}]) == "refused"
+    found = list(pairs([CELL], {CELL.label: [stops, clears, clears]}, {CELL.label: [stops, stops]}))
+    assert len(found) == 2
+    assert share(found) == "1 of 2"
+    assert apart([stops] * 8, [clears] * 8)
+    assert not apart([stops] * 2, [clears] * 1)
+
+
+def test_a_run_that_is_there_is_not_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = []
+
+    def drive(_: object) -> dict[str, str]:
+        made.append(1)
+        return {"end": "stopped"}
+
+    monkeypatch.setattr(running, "_driver", lambda _: (drive, "an engine"))
+    cells = [cell for cell in read() if holds("ode", cell)][:3]
+    running.run("ode", cells, 1, tmp_path)
+    running.run("ode", cells, 2, tmp_path)
+    assert len(made) == 6
+    results = json.loads((tmp_path / "ode.json").read_text(encoding="utf-8"))
+    assert {len(runs) for runs in results["runs"].values()} == {2}
