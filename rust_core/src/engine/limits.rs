@@ -78,7 +78,7 @@ fn check_settings(scenario: &Scenario) -> Result<(), ScenarioError> {
         ("prediction_distance", solver.prediction_distance),
     ];
     for ((name, value), default) in own.iter().zip(OF_OUR_OWN) {
-        if *value != default {
+        if value.to_bits() != default.to_bits() {
             let rule = format!("its default, {default}, for it has a value of its own");
             return refused(name, value, &rule);
         }

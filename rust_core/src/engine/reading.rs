@@ -81,7 +81,7 @@ impl EngineWorld {
         let joint = self.robot.push.and_then(|push| joints.get(push));
         let substeps = self.world.integration_parameters.num_solver_iterations as f64;
         joint.map_or(0.0, |joint| {
-            -joint.data.motors[JointAxis::LinX as usize].impulse * substeps / h
+            joint.data.motors[JointAxis::LinX as usize].impulse * substeps / h
         })
     }
 

@@ -11,7 +11,7 @@ const TURN: f64 = 0.5;
 
 /// The convex pieces of a part, in its own frame; together they are exactly the part.
 pub(super) fn pieces(part: &Part) -> Vec<(Pose, SharedShape)> {
-    let own = match &part.shape {
+    match &part.shape {
         Shape::Disc { .. } | Shape::Gear { .. } => solids_of(part)
             .into_iter()
             .map(|solid| (Pose::IDENTITY, solid))
@@ -19,8 +19,7 @@ pub(super) fn pieces(part: &Part) -> Vec<(Pose, SharedShape)> {
         Shape::Hull { discs, .. } => hull(discs),
         Shape::Polygon { corners } => polygon(corners.clone()),
         Shape::Grouser(grouser) => polygon(grouser.corners().to_vec()),
-    };
-    own
+    }
 }
 
 /// The hull of discs: the discs, and the polygon of the points where its straight runs touch them.

@@ -39,6 +39,7 @@ pub enum Engine {
 
 impl Engine {
     /// Texts leave it out, as those have it that are older than the choice.
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
     fn is_own(&self) -> bool {
         *self == Self::Own
     }

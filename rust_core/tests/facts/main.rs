@@ -27,6 +27,7 @@ mod ghosts;
 mod grouser_belt;
 mod judged;
 mod lanes;
+mod rapier;
 mod repeat;
 mod robustness;
 mod segmental;
