@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Passed",
     "Simulation",
+    "balance",
     "branch",
     "build_info",
     "canonical",

@@ -182,8 +182,9 @@ def test_a_progress_callback_may_simulate(batch: list[Scenario]) -> None:
 
 
 def test_a_progress_bar_ends_full(
-    batch: list[Scenario], capsys: pytest.CaptureFixture[str]
+    batch: list[Scenario], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     c2d.simulate_many(batch, progress=True, record="summary")
     assert f"{len(batch)}/{len(batch)}" in capsys.readouterr().err
 
@@ -192,8 +193,19 @@ def test_without_tqdm_progress_is_a_line(
     batch: list[Scenario], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     c2d.simulate_many(batch, progress=True, record="summary")
-    assert capsys.readouterr().err.startswith(f"{len(batch)} of {len(batch)} runs")
+    last = capsys.readouterr().err.split("\r")[-1]
+    assert last.startswith(f"{len(batch)} of {len(batch)} runs")
+
+
+def test_progress_that_is_no_terminal_is_lines_without_a_bar(
+    batch: list[Scenario], capsys: pytest.CaptureFixture[str]
+) -> None:
+    c2d.simulate_many(batch, progress=True, record="summary")
+    said = capsys.readouterr().err
+    assert said.splitlines()[-1].startswith(f"{len(batch)} of {len(batch)} runs")
+    assert "\r" not in said and len(said.splitlines()) <= 10
 
 
 def test_fields_complete_a_robot_and_replace_those_of_a_scenario(scenario: Scenario) -> None:
