@@ -239,6 +239,6 @@ def test_an_element_is_drawn() -> None:
 
 def test_progress_is_shown_unless_refused(capsys: pytest.CaptureFixture[str]) -> None:
     sweep(BRIEF, {"terrain.height": [0.02, 0.03]}, repeats=2)
-    assert "4/4" in capsys.readouterr().err
+    assert "4 of 4 runs" in capsys.readouterr().err
     quiet(BRIEF, {"terrain.height": [0.02, 0.03]})
     assert capsys.readouterr().err == ""

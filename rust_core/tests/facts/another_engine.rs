@@ -47,15 +47,15 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
 }
 
 /// How many of some starts, spread over a grouser pitch, end on top: ours, and the engine's.
-fn climbs(track: &Track, torque: f64, height: f64) -> (u32, u32) {
+fn climbs(track: &Track, torque: f64, height: f64, starts: u32) -> (u32, u32) {
     let (mut ours, mut theirs) = (0, 0);
-    for i in 0..STARTS {
+    for i in 0..starts {
         let mut scenario = engineer();
         scenario.robot.drivetrain.torque_sharing = TorqueSharing::Wheel;
         scenario.robot.drivetrain.max_torque = torque;
         scenario.robot.track = track.clone();
         scenario.terrain = step(height, 0.9);
-        scenario.start.approach = 0.05 + 0.048 * f64::from(i) / f64::from(STARTS);
+        scenario.start.approach = 0.05 + 0.048 * f64::from(i) / f64::from(starts);
         scenario.duration = 6.0;
         let on_top = |run: &Run| {
             let [x, y, _] = pose(run);
@@ -70,12 +70,15 @@ fn climbs(track: &Track, torque: f64, height: f64) -> (u32, u32) {
 const STARTS: u32 = 24;
 /// Of as many at equal rates near 0.5, two counts are farther apart once in seventy times.
 const MOST_APART: u32 = 8;
+/// The same for 24 wheels, which cost rapier a second a run; so far apart once in two hundred times.
+const FEW_STARTS: u32 = 12;
+const MOST_OF_FEW: u32 = 6;
 
 /// Chaotic from grouser to grouser, so that only rates mean anything.
 #[test]
 fn the_engines_own_dynamics_agree_on_who_climbs_with_gear_wheels() {
     for (count, height) in [(3, 0.06), (3, 0.12), (5, 0.09), (5, 0.12)] {
-        let (ours, theirs) = climbs(&line_of(count, paper_gear()), 20.0, height);
+        let (ours, theirs) = climbs(&line_of(count, paper_gear()), 20.0, height, STARTS);
         println!(
             "{count} gear wheels, {height} m: {ours} of {STARTS} climb, {theirs} of the engine's"
         );
@@ -92,10 +95,10 @@ fn the_engines_own_dynamics_agree_on_small_wheels_round_the_outline() {
         ("gear", paper_gear(), 0.03),
         ("gear", paper_gear(), 0.06),
     ] {
-        let (ours, theirs) = climbs(&circumferential(24, wheel), 100.0, height);
+        let (ours, theirs) = climbs(&circumferential(24, wheel), 100.0, height, FEW_STARTS);
         println!(
-            "24 {name} wheels, {height} m: {ours} of {STARTS} climb, {theirs} of the engine's"
+            "24 {name} wheels, {height} m: {ours} of {FEW_STARTS} climb, {theirs} of the engine's"
         );
-        assert!(ours.abs_diff(theirs) <= MOST_APART);
+        assert!(ours.abs_diff(theirs) <= MOST_OF_FEW);
     }
 }
