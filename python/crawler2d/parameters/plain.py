@@ -137,7 +137,7 @@ def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
     cls = type(parameters)
     plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
     for name, hint in field_hints(cls).items():
-        if name in cls.unsaid and getattr(parameters, name) == _default(cls, name):
+        if name in cls.unsaid and _is_default(parameters, name):
             continue
         numbers = parameters.in_place_of.get(name)
         for each in numbers or (name,):
@@ -146,8 +146,10 @@ def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
     return plain
 
 
-def _default(cls: type[Parameters], name: str) -> Any:
-    return next(f.default for f in dataclasses.fields(cls) if f.name == name)  # type: ignore[arg-type]
+def _is_default(parameters: Parameters, name: str) -> bool:
+    default = next(f.default for f in dataclasses.fields(parameters) if f.name == name)  # type: ignore[arg-type]
+    value = getattr(parameters, name)
+    return type(value) is type(default) and value == default  # others compare as they like
 
 
 def _plain_field(value: Any, hint: Any, path: str) -> Any:
