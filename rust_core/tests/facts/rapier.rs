@@ -215,7 +215,7 @@ fn a_simulation_in_rapier_has_no_snapshot() {
     assert!(error.to_string().starts_with("solver.engine"), "{error}");
 }
 
-/// Two lanes: each side has its own wheels, and the robot stops on both.
+/// Two lanes: each side has its own wheels.
 #[test]
 fn a_robot_on_two_lanes_drives_in_rapier() {
     let mut scenario = on_wheels();
