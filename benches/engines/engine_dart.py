@@ -13,7 +13,7 @@ import dartpy
 import numpy as np
 
 from benches.engines.engine import Scene
-from benches.engines.ground import TurnedBox
+from benches.models.engine_dart import fixed_box, gauss_seidel
 from crawler2d.models.poses import Pose
 
 __all__ = ["FINE", "GZ", "Dart", "Setting"]
@@ -38,7 +38,6 @@ class Setting:
 GZ = Setting(time_step=1e-3, sweeps=0)
 FINE = Setting(time_step=1e-3, sweeps=300)
 
-_TOLERANCE = 1e-7
 _ABOVE = 10.0  # [-] friction of the robot
 
 
@@ -73,13 +72,9 @@ class DartWorld:
         solver = self._world.getConstraintSolver()
         solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
         if setting.sweeps:
-            boxed = dartpy.constraint.NsgsFrictionSolver()
-            options = boxed.getOptions()
-            options.maxSweeps, options.tolerance = setting.sweeps, _TOLERANCE
-            boxed.setOptions(options)
-            solver.setBoxedLcpSolver(boxed)
+            solver.setBoxedLcpSolver(gauss_seidel(setting.sweeps))
         for number, block in enumerate(scene.ground):
-            self._world.addSkeleton(_block(block, number, scene.friction))
+            self._world.addSkeleton(fixed_box(block, number, scene.friction, block.yaw))
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "robot.urdf"
             path.write_text(scene.robot.urdf(), encoding="utf-8")
@@ -121,19 +116,3 @@ class DartWorld:
 
     def close(self) -> None:
         """Free what the world holds."""
-
-
-def _block(block: TurnedBox, number: int, friction: float) -> Any:
-    skeleton = dartpy.dynamics.Skeleton(f"ground {number}")
-    joint, node = skeleton.createWeldJointAndBodyNodePair()
-    node.setName(f"ground {number}")
-    shape = node.createShapeNode(dartpy.dynamics.BoxShape(list(block.size)))
-    shape.createCollisionAspect()
-    shape.createDynamicsAspect()
-    shape.getDynamicsAspect().setFrictionCoeff(friction)
-    place = dartpy.math.Isometry3()
-    place.set_translation(list(block.center))
-    cos, sin = np.cos(block.yaw), np.sin(block.yaw)
-    place.set_rotation([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    joint.setTransformFromParentBodyNode(place)
-    return skeleton

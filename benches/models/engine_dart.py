@@ -12,7 +12,7 @@ from benches.models.engine import Scene, Touch, check
 from benches.models.ground import Box
 from crawler2d.models.poses import Pose
 
-__all__ = ["Dart"]
+__all__ = ["Dart", "fixed_box", "gauss_seidel"]
 
 _SWEEPS, _TOLERANCE = 300, 1e-7
 
@@ -57,9 +57,9 @@ class DartWorld:
         solver = self._world.getConstraintSolver()
         solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
         if is_coulomb:
-            solver.setBoxedLcpSolver(_gauss_seidel())
+            solver.setBoxedLcpSolver(gauss_seidel(_SWEEPS))
         for number, box in enumerate(scene.ground):
-            self._world.addSkeleton(_ground(box, number, scene.friction))
+            self._world.addSkeleton(fixed_box(box, number, scene.friction))
         uri = f"file://{scene.model.path}"
         if uri.endswith(".sdf"):
             skeleton = dartpy.utils.SdfParser.readSkeleton(uri)
@@ -143,15 +143,17 @@ class DartWorld:
         """Free what the world holds."""
 
 
-def _gauss_seidel() -> Any:
+def gauss_seidel(sweeps: int) -> Any:
+    """Return the solver that keeps Coulomb's law, with this many sweeps at most."""
     solver = dartpy.constraint.NsgsFrictionSolver()
     options = solver.getOptions()
-    options.maxSweeps, options.tolerance = _SWEEPS, _TOLERANCE
+    options.maxSweeps, options.tolerance = sweeps, _TOLERANCE
     solver.setOptions(options)
     return solver
 
 
-def _ground(box: Box, number: int, friction: float) -> Any:
+def fixed_box(box: Box, number: int, friction: float, yaw: float = 0.0) -> Any:
+    """Return a piece of ground, turned by `yaw` [rad] seen from above."""
     skeleton = dartpy.dynamics.Skeleton(f"ground {number}")
     joint, node = skeleton.createWeldJointAndBodyNodePair()
     node.setName(f"ground {number}")
@@ -161,5 +163,7 @@ def _ground(box: Box, number: int, friction: float) -> Any:
     shape.getDynamicsAspect().setFrictionCoeff(friction)
     place = dartpy.math.Isometry3()
     place.set_translation(list(box.center))
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    place.set_rotation([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     joint.setTransformFromParentBodyNode(place)
     return skeleton

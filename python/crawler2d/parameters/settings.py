@@ -79,8 +79,8 @@ class Solver(Parameters):
     engine : {"own", "rapier"}
         What moves the robot: "own" is crawler2d's own dynamics; "rapier" builds the same robot of
         bodies, joints and motors of the game engine rapier, and is there for comparison (see
-        docs/engines.md). It holds lines, circumferential and hybrid wheels and force tracks without
-        arms, on motors of their own or, if their radii are equal, on one; nothing else, no
+        docs/decisions/0016). It holds lines, circumferential and hybrid wheels and force tracks
+        without arms, on motors of their own or, if their radii are equal, on one; nothing else, no
         snapshots, and no accuracy: its steps are 0.25 ms unless given.
     contact : {"own", "reference"}
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's

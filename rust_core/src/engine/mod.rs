@@ -13,7 +13,6 @@ mod reading;
 mod surface;
 
 use rapier2d_f64::prelude::{ImpulseJointHandle, JointAxis, PhysicsWorld, RigidBodyHandle};
-use serde::{Deserialize, Serialize};
 
 use crate::dynamics::{LoadedContact, State};
 use crate::geometry::Vector;
@@ -29,7 +28,7 @@ pub(crate) struct EngineWorld {
 }
 
 /// Where the parts of a robot are in the engine's world.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 struct Robot {
     chassis: RigidBodyHandle,
     /// The wheels, drive by drive.
@@ -41,7 +40,7 @@ struct Robot {
 }
 
 /// A wheel in the engine.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 struct Wheel {
     body: RigidBodyHandle,
     /// Index of the part, and its drive.

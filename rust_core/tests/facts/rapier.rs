@@ -8,6 +8,7 @@ use crawler2d_core::{
 
 use crate::common::*;
 use crate::energy::{follow, scale};
+use crate::slopes;
 
 /// On a line of three, without a belly: what rapier holds.
 fn on_wheels() -> Scenario {
@@ -18,12 +19,9 @@ fn on_wheels() -> Scenario {
 
 /// With its brakes on.
 fn braked(angle: f64, friction: f64) -> Scenario {
-    let mut scenario = on_wheels();
-    scenario.robot.drivetrain.max_torque = 100.0;
-    scenario.drive.speed = 0.0;
-    scenario.start.angle = angle;
-    scenario.terrain = slope(angle, friction);
-    scenario
+    let mut scenario = slopes::braked(angle, friction);
+    scenario.robot.track = line(3);
+    in_rapier(&scenario)
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crawler2d_core::{Outcome, Scenario};
 use crate::common::*;
 
 /// A robot with its brakes on.
-fn braked(angle: f64, friction: f64) -> Scenario {
+pub(crate) fn braked(angle: f64, friction: f64) -> Scenario {
     let mut scenario = engineer();
     scenario.robot.belly = None;
     scenario.robot.drivetrain.max_torque = 100.0;
