@@ -76,7 +76,7 @@ def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Ite
 @contextlib.contextmanager
 def _bar(total: int, begun: int) -> Iterator[Progress]:
     # Notebooks draw their own bar and are no terminal; a log would get one copy of it a second.
-    if not sys.stderr.isatty() and "ipykernel" not in sys.modules:
+    if not sys.stderr.isatty() and not _in_a_notebook():
         yield _line()
         return
     try:
@@ -91,6 +91,13 @@ def _bar(total: int, begun: int) -> Iterator[Progress]:
             bar.update(done - bar.n)
 
         yield advance
+
+
+def _in_a_notebook() -> bool:
+    """Whether this code runs in a kernel, not only beside imported parts of one."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return hasattr(shell, "kernel")
 
 
 def _line() -> Progress:
