@@ -217,7 +217,7 @@ def test_a_branch_is_not_branched_again(seized: c2d.Run) -> None:
     for call in (lambda: branch.branch(at=1.2), branch.trials, branch.what_if, branch.escape_force):
         error = refused(call)
         assert error.path == "run"
-        assert "branch the original run" in error.rule
+        assert "take the original run" in error.rule
 
 
 def test_a_run_without_a_result_is_not_branched() -> None:

@@ -35,7 +35,15 @@ def usual_size(sizes: NDArray[np.float64], typical: float) -> float:
     return max(typical, float(np.percentile(sizes, _USUAL))) if sizes.size else typical
 
 
-def draw_forces(run: Record, sample: int, ax: Axes, most: float | None = None) -> list[Any]:
+def draw_forces(
+    run: Record,
+    sample: int,
+    ax: Axes,
+    most: float | None = None,
+    *,
+    color: str = RED,
+    where: str = "",
+) -> list[Any]:
     """Draw the contact forces on the robot.
 
     Parameters
@@ -49,6 +57,10 @@ def draw_forces(run: Record, sample: int, ax: Axes, most: float | None = None) -
     most : float, optional
         [N] Force of the longest arrow, also of larger ones; None takes the largest, but at least
         the weight.
+    color : str
+        Of the arrows.
+    where : str
+        What the legend adds to tell them from others.
 
     Returns
     -------
@@ -62,8 +74,8 @@ def draw_forces(run: Record, sample: int, ax: Axes, most: float | None = None) -
     if most is None:
         most = _largest(force, robot.mass * run.scenario.gravity)
     length = _FORCE_LENGTH * robot.outline.axle_distance
-    label = "contact force, up to {:.0f} N"
-    return _draw(ax, places, force, (most, length), color=RED, label=label)
+    label = f"contact force{where}, up to {{:.0f}} N"
+    return _draw(ax, places, force, (most, length), color=color, label=label)
 
 
 def draw_slip(run: Record, sample: int, ax: Axes) -> list[Any]:

@@ -70,6 +70,11 @@ class Record:
         return criteria.creep_from <= progress < criteria.creep_to
 
     @property
+    def has_history(self) -> bool:
+        """Whether it was recorded in full."""
+        return bool(self._trace)
+
+    @property
     def time(self) -> NDArray[np.float64]:
         """[s] Time at the end of each sample interval, shape (n,)."""
         return self._recorded("time")

@@ -12,7 +12,7 @@ from crawler2d.results.outcome import Outcome
 if TYPE_CHECKING:
     from crawler2d.results.findings import Findings, Intrusion, Tried
 
-__all__ = ["sentence", "told"]
+__all__ = ["body_name", "sentence", "told"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -189,7 +189,7 @@ def _on_it(d: Findings) -> str:
         sliding[int(body)] += float(force) * bool(slides)
     told = sorted(forces, key=forces.__getitem__, reverse=True)[:2]
     told = [body for body in told if forces[body] >= _LEAST_SHARE * sum(forces.values())]
-    names = [_name(d, body) for body in told]
+    names = [body_name(d, body) for body in told]
     if len(names) == 2 and names[0] == names[1]:
         names[1] = "another"
     slides = [sliding[body] > 0.5 * forces[body] for body in told]
@@ -205,7 +205,8 @@ def _on_it(d: Findings) -> str:
     return said + _HELD.get(str(d.mechanism), "")
 
 
-def _name(d: Findings, body: int) -> str:
+def body_name(d: Findings, body: int) -> str:
+    """Name a body that bears in a stop."""
     kinds = d.contacts["body_kind"][d.contacts["body"] == body]
     kind = BodyKind(kinds[0]) if len(kinds) else BodyKind.WHEEL
     return _NAMES.get(kind, f"wheel {body}")

@@ -19,15 +19,26 @@ if TYPE_CHECKING:
     from crawler2d.parameters.track import Track
     from crawler2d.results.record import Record
 
-__all__ = ["branch_scenario", "branch_time", "pushed", "simulate_branch"]
+__all__ = [
+    "branch_scenario",
+    "branch_time",
+    "pushed",
+    "refuse_without_result",
+    "simulate_branch",
+]
+
+
+def refuse_without_result(run: Record) -> None:
+    """Refuse a run that ended with an error, and a branch, whose scenario is not all of it."""
+    if run.trunk is not None:
+        raise ScenarioError("run", run, "must not be a branch itself: take the original run")
+    if run.error is not None:
+        raise ScenarioError("run", run, f"must have a result, but ended with: {run.error}")
 
 
 def branch_time(run: Record, at: float | str) -> float:
     """[s] The instant given by `at`: a time of the run, or the stop it ended in."""
-    if run.trunk is not None:
-        raise ScenarioError("run", run, "must not be a branch itself: branch the original run")
-    if run.error is not None:
-        raise ScenarioError("run", run, f"must have a result, but ended with: {run.error}")
+    refuse_without_result(run)
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
             raise ScenarioError("at", at, "must be a time: the run did not end in a stop")
@@ -52,7 +63,7 @@ def branch_scenario(
     drive: Drive | None,
     duration: float | None,
 ) -> Scenario:
-    """Change the given fields of a run's scenario."""
+    """Change the given fields of a run's scenario; our own dynamics move every branch."""
     changes = {
         "robot.track": _closed(run.scenario.robot.track) if track == "closed" else track,
         "terrain.friction": friction,
@@ -63,6 +74,8 @@ def branch_scenario(
     given: dict[str, Any] = {path: value for path, value in changes.items() if value is not None}
     if not (isinstance(belly, str) and belly == "built"):
         given["robot.belly"] = belly
+    if run.scenario.solver.engine != "own":
+        given["solver.engine"] = "own"
     return run.scenario.replace(given)
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, overload
 
+from crawler2d import _core
 from crawler2d.results.record import Record
 from crawler2d.runs import branch as branching
-from crawler2d.runs.recording import Recording
+from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from crawler2d.runs.recording import Recording, recording
 from crawler2d.runs.trials import (
     EscapeForce,
     Trial,
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
+    from crawler2d.parameters.scenario import Scenario
     from crawler2d.parameters.settings import Drive
     from crawler2d.parameters.track import Track
     from crawler2d.results.findings import Tried
@@ -152,7 +155,8 @@ class Run(Record):
         speeds; what is not changed goes on as before. Another torque or friction, a push, or a
         belly taken off change nothing else. Of another track or belly, only pose and speeds are
         those of the run: ground that is inside it is let out without a push, the track is dented
-        there, and the dent heals as the robot moves on.
+        there, and the dent heals as the robot moves on. So it is with any branch of a run in
+        rapier: crawler2d's own dynamics move it, at the run's time step.
 
         Parameters
         ----------
@@ -351,6 +355,42 @@ class Run(Record):
         """
         return escape_force_at(self, branching.branch_time(self, "stop"))
 
+    def cross_check(self) -> CrossCheck[Run]:
+        """Simulate the same scenario in the other engine, and compare.
+
+        What crawler2d's own dynamics moved is moved by rapier, and the other way round, at that
+        engine's default accuracy; nothing else differs. Where both stop at different places, or one
+        does not, statics tells which stop is an equilibrium. Runs of gear wheels and of many small
+        wheels are chaotic: of these compare rates, by a `sweep` or `compare` over
+        ``solver.engine``.
+
+        Returns
+        -------
+        CrossCheck
+            Both runs, when their paths part, how far apart they end, the forces at the stops, and
+            the `Balance` of each.
+
+        Raises
+        ------
+        ScenarioError
+            If rapier does not hold the scenario, see `Solver`; the path is that of the field. If
+            the run has no result, or is a branch.
+        SimulationDiverged
+            If the state became non-finite in the other engine.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3))
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.11))
+        >>> check = run.cross_check()
+        >>> check.same_outcome, all(balance.holds for balance in check.balances)
+        (True, True)
+        >>> bool(check.distance < 1e-3)
+        True
+        """
+        return cross_checked(self, _with_history)
+
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled dataset.
 
@@ -535,3 +575,7 @@ class Run(Record):
         from crawler2d.pictures.page import embedded  # noqa: PLC0415 - costs nothing until used
 
         return embedded(self)
+
+
+def _with_history(scenario: Scenario) -> Run:
+    return Run(scenario, _core.simulate(scenario.to_json(), *recording(0.01, "full"), []))

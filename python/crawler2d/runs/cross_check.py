@@ -1,0 +1,231 @@
+"""The same scenario in the other engine, beside a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+import numpy as np
+
+from crawler2d import _core
+from crawler2d.common.table import Table
+from crawler2d.parameters.settings import Solver
+from crawler2d.results.balance import Balance
+from crawler2d.results.record import Record
+from crawler2d.results.sentence import body_name
+from crawler2d.runs.branch import refuse_without_result
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from matplotlib.axes import Axes
+
+    from crawler2d.parameters.scenario import Scenario
+
+__all__ = ["CrossCheck", "cross_checked"]
+
+_PARTED = 1e-3
+"""[m] Distance from which on two paths count as parted."""
+
+_NAMES = {"own": "crawler2d's own dynamics", "rapier": "rapier"}
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CrossCheck(Generic[R]):
+    """A run, the same scenario in the other engine, and where they differ; see `Run.cross_check`.
+
+    ``str(check)`` says it in some sentences. Poses are those in which the runs ended: of a stop,
+    the mean of its diagnosis.
+
+    Attributes
+    ----------
+    run, other : Run
+        The run, and that in the other engine, both with their histories.
+    same_outcome : bool
+        Whether both ended alike. "seized" rests on trials, which crawler2d's own dynamics make in
+        both; see docs/decisions/0016.
+    distance : float
+        [m] From the pose in which `run` ended to that of `other`.
+    turn : float
+        [rad] Chassis angle of `other` less that of `run`.
+    parted_at : float or None
+        [s] The first sample of `run` at which the origins of the chassis frames were more than
+        1 mm apart; None if there was none before one of the runs ended.
+    balances : tuple of Balance or None
+        Whether the stop of `run` and that of `other` are equilibria of rigid bodies with Coulomb
+        friction; None for a run that did not end in a stop.
+    forces : Table
+        Forces of the ground on each body that bears in a stop, see below.
+
+    Notes
+    -----
+    The forces have one row for each body that bears in either stop; where a run did not end in a
+    stop, its columns are nan.
+
+    ==============================  ====  =====================================================
+    column                          unit  meaning
+    ==============================  ====  =====================================================
+    `lane`, `body`, `body_kind`           as in the contacts
+    `force_x`, `force_y`            N     sum over the contacts of the body in the stop of `run`
+    `other_force_x`,                N     the same of `other`
+    `other_force_y`
+    ==============================  ====  =====================================================
+    """
+
+    run: R
+    other: R
+    distance: float
+    turn: float
+    parted_at: float | None
+    balances: tuple[Balance | None, Balance | None]
+    forces: Table
+
+    @property
+    def same_outcome(self) -> bool:
+        """Whether both ended alike."""
+        return self.run.outcome == self.other.outcome
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw both robots where they ended, both paths, and where these parted.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; None makes a figure.
+
+        Returns
+        -------
+        Axes
+            With x and y in metres, to one scale.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; the message names the extra to install.
+        """
+        from crawler2d.pictures.two_engines import plot_both  # noqa: PLC0415 - optional
+
+        names = (_engine(self.run), _engine(self.other))
+        return plot_both((self.run, self.other), names, self.parted_at, ax, str(self))
+
+    def __str__(self) -> str:
+        """Say what differs, and what statics says of the stops."""
+        return ". ".join(_sentences(self)) + "."
+
+
+def _engine(run: Record) -> str:
+    """Name what moved a run."""
+    return _NAMES[run.scenario.solver.engine]
+
+
+def cross_checked(run: R, simulate: Callable[[Scenario], R]) -> CrossCheck[R]:
+    """Simulate a run's scenario in the other engine, with its history, and compare."""
+    refuse_without_result(run)
+    other = simulate(_in_the_other_engine(run.scenario))
+    first = run if run.has_history else simulate(run.scenario)
+    (x, y, angle), (other_x, other_y, other_angle) = _last_pose(first), _last_pose(other)
+    return CrossCheck(
+        run=first,
+        other=other,
+        distance=float(np.hypot(other_x - x, other_y - y)),
+        turn=other_angle - angle,
+        parted_at=_parted_at(first, other),
+        balances=(_balance(first), _balance(other)),
+        forces=_forces(first, other),
+    )
+
+
+def _in_the_other_engine(scenario: Scenario) -> Scenario:
+    """Give the scenario to the other engine, at its own default accuracy."""
+    other = Solver(engine="rapier") if scenario.solver.engine == "own" else Solver()
+    return scenario.replace({"solver": other})
+
+
+def _balance(run: Record) -> Balance | None:
+    """Ask statics whether forces could hold the stop that a run ended in."""
+    if run.diagnosis is None:
+        return None
+    found = _core.balance(run.scenario.to_json(), run.diagnosis.time)
+    return None if found is None else Balance.from_core(found)
+
+
+def _last_pose(run: Record) -> tuple[float, float, float]:
+    """[m, m, rad] Of its stop, or else its end."""
+    if run.diagnosis is not None:
+        (x, y), angle = run.diagnosis.position, run.diagnosis.chassis_angle
+    else:
+        (x, y), angle = run.position[-1].tolist(), float(run.chassis_angle[-1])
+    return x, y, angle
+
+
+def _parted_at(run: Record, other: Record) -> float | None:
+    """[s] When the paths are first more than `_PARTED` apart."""
+    both = run.time <= other.time[-1]
+    there = np.stack([np.interp(run.time[both], other.time, each) for each in other.position.T])
+    apart = np.hypot(*(run.position[both].T - there)) > _PARTED
+    return float(run.time[both][apart.argmax()]) if apart.any() else None
+
+
+def _forces(run: Record, other: Record) -> Table:
+    """[N] What bears in each stop, body by body."""
+    stops = [_borne(run), _borne(other)]
+    rows = sorted({row for stop in stops if stop is not None for row in stop})
+    columns = {
+        name: np.array([row[place] for row in rows], dtype=np.int64)
+        for place, name in enumerate(("lane", "body", "body_kind"))
+    }
+    for prefix, stop in zip(("", "other_"), stops, strict=True):
+        missing = (np.nan, np.nan) if stop is None else (0.0, 0.0)
+        found = np.array([(stop or {}).get(row, missing) for row in rows]).reshape(-1, 2)
+        columns |= {f"{prefix}force_x": found[:, 0], f"{prefix}force_y": found[:, 1]}
+    return Table(columns)
+
+
+def _borne(run: Record) -> dict[tuple[int, int, int], tuple[float, float]] | None:
+    """[N] Forces of the ground in a stop, by lane, body and its kind."""
+    if run.diagnosis is None:
+        return None
+    contacts = run.diagnosis.contacts
+    normal = np.stack([contacts["normal_x"], contacts["normal_y"]])
+    tangent = np.stack([normal[1], -normal[0]])
+    force = contacts["normal_force"] * normal + contacts["friction_force"] * tangent
+    found: dict[tuple[int, int, int], tuple[float, float]] = {}
+    keys = zip(*(contacts[name].tolist() for name in ("lane", "body", "body_kind")), strict=True)
+    for key, (x, y) in zip(keys, force.T.tolist(), strict=True):
+        before = found.get(key, (0.0, 0.0))
+        found[key] = (before[0] + x, before[1] + y)
+    return found
+
+
+def _sentences(check: CrossCheck[R]) -> Iterator[str]:
+    """Say how each run ended, when they parted, and which stop is an equilibrium."""
+    runs = (check.run, check.other)
+    ends = [f"{_engine(run)}: {_ended(run)}" for run in runs]
+    if all(run.diagnosis is not None for run in runs):
+        ends[1] += (
+            f", {1e3 * check.distance:.2g} mm and {1e3 * abs(check.turn):.2g} mrad from there"
+        )
+    yield "; ".join(ends)
+    if check.parted_at is None:
+        yield f"The paths stay within {1e3 * _PARTED:g} mm of each other"
+    else:
+        yield f"The paths first part by {1e3 * _PARTED:g} mm at {check.parted_at:.2f} s"
+    stops = {
+        _engine(run): balance.said([body_name(run.diagnosis, pull.body) for pull in balance.pulls])
+        for run, balance in zip(runs, check.balances, strict=True)
+        if balance is not None and run.diagnosis is not None
+    }
+    if len(stops) > len(set(stops.values())):
+        yield f"By statics each stop is {next(iter(stops.values()))}"
+    else:
+        yield from (f"By statics the stop in {name} is {said}" for name, said in stops.items())
+
+
+def _ended(run: Record) -> str:
+    said = str(run.outcome).replace("_", " ")
+    if run.diagnosis is None:
+        return f"{said} after {run.metrics['time']:.2f} s"
+    x, y, angle = _last_pose(run)
+    return f"{said} at x = {x:z.3f} m, y = {y:z.3f} m, {np.degrees(angle):z.1f} degrees nose up"

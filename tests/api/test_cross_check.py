@@ -1,0 +1,170 @@
+"""The same scenario in both engines: how they end, when they part, what statics says."""
+
+import math
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.results.balance import Balance, Pull
+from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from tests.shared import ROBOT, refused
+
+STEP = c2d.terrains.step
+SEIZING = c2d.Scenario(ROBOT.with_track(c2d.LineOfWheels(4)), STEP(0.10), duration=6.0)
+STEADY = SEIZING.replace({"terrain": c2d.terrains.flat(), "duration": 2.0})
+
+
+@pytest.fixture(scope="module")
+def seized() -> c2d.Run:
+    return c2d.simulate(SEIZING)
+
+
+@pytest.fixture(scope="module")
+def check(seized: c2d.Run) -> CrossCheck[c2d.Run]:
+    return seized.cross_check()
+
+
+def test_round_wheels_stop_in_the_same_place(check: CrossCheck[c2d.Run]) -> None:
+    assert check.run.outcome is check.other.outcome is c2d.Outcome.SEIZED
+    assert check.same_outcome
+    # Both strike the edge at the same speed; contacts of rapier are softer, by 0.02 mm in the end.
+    assert check.distance < 1e-3
+    assert abs(check.turn) < 1e-3
+
+
+def test_only_the_solver_is_the_others_own(check: CrossCheck[c2d.Run]) -> None:
+    assert check.other.scenario == SEIZING.replace({"solver": c2d.Solver(engine="rapier")})
+    back = check.other.cross_check()
+    assert back.other.scenario == SEIZING
+    assert (back.distance, back.turn) == (check.distance, -check.turn)
+    assert np.array_equal(back.other.position, check.run.position)
+
+
+def test_each_stop_is_an_equilibrium_up_to_some_friction(
+    check: CrossCheck[c2d.Run],
+) -> None:
+    highest = []
+    for balance in check.balances:
+        assert balance is not None
+        assert balance.holds
+        assert balance.pulls == ()
+        assert balance.holds_between is not None
+        low, high = balance.holds_between
+        assert low < 1.0 < high
+        highest.append(high)
+    # Poses 0.02 mm apart; the search for the limit ends within some parts in ten thousand.
+    assert highest[0] == pytest.approx(highest[1], rel=0.01)
+
+
+def test_forces_of_the_stops_bear_the_robot(check: CrossCheck[c2d.Run]) -> None:
+    weight = SEIZING.robot.mass * SEIZING.gravity
+    for prefix in ("", "other_"):
+        # A stop at rest: what is left is the rounding of means over a window.
+        assert check.forces[f"{prefix}force_y"].sum() == pytest.approx(weight, rel=1e-3)
+        assert abs(check.forces[f"{prefix}force_x"].sum()) < 1e-3 * weight
+    ours, theirs = check.forces["force_y"], check.forces["other_force_y"]
+    assert ours == pytest.approx(theirs, abs=0.01 * weight)
+
+
+def test_paths_part_at_the_first_sample_that_is_more_than_a_millimetre_apart(
+    check: CrossCheck[c2d.Run],
+) -> None:
+    # Both were recorded every 10 ms, so that their samples are at the same times.
+    count = min(check.run.time.size, check.other.time.size) - 1
+    apart = np.hypot(*(check.run.position[:count] - check.other.position[:count]).T)
+    assert check.parted_at == check.run.time[np.flatnonzero(apart > 1e-3)[0]]
+
+
+def test_on_level_ground_paths_do_not_part() -> None:
+    check = c2d.simulate(STEADY).cross_check()
+    assert check.parted_at is None
+    assert check.distance < 1e-4  # what wheels slip at the start in softer contacts
+    assert check.balances == (None, None)
+    assert len(check.forces) == 0
+    assert "stay within 1 mm" in str(check)
+
+
+def test_a_run_that_did_not_stop_has_neither_balance_nor_forces(seized: c2d.Run) -> None:
+    check = cross_checked(seized, lambda other: c2d.simulate(other.replace({"duration": 1.0})))
+    assert not check.same_outcome
+    assert check.balances[0] is not None
+    assert check.balances[1] is None
+    assert np.isfinite(check.forces["force_y"]).all()
+    assert np.isnan(check.forces["other_force_y"]).all()
+    assert "rapier: timed out after 1.00 s." in str(check)
+
+
+def test_a_run_without_history_is_checked_alike(check: CrossCheck[c2d.Run]) -> None:
+    other = c2d.simulate(SEIZING, record="summary").cross_check()
+    assert (other.distance, other.turn, other.parted_at) == (
+        check.distance,
+        check.turn,
+        check.parted_at,
+    )
+    assert str(other) == str(check)
+
+
+def test_a_sentence_says_who_stopped_where_and_what_holds(
+    check: CrossCheck[c2d.Run],
+) -> None:
+    said = str(check)
+    assert said.startswith("crawler2d's own dynamics: seized at x = ")
+    assert "; rapier: seized at x = " in said
+    assert "The paths first part by 1 mm at " in said
+    assert "an equilibrium up to 1.36 times the friction" in said
+
+
+def test_what_rapier_does_not_hold_is_refused_by_field() -> None:
+    belt = c2d.simulate(ROBOT.with_track(c2d.BeltTrack()), STEP(0.02), duration=0.1)
+    error = refused(belt.cross_check)
+    assert error.path == "robot.track.kind"
+    assert "solver.engine" in error.rule
+
+
+def test_branches_and_runs_without_a_result_are_refused(seized: c2d.Run) -> None:
+    branch = seized.branch(at=1.0, duration=0.1)
+    assert "take the original run" in refused(branch.cross_check).rule
+    diverged = c2d.Run(SEIZING, {}, c2d.SimulationDiverged("chassis is not finite"))
+    assert "not finite" in refused(diverged.cross_check).rule
+
+
+def test_branches_of_a_run_in_rapier_are_moved_by_our_own_dynamics(
+    check: CrossCheck[c2d.Run],
+) -> None:
+    run = check.other
+    branch = run.branch(track=c2d.BeltTrack())
+    assert branch.outcome is c2d.Outcome.CLEARED
+    solver = branch.scenario.solver
+    assert (solver.engine, solver.time_step) == ("own", run.scenario.solver.time_step)
+    assert run.what_if(track="closed").run.scenario.solver.engine == "own"
+    assert run.branch(at=1.0, duration=0.1).scenario.solver.engine == "own"
+
+
+def test_engines_are_swept_like_any_field() -> None:
+    found = c2d.sweep(
+        SEIZING, {"solver.engine": ["own", "rapier"]}, repeats=2, threads=1, progress=False
+    )
+    assert set(found["outcome"].values.ravel()) == {"seized"}
+    compared = c2d.compare(
+        SEIZING,
+        {"own": {}, "rapier": c2d.Solver(engine="rapier")},
+        repeats=2,
+        threads=1,
+        progress=False,
+    )
+    assert set(compared["outcome"].values.ravel()) == {"seized"}
+
+
+def test_a_pose_that_is_no_equilibrium_is_said_to_be_none() -> None:
+    pull = Pull(body=2, point=(0.1, 0.2), force=22.4)
+    none = Balance(imbalance=0.123, tolerance=1e-3, holds_between=None, pulls=(pull,))
+    assert not none.holds
+    assert str(none) == (
+        "no equilibrium: the smallest residual is 12 % of the weight; body 2 would have to pull "
+        "with 22 N; no friction from 0.02 to 5 times makes it one"
+    )
+    later = Balance(imbalance=0.1, tolerance=1e-3, holds_between=(1.4, math.inf), pulls=())
+    assert str(later).endswith("it would be one from 1.40 times the friction on")
+    both = Balance(imbalance=0.0, tolerance=1e-3, holds_between=(0.0, math.inf), pulls=())
+    assert str(both) == "an equilibrium at any friction tried"
