@@ -236,7 +236,7 @@ def test_a_robot_without_torque_has_none_in_its_file() -> None:
     robot = drawn(2).with_track(c2d.LineOfWheels(3)).without_flippers()
     motors = dataclasses.replace(robot.drivetrain, max_torque=0.0)
     robot = dataclasses.replace(robot, drivetrain=motors)
-    assert "<effort>0.0</effort>" in robot.to_sdf()
+    assert "<effort>0</effort>" in robot.to_sdf()
     assert "<velocity" not in robot.to_mjcf()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from xml.sax.saxutils import escape
 
 from crawler2d.patching.spans import Span, spans_of
-from crawler2d.writing.xml import numbers
+from crawler2d.writing.xml import exactly, numbers
 
 __all__ = ["Document", "written"]
 
@@ -108,7 +108,7 @@ class Document:
         if words:
             many = zip(words, factors, strict=False)
             products = [float(word) * factor for word, factor in many]
-            first = numbers(each if is_exact else float(f"{each:.12g}") for each in products)
+            first = exactly(products) if is_exact else numbers(products)
             self._write(span, attribute, " ".join([first, *words[len(factors) :]]))
 
     def _write(self, span: Span, attribute: str, value: str) -> None:

@@ -8,7 +8,7 @@ from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.writing.held import Format
 from crawler2d.writing.solids import lowest
-from crawler2d.writing.xml import XML, element, numbers
+from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["MJCF", "mjcf_of"]
 
@@ -68,7 +68,7 @@ def _body(link: Link, pose: Pose) -> XML:
         "inertial",
         pos=numbers(center.place),
         mass=numbers(link.mass),
-        fullinertia=numbers(float(moments[i, j]) for i, j in order),
+        fullinertia=exactly(float(moments[i, j]) for i, j in order),
     )
     geoms = [_geom(shape, link) for shape in link.shapes]
     return element("body", inertial, *geoms, name=link.name, **_placed(pose))

@@ -10,7 +10,7 @@ from crawler2d.writing.across import Across
 from crawler2d.writing.held import Format
 from crawler2d.writing.motors import Limits, flipper_joints, moved_links, wheels_by_radius
 from crawler2d.writing.solids import lowest
-from crawler2d.writing.xml import XML, element, numbers
+from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["SDF", "sdf_of"]
 
@@ -45,7 +45,7 @@ def _link(link: Link) -> XML:
     inertia = element(
         "inertia",
         *(
-            element(f"i{'xyz'[row]}{'xyz'[column]}", text=numbers(float(moments[row, column])))
+            element(f"i{'xyz'[row]}{'xyz'[column]}", text=exactly(float(moments[row, column])))
             for row, column in upper
         ),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.writing.held import Format
-from crawler2d.writing.xml import XML, element, numbers
+from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["URDF", "urdf_of"]
 
@@ -39,7 +39,7 @@ def _origin(pose: Pose) -> XML:
 def _link(link: Link) -> XML:
     center = Pose(place=link.center).seen_from(link.pose)
     moments = link.pose.turn.T @ link.inertia @ link.pose.turn
-    inertia = {f"i{'xyz'[i]}{'xyz'[j]}": numbers(float(moments[i, j])) for i, j in _UPPER}
+    inertia = {f"i{'xyz'[i]}{'xyz'[j]}": exactly(float(moments[i, j])) for i, j in _UPPER}
     made = element(
         "link",
         element(

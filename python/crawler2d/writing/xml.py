@@ -1,15 +1,15 @@
-"""XML text: numbers that read back to the same bits, and a comment that holds any text."""
+"""XML text: numbers of few digits, and a comment that holds any text."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from xml.etree import ElementTree
 
 from crawler2d.models.poses import Array
 
-__all__ = ["XML", "commented", "document", "element", "numbers"]
+__all__ = ["XML", "commented", "document", "element", "exactly", "numbers"]
 
 XML = ElementTree.Element
 """An element."""
@@ -24,15 +24,35 @@ def element(tag: str, *children: XML | None, text: str = "", **attributes: str) 
 
 
 def numbers(values: Iterable[float] | Array | float) -> str:
-    """Write numbers with the fewest digits that read back to the same bits; there is only one zero.
+    """Write numbers of twelve digits; there is only one zero.
+
+    The last four digits of a sum or a turn are rounding, and nobody wants to read them. The exact
+    robot is in the comment.
 
     Examples
     --------
-    >>> numbers((0.1, -0.0, 1e-7))
-    '0.1 0.0 1e-07'
+    >>> numbers((0.1 + 0.2, -0.0, 1e-7))
+    '0.3 0 1e-07'
     """
-    each = [values] if isinstance(values, float | int) else values
-    return " ".join(repr(float(value) + 0.0) for value in each)
+    return " ".join(f"{value:.12g}" for value in _each(values))
+
+
+def exactly(values: Iterable[float] | Array | float) -> str:
+    """Write numbers that read back to the same bits.
+
+    Moments of inertia are: those of thin bodies just obey their inequality, and still must.
+
+    Examples
+    --------
+    >>> exactly((0.1 + 0.2, -0.0))
+    '0.30000000000000004 0.0'
+    """
+    return " ".join(repr(value) for value in _each(values))
+
+
+def _each(values: Iterable[float] | Array | float) -> Iterator[float]:
+    for value in [values] if isinstance(values, float | int) else values:
+        yield float(value) + 0.0
 
 
 def document(root: XML, comment: str) -> str:
