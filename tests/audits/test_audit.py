@@ -18,7 +18,9 @@ from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.population import unknown_of_file
 from crawler2d.audits.runs import raised, scenario_of
+from crawler2d.audits.verdicts import least_samples
 from crawler2d.audits.words import wheels_a_side
+from crawler2d.sweeps.statistics import wilson
 from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
 
@@ -341,3 +343,10 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
         expected = "belt" if each.kind == "belt" else f"{each.wheels} wheels a side"
         assert wheels_a_side(each) == expected
     assert any(each.kind == "belt" for each in found.repairs)
+
+
+def test_too_few_runs_to_show_that_it_does_not_seize_are_said_to_be(found: c2d.Audit) -> None:
+    least = least_samples()
+    assert wilson(0, least).high < 0.10 <= wilson(0, least - 1).high
+    assert found.table["outcome"].size < 2 * least  # of the model and its belt
+    assert f'"does not seize" takes {least} or more' in str(found)

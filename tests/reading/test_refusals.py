@@ -165,7 +165,9 @@ def flippers(x: float = 0.2, tip: str = "0.2 0 0", radius: str = "0.05", shape: 
 
 
 def test_a_flipper_with_a_wheel_at_its_tip_alone_keeps_it_there(tmp_path: Path) -> None:
-    robot = read(tmp_path, urdf(WHEELS, flippers())).robot
+    reading = read(tmp_path, urdf(WHEELS, flippers()))
+    robot = reading.robot
+    assert any("no wheel of theirs is at the pivot" in doubt for doubt in reading.doubts)
     assert robot.flippers is not None
     assert (robot.flippers.length, robot.flippers.torque_limit) == (0.2, 9.0)
     assert isinstance(robot.flippers.track, c2d.HybridWheels)

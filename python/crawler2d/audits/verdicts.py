@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ import numpy as np
 from crawler2d.audits.runs import TRIED, column
 from crawler2d.audits.share import Share, share_of
 from crawler2d.results.outcome import Outcome
+from crawler2d.sweeps.statistics import wilson
 from crawler2d.sweeps.stops import short_name
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ __all__ = [
     "Freed",
     "Verdict",
     "cleared_beside",
+    "least_samples",
     "verdict_word",
     "verdicts_of",
 ]
@@ -131,6 +134,17 @@ def verdict_word(cleared: Share, seized: Share, belt: Share, alone: Share) -> st
     if belt.rate < CLEARS and cleared.rate < CLEARS:
         return "belt fails, too"
     return "does not seize" if seized.high < _SELDOM else "not certain"
+
+
+def least_samples() -> int:
+    """Return the fewest samples that can show that a model does not seize: none of them does.
+
+    Examples
+    --------
+    >>> least_samples()
+    35
+    """
+    return next(n for n in itertools.count(1) if wilson(0, n).high < _SELDOM)
 
 
 def verdicts_of(table: xarray.Dataset, obstacles: Sequence[str]) -> tuple[Verdict, ...]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.audits.names import names_of
-from crawler2d.audits.verdicts import CLEARS, SEIZES
+from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform, UniformInt
@@ -75,7 +75,11 @@ def population(audit: Audited) -> str:
     samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
     each = "1 run" if repeats == 1 else f"{repeats} runs"
     many = f"{samples} robots on floors, {each} each" if audit.unknown else f"{samples} runs"
-    return f"{many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
+    said = f"{many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
+    least = least_samples()
+    if samples < least:
+        said += f'; "does not seize" takes {least} or more'
+    return said
 
 
 def lost(audit: Audited) -> str:

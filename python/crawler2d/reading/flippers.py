@@ -69,6 +69,8 @@ def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flipper
     if not first.has_root:
         rule = "that of the tip: no wheel is at the pivot"
         told.note("robot.flippers.root_radius", estimate(rule))
+        reason = "is that of the tip: no wheel of theirs is at the pivot"
+        told.doubts.append(("robot.flippers.root_radius", first.root_radius, reason))
     of_arms = [link for pair in pairs for arm in pair.arms for link in arm.links]
     told.note("robot.flippers.mass", lines([link.mass_at for link in of_arms], "sum"))
     told.note("robot.flippers.ends", lines(joints))

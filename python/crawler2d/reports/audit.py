@@ -17,6 +17,7 @@ from typing import Any, TextIO, get_args
 from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
 from crawler2d.audits.patches import patch_of
 from crawler2d.audits.plain import plain_of
+from crawler2d.audits.verdicts import least_samples
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
 from crawler2d.reading.meshes import MeshRule
@@ -35,7 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="SDF, URDF, xacro or MJCF")
     parser.add_argument("--quick", action="store_true", help="few runs and no repairs")
     parser.add_argument("--json", action="store_true", help="print plain data in place of words")
-    parser.add_argument("--samples", type=int, help=f"of what is not known (default: {SAMPLES})")
+    samples = f"of what is not known (default: {SAMPLES}; fewer than {least_samples()} cannot show "
+    samples += "that it does not seize)"
+    parser.add_argument("--samples", type=int, help=samples)
     parser.add_argument("--repeats", type=int, help=f"runs of each (default: {REPEATS})")
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--store", type=Path, help="a file that keeps every run")
