@@ -270,6 +270,17 @@ def test_placed_wheels_get_one_more_in_the_deepest_pocket() -> None:
     assert first.robot.track.placements[2] == pytest.approx((0.06, 0.0, 0.064))  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize("count", [2, 4, 9])
+def test_every_number_up_to_one_more_wheel_between_every_two_is_a_candidate(count: int) -> None:
+    robot = SEIZING.with_track(c2d.LineOfWheels(count))
+    counts = {
+        each.robot.track.count
+        for each in candidates_of(robot, ["chassis"])
+        if isinstance(each.robot.track, c2d.LineOfWheels)
+    }
+    assert counts >= set(range(count + 1, 2 * count))
+
+
 def test_belts_have_no_candidates() -> None:
     assert candidates_of(c2d.robots.engineer(), ["chassis", "flippers"]) == []
 

@@ -31,6 +31,8 @@ KINDS = ("wheels", "gears", "belt")
 _HEIGHT = 3.0 / 16.0  # of the smallest radius: the Engineer's grousers
 _THICKNESS = 1.0 / 8.0  # of the distance of two grousers, likewise
 _GROUSERS = (12, 8, 16)
+_MORE = 8
+"""At most so many numbers of wheels from one more to one more between every two."""
 
 Wheeled = LineOfWheels | CircumferentialWheels | HybridWheels
 
@@ -150,7 +152,9 @@ def _more_wheels(robot: Robot, carrier: str, track: Wheeled) -> Iterator[tuple[s
         yield from _between(robot, carrier, track)
         return
     count = track.count
-    others = [count + 1, count - 1, count + 2, count + 3, 2 * count - 1, 3 * count - 2]
+    # One between every two has twice as many but one, two between every two three times but two.
+    more = np.linspace(count + 1, 2 * count - 1, min(_MORE, count - 1)).round().astype(int).tolist()
+    others = [count + 1, count - 1, *more, 3 * count - 2]
     least = 2 if isinstance(track, LineOfWheels) else 3
     for other in dict.fromkeys(others):
         if other >= least:
