@@ -11,7 +11,7 @@ const AMPLE: f64 = 1.5;
 /// sprocket on the ground, and tips forwards over the edge if its centre of mass is beyond it.
 ///
 /// The second figure is the chassis angle at which it lies in balance there.
-fn highest_step(radius: f64, behind: f64, above: f64) -> (f64, f64) {
+pub(crate) fn highest_step(radius: f64, behind: f64, above: f64) -> (f64, f64) {
     let height = |angle: f64| {
         let (s, c) = libm::sincos(angle);
         radius * (1.0 - c) + behind * s - (radius + above) * s * s / c
@@ -38,7 +38,12 @@ fn highest_step_simulated(base: &Scenario, expected: f64) -> f64 {
     })
 }
 
-fn rigid_track(axle_distance: f64, radius: f64, behind_share: f64, above: f64) -> Scenario {
+pub(crate) fn rigid_track(
+    axle_distance: f64,
+    radius: f64,
+    behind_share: f64,
+    above: f64,
+) -> Scenario {
     let mut scenario = slow_and_strong();
     let outline = &mut scenario.robot.outline;
     outline.discs = TrackOutline::two_discs(axle_distance, [radius, radius]);
@@ -111,7 +116,7 @@ fn belt_climbs_as_high_as_a_rigid_track_can_on_drawn_geometries() {
 }
 
 /// Friction from which on the nose of a track climbs a face at least as high as its radius.
-fn friction_of_the_nose(length: f64, radius: f64, behind: f64) -> f64 {
+pub(crate) fn friction_of_the_nose(length: f64, radius: f64, behind: f64) -> f64 {
     bisect(0.0, 10.0, |mu| {
         behind * (1.0 + mu * mu) > mu * mu * (length + radius) + mu * radius
     })
@@ -138,7 +143,7 @@ fn nose_climbs_a_face_from_the_friction_of_the_balance_on() {
 }
 
 /// One driven wheel that carries the whole weight: the other is too far away to help.
-fn single_wheel(height: f64, friction: f64) -> Scenario {
+pub(crate) fn single_wheel(height: f64, friction: f64) -> Scenario {
     let mut scenario = slow_and_strong();
     let radius = scenario.robot.outline.rear_radius();
     scenario.robot.outline.discs = TrackOutline::two_discs(20.0, [radius, radius]);
@@ -156,7 +161,7 @@ fn single_wheel(height: f64, friction: f64) -> Scenario {
     scenario
 }
 
-fn climbs(scenario: &Scenario) -> bool {
+pub(crate) fn climbs(scenario: &Scenario) -> bool {
     summary(scenario).metrics.final_y
         > scenario.robot.outline.rear_radius() + 0.45 * height_of(scenario)
 }
@@ -203,27 +208,33 @@ fn single_wheel_needs_the_torque_of_its_lever() {
     }
 }
 
+/// A robot before a gap of that width [m], a metre deep.
+pub(crate) fn before_a_gap(base: &Scenario, width: f64) -> Scenario {
+    let mut scenario = base.clone();
+    let points = vec![
+        [-10.0, 0.0],
+        [0.0, 0.0],
+        [0.0, -1.0],
+        [width, -1.0],
+        [width, 0.0],
+        [10.0, 0.0],
+    ];
+    scenario.terrain = Terrain::Points {
+        points,
+        goal: width,
+        edge_radius: 0.0,
+        friction: 0.9,
+    };
+    scenario
+}
+
 #[test]
 fn gap_is_bridged_up_to_the_shorter_end_of_the_track() {
     for share in [0.4, 0.5, 0.6_f64] {
         let shorter = share.min(1.0 - share) * 0.365;
+        let base = rigid_track(0.365, 0.064, share, 0.0);
         let dips = |width: f64| {
-            let mut scenario = rigid_track(0.365, 0.064, share, 0.0);
-            let points = vec![
-                [-10.0, 0.0],
-                [0.0, 0.0],
-                [0.0, -1.0],
-                [width, -1.0],
-                [width, 0.0],
-                [10.0, 0.0],
-            ];
-            scenario.terrain = Terrain::Points {
-                points,
-                goal: width,
-                edge_radius: 0.0,
-                friction: 0.9,
-            };
-            let run = summary(&scenario);
+            let run = summary(&before_a_gap(&base, width));
             run.metrics.min_angle < -0.01 || run.metrics.max_angle > 0.01
         };
         let found = bisect(0.5 * shorter, 2.0 * shorter, |width| !dips(width));

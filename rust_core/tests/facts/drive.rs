@@ -6,7 +6,7 @@ use crawler2d_core::{Model, Scenario, Simulation, TorqueSharing};
 use crate::common::*;
 
 /// A robot on level ground with a drivetrain that only its torque limits, and hardly any track mass.
-fn racer() -> Scenario {
+pub(crate) fn racer() -> Scenario {
     let mut scenario = engineer();
     scenario.robot.belly = None;
     scenario.robot.track_mass = 1e-3;
@@ -18,7 +18,7 @@ fn racer() -> Scenario {
 }
 
 /// [m/s^2] Mean acceleration along x over a span.
-fn acceleration(simulation: &mut Simulation, span: f64) -> f64 {
+pub(crate) fn acceleration(simulation: &mut Simulation, span: f64) -> f64 {
     let before = simulation.reading().velocity.x;
     advance(simulation, span);
     (simulation.reading().velocity.x - before) / span
@@ -73,7 +73,7 @@ fn nose_lifts_at_the_acceleration_of_the_balance() {
 }
 
 /// [m] Way from the command to stop to the stand, from a speed.
-fn braking_distance(scenario: &Scenario, speed: f64) -> f64 {
+pub(crate) fn braking_distance(scenario: &Scenario, speed: f64) -> f64 {
     let mut scenario = scenario.clone();
     scenario.drive.speed = speed;
     let mut simulation = after(&scenario, 2.0);

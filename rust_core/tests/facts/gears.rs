@@ -8,7 +8,7 @@ use crawler2d_core::{
 use crate::common::*;
 
 /// Slow, on level ground with friction to spare, without a belly.
-fn rolling(track: Track) -> Scenario {
+pub(crate) fn rolling(track: Track) -> Scenario {
     let mut scenario = slow_and_strong();
     scenario.robot.track = track;
     scenario.terrain = Terrain::Flat {
@@ -19,7 +19,7 @@ fn rolling(track: Track) -> Scenario {
 }
 
 /// Distance of surface and of chassis while the wheels turn `turns` times.
-fn travelled(scenario: &Scenario, radius: f64, turns: f64) -> (f64, f64) {
+pub(crate) fn travelled(scenario: &Scenario, radius: f64, turns: f64) -> (f64, f64) {
     let mut simulation = after(scenario, 1.0);
     let begin = simulation.reading();
     let way = turns * std::f64::consts::TAU * radius;
@@ -41,6 +41,15 @@ fn travelled(scenario: &Scenario, radius: f64, turns: f64) -> (f64, f64) {
     }
 }
 
+/// By what the odometry of the Engineer on gear wheels reads too much.
+pub(crate) fn over_reading(grousers: u32, thickness: f64) -> f64 {
+    let (radius, n) = (0.064, f64::from(grousers));
+    let tip = 2.0 * (0.5 * thickness / radius).asin();
+    let between = std::f64::consts::TAU / n - tip;
+    let polygon = n * (thickness + 2.0 * radius * (0.5 * between).sin());
+    std::f64::consts::TAU * radius / polygon
+}
+
 /// Oracle 9: a wheel with `n` grousers rolls from corner to corner of its outline, a polygon with two
 /// corners a grouser; its circumference is less than that of the circumscribed circle.
 #[test]
@@ -53,12 +62,8 @@ fn odometry_over_reads_by_the_polygon_of_the_tips() {
             base_thickness: None,
             phase_fraction: 0.0,
         });
-        let (radius, n) = (0.064, f64::from(grousers));
-        let tip = 2.0 * (0.5 * thickness / radius).asin();
-        let between = std::f64::consts::TAU / n - tip;
-        let polygon = n * (thickness + 2.0 * radius * (0.5 * between).sin());
-        let expected = std::f64::consts::TAU * radius / polygon;
-        let (surface, chassis) = travelled(&rolling(line_of(count, wheel)), radius, 2.0);
+        let expected = over_reading(grousers, thickness);
+        let (surface, chassis) = travelled(&rolling(line_of(count, wheel)), 0.064, 2.0);
         let found = surface / chassis;
         println!(
             "{count} wheels, {grousers} grousers of {thickness} m: odometry reads {found:.5} times the way, \

@@ -28,6 +28,7 @@ mod grouser_belt;
 mod judged;
 mod lanes;
 mod rapier;
+mod rapier_oracles;
 mod repeat;
 mod robustness;
 mod segmental;

@@ -55,7 +55,7 @@ const EDGE: i64 = 1;
 
 /// What a stopped run shows of a candidate: how far angle [rad] and shares of the weight are off.
 #[derive(Clone, Copy, Debug)]
-enum Stop {
+pub(crate) enum Stop {
     /// Three sliding contacts, the pose and forces of a candidate.
     Candidate { angle_off: f64, share_off: f64 },
     /// No standstill: at high friction the sliding itself feeds a rattle, contacts slide, stick and
@@ -65,7 +65,7 @@ enum Stop {
     Nose { share_off: f64 },
 }
 
-fn classify(row: &Row, run: &Run) -> Stop {
+pub(crate) fn classify(row: &Row, run: &Run) -> Stop {
     let contacts = loaded(run, row.friction);
     let angle = run.metrics.final_angle;
     let describe = || format!("{row:?} stopped at {angle} rad on {contacts:?}");
