@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -57,6 +57,10 @@ bench: | tools ## benchmarks
 
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)
+
+bench-agreement: $(VENV)/.built ## both engines on 300 random robots, ten minutes; Ctrl-C loses little
+	$(BIN)/python -m benches.agreement run
+	$(BIN)/python -m benches.agreement table
 
 bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes
 	$(BIN)/python -m benches.peers.maps $(ARGS)

@@ -13,7 +13,7 @@ from pathlib import Path
 from benches.engines import costs
 from benches.engines.cells import STARTS, Cell, read, write
 from benches.engines.convergence import FINER, JAM, LADDERS, USUAL, converge
-from benches.engines.engines import ENGINES
+from benches.engines.engines import ENGINES, FINE
 from benches.engines.momentum import speed_up
 from benches.engines.predict import predict
 from benches.engines.refining import refine
@@ -45,6 +45,7 @@ def main() -> None:
     finer.add_argument("--jam", action="store_true", help="Chipmunk's smallest steps")
     finer.add_argument("--starts", type=int, default=6, help="runs of each cell")
     again = verbs.add_parser("refine", help="make runs that differ again, finer in both")
+    again.add_argument("--engines", nargs="+", choices=FINE, default=list(FINE))
     again.add_argument("--most", type=int, default=3, help="runs of a cell")
     faster = verbs.add_parser("speeds", help="from which speed on is a robot carried past a stop?")
     faster.add_argument("--engines", nargs="+", choices=ENGINES, default=["pymunk", "ode-fine"])
@@ -66,7 +67,7 @@ def main() -> None:
         case "converge":
             _converge(given)
         case "refine":
-            refine(read(), given.output or RESULTS, given.most)
+            refine(read(), given.engines, given.output or RESULTS, given.most)
         case "speeds":
             speed_up(_jams()[0], given.engines, given.starts, given.output or RESULTS)
         case "costs":

@@ -13,22 +13,23 @@ from benches.engines.cells import Cell
 from benches.engines.convergence import LADDERS
 from benches.engines.driving import driven
 from benches.engines.engine import Engine
-from benches.engines.engines import FINE
 from benches.engines.own import simulated
 from benches.engines.predict import read
 from benches.engines.running import results_of
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.settings import Solver
 from crawler2d.reports.markdown import markdown_table
 
 __all__ = ["refine", "table"]
 
 _FILE = "refined.json"
 _ACCURACY = 3e-8  # [m] a tenth of the default
+_RAPIER, _FINER_RAPIER = "rapier", Solver(engine="rapier", time_step=2e-5)
 _STAYS = 0.02  # [m] from the pose of a stop
 
 
-def refine(cells: Sequence[Cell], folder: Path, most: int) -> None:
+def refine(cells: Sequence[Cell], engines: Sequence[str], folder: Path, most: int) -> None:
     """Make runs that differ again, at the finest setting of the ladder and at a tenth of accuracy.
 
     Only on grounds that are the same across: on others the third dimension makes a difference.
@@ -42,6 +43,8 @@ def refine(cells: Sequence[Cell], folder: Path, most: int) -> None:
     ----------
     cells : sequence of Cell
         Which to look at.
+    engines : sequence of str
+        Names of fine ones.
     folder : Path
         Of the results.
     most : int
@@ -52,12 +55,12 @@ def refine(cells: Sequence[Cell], folder: Path, most: int) -> None:
     if path.exists():
         found = json.loads(path.read_text(encoding="utf-8"))
     predicted = read()
-    for name in FINE:
+    for name in engines:
         ladder = LADDERS.get(name.removesuffix("-fine"))
         results = results_of(name, folder)
-        if ladder is None or results is None:
+        if results is None or (ladder is None and name != _RAPIER):
             continue
-        *_, engine = ladder().values()
+        engine = None if ladder is None else [*ladder().values()][-1]
         for cell in (cell for cell in cells if cell.is_even):
             made = found.setdefault(name, {}).setdefault(cell.label, {})
             scenarios = cell.scenarios()
@@ -67,7 +70,7 @@ def refine(cells: Sequence[Cell], folder: Path, most: int) -> None:
                     continue
                 scenario = scenarios[number]
                 own = simulated(scenario.replace({"solver.accuracy": _ACCURACY}))
-                again = driven(engine, scenario)
+                again = _finer_rapier(scenario) if engine is None else driven(engine, scenario)
                 ends = [one["end"], other["end"], own["end"], again["end"]]
                 made[str(number)] = [*ends, _from(engine, cell, scenario, one)]
                 tell(f"{name}, {cell.label}: {', '.join(made[str(number)])}")
@@ -87,14 +90,23 @@ def table(folder: Path) -> str:
         now = sum(own == again for _, _, own, again in runs)
         ours = sum(own != before for before, _, own, _ in runs)
         theirs = sum(again != before for _, before, _, again in runs)
-        stays = f"{placed.count('stays')} of {len(placed)}"
+        stays = f"{placed.count('stays')} of {len(placed)}" if placed else ""
         rows.append([name, str(len(runs)), str(now), str(theirs), str(ours), stays])
     head = ["engine", "differing runs refined", "equal then", "the engine changed"]
     return markdown_table([*head, "crawler2d changed", "stays in crawler2d's stop"], rows)
 
 
-def _from(engine: Engine, cell: Cell, scenario: Scenario, stop: Run) -> str:
-    """Return whether an engine "stays" in or "leaves" the pose of a stop, or "" if it is none."""
+def _finer_rapier(scenario: Scenario) -> Run:
+    return simulated(scenario.replace({"solver": _FINER_RAPIER}))
+
+
+def _from(engine: Engine | None, cell: Cell, scenario: Scenario, stop: Run) -> str:
+    """Return whether an engine "stays" in or "leaves" the pose of a stop, or "" if it is none.
+
+    rapier, which crawler2d starts as the scenario says, is not asked.
+    """
+    if engine is None:
+        return ""
     if "gears" in cell.model or stop["end"] not in ("seized", "stalled", "slipping", "hung_up"):
         return ""
     found = driven(engine, scenario, (stop["x"], stop["y"], stop["angle"]))

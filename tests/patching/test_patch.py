@@ -12,7 +12,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.patching.document import Document
-from crawler2d.patching.patch import _summary, patched
+from crawler2d.patching.patch import _left, _summary, patched
 from crawler2d.patching.spans import spans_of
 from tests.reading.carts import FILES, ROBOTS, WHEELS, pair, quietly, urdf
 
@@ -218,12 +218,15 @@ def test_a_patch_warns_of_nothing() -> None:
 
 
 def test_a_count_of_wheels_in_a_plugin_is_named_when_wheels_are_added() -> None:
-    setting = b"<plugin><num_wheel_pairs>4</num_wheel_pairs></plugin>"
-    root = spans_of(b"<model>" + setting + b"</model>")
+    text = "<model>\n<plugin>\n<num_wheel_pairs>4</num_wheel_pairs></plugin>\n</model>"
+    root = spans_of(text.encode())
     added: Any = SimpleNamespace(fate="added", is_none=False)
     changed: Any = SimpleNamespace(fate="changed", is_none=False)
-    assert "num_wheel_pairs is still 4" in _summary([added, added], [], root)
-    assert "by hand" not in _summary([changed], [], root)
+    left = _left([added, added], root, text)
+    assert left == ("num_wheel_pairs in line 3 is still 4",)
+    assert "by hand (there are 2 wheels more): num_wheel" in _summary([added, added], [], left)
+    assert _left([changed], root, text) == ()
+    assert "by hand" not in _summary([changed], [], ())
 
 
 def test_lengths_have_no_digits_of_rounding_and_inertias_every_bit() -> None:

@@ -79,7 +79,8 @@ class Audit(Audited):
 
         All wheels of a carrier together keep their mass and the torque of their motors; a new one
         is a copy of its neighbour, with all that drives it. What was made is read again, and
-        refused if that is not the repaired robot.
+        refused if that is not the repaired robot. Settings of plugins that may no longer be right
+        for so many wheels are left as they are, with a `ScenarioWarning` each.
 
         Parameters
         ----------
@@ -104,6 +105,10 @@ class Audit(Audited):
             If it cannot be written.
         """
         patch = patch_of(self, repair)
+        for setting in patch.left:
+            warnings.warn(
+                ScenarioWarning("patch", setting, "leaves this to be set by hand"), stacklevel=2
+            )
         if path is not None:
             Path(path).write_text(patch.text, encoding="utf-8")
         return patch.diff

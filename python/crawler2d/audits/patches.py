@@ -49,12 +49,13 @@ def patch_of(audit: Audited, repair: Repair | None) -> Patch:
 
 
 def diffs_of(audit: Audited) -> dict[str, str]:
-    """Return what each repair by wheels changes in the file, or why it cannot, by `Repair.what`."""
+    """Say what each repair by wheels changes in the file, or why it cannot, by `Repair.what`."""
     found = {}
     for repair in audit.repairs if audit.reading is not None else ():
         if repair.kind != "belt":
             try:
-                found[repair.what] = patch_of(audit, repair).diff
+                patch = patch_of(audit, repair)
+                found[repair.what] = f"{patch.summary}\n\n{patch.diff}"
             except ScenarioError as error:
                 found[repair.what] = f"no change of the file: {error}"
     return found

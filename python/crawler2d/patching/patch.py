@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import bisect
 import difflib
+import itertools
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -53,11 +55,14 @@ class Patch:
     summary : str
         How many wheels were added, removed and changed, how many lines differ, and which settings
         of plugins that may depend on wheels stay as they are.
+    left : tuple of str
+        These settings, each with its line in the file that was read.
     """
 
     text: str
     diff: str
     summary: str
+    left: tuple[str, ...]
 
 
 def patched(reading: Reading, robot: Robot) -> Patch:
@@ -98,27 +103,40 @@ def patched(reading: Reading, robot: Robot) -> Patch:
         f"{name} (other wheels)",
     )
     lines = list(diff)
-    return Patch(text=text, diff="".join(lines), summary=_summary(changes, lines, document.root))
+    left = _left(changes, document.root, reading.text)
+    return Patch(text=text, diff="".join(lines), summary=_summary(changes, lines, left), left=left)
 
 
-def _summary(changes: list[Change], diff: list[str], root: Span) -> str:
+def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:
     """Say what becomes of the wheels, and what is left to be set by hand."""
-    fates = Counter(change.fate for change in changes if not change.is_none)
+    fates = _fates(changes)
     parts = [f"{fates[fate]} {fate}" for fate in ("added", "removed", "changed") if fates[fate]]
     marks = Counter(line[0] for line in diff[2:])
     text = f"wheels: {', '.join(parts)}; lines: {marks['+']} new, {marks['-']} gone"
     more = fates["added"] - fates["removed"]
-    if not more:
-        return text
-    left = [
-        f"{setting.tag} is still {setting.text}"
+    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
+    return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text
+
+
+def _left(changes: list[Change], root: Span, text: str) -> tuple[str, ...]:
+    """List the settings of plugins that may no longer be right for so many wheels."""
+    fates = _fates(changes)
+    if fates["added"] == fates["removed"]:
+        return ()
+    lines = text.encode().splitlines(keepends=True)
+    ends = list(itertools.accumulate(map(len, lines)))
+    return tuple(
+        f"{setting.tag} in line {bisect.bisect(ends, setting.start) + 1} is still {setting.text}"
         for plugin in root.within()
         if plugin.tag == "plugin"
         for setting in plugin.within()
         if setting.tag in _COUNTS
-    ]
-    hint = f" (there are {abs(more)} wheels {'more' if more > 0 else 'fewer'})"
-    return f"{text}; to be set by hand{hint}: {', '.join(left)}" if left else text
+    )
+
+
+def _fates(changes: list[Change]) -> Counter[str]:
+    """Count what becomes of wheels."""
+    return Counter(change.fate for change in changes if not change.is_none)
 
 
 def _change(document: Document, changes: list[Change], tree: Tree) -> None:

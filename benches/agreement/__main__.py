@@ -1,0 +1,40 @@
+"""Compare crawler2d's own dynamics with rapier's on random robots.
+
+Usage, from the repository root: ``python -m benches.agreement run`` and ``table``.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from benches.agreement.pairs import RESULTS, read, run
+from benches.agreement.table import parts
+from benches.engines.telling import tell
+from crawler2d.reports.markdown import spliced
+
+_PAGE = Path(__file__).parents[2] / "docs" / "studies" / "agreement.md"
+
+
+def main() -> None:
+    """Parse the arguments and run."""
+    parser = argparse.ArgumentParser(prog="python -m benches.agreement", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    runs = verbs.add_parser("run", help="make the pairs, on from where it stopped")
+    runs.add_argument("--robots", type=int, default=300)
+    tables = verbs.add_parser("table", help="print the tables, and put them into the page")
+    for verb in (runs, tables):
+        verb.add_argument("--output", type=Path, default=RESULTS, help="default: %(default)s")
+    given = parser.parse_args()
+    if given.verb == "run":
+        run(given.robots, given.output)
+        return
+    made = parts(read(given.output))
+    tell("\n\n".join(made.values()))
+    if given.output == RESULTS:
+        page = _PAGE.read_text(encoding="utf-8")
+        _PAGE.write_text(spliced(page, made), encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    main()

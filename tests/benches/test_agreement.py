@@ -1,0 +1,64 @@
+"""The comparison of both engines on random robots: what is drawn, kept and told."""
+
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from benches.agreement import pairs
+from benches.agreement.drawing import MODELS, drawn
+from benches.agreement.table import parts
+
+
+def test_every_model_is_drawn_and_rapier_holds_it() -> None:
+    for number, expected in enumerate(MODELS):
+        model, scenario = drawn(number)
+        assert model == expected
+        assert drawn(number) == (model, scenario)
+        scenario.replace({"solver": c2d.Solver(engine="rapier")}).validate()
+
+
+def test_pairs_go_on_from_where_they_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[int] = []
+
+    def make(number: int) -> dict[str, int]:
+        made.append(number)
+        return {"number": number}
+
+    monkeypatch.setattr(pairs, "_pair", make)
+    path = tmp_path / "pairs.jsonl"
+    pairs.run(2, path)
+    pairs.run(3, path)
+    assert made == [0, 1, 2]
+    assert [pair["number"] for pair in pairs.read(path)] == [0, 1, 2]
+
+
+def test_a_pair_has_both_ends_and_both_balances(tmp_path: Path) -> None:
+    path = tmp_path / "pairs.jsonl"
+    pairs.run(1, path)
+    (pair,) = pairs.read(path)
+    assert [end["gets_over"] for end in pair["ends"]].count(True) in (0, 2)  # it is no close call
+    assert pair["apart"] < 1e-3 or pair["ends"][0]["gets_over"]
+    table = parts([pair])["models"]
+    assert "| line | 1 | 1 (21 to 100 %) |" in table
+
+
+def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
+    end = {"outcome": "cleared", "gets_over": True, "stops": False, "penetration": 1e-4}
+    stop = {"outcome": "seized", "gets_over": False, "stops": True, "penetration": 3e-4}
+    pair = {
+        "number": 7,
+        "model": "row",
+        "ends": [end, stop],
+        "apart": 0.3,
+        "turn": 0.1,
+        "parted_at": 1.0,
+        "balances": [None, True],
+        "finer": {"own": "cleared", "rapier": "cleared"},
+    }
+    told = parts([pair])
+    assert "| row | 1 | 0 (0 to 79 %) | 0 (0 to 79 %) | 0 | 0 |" in told["models"]
+    last = told["unlike"].splitlines()[-1]
+    assert last == "| 7 | row | cleared | cleared | seized | cleared | yes | 0.3 |"
