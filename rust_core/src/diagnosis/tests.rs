@@ -91,8 +91,8 @@ impl Stage {
         }
     }
 
-    fn examine(&self, stance: &Stance) -> Diagnosis {
-        let scene = Scene {
+    fn scene(&self) -> Scene<'_> {
+        Scene {
             model: &self.model,
             lanes: &self.ground.lanes,
             envelopes: &self.envelopes,
@@ -102,13 +102,16 @@ impl Stage {
             set_point: self.scenario.drive.speed,
             half_length: HALF,
             running: self.model.running_at_start(0.0),
-        };
+        }
+    }
+
+    fn examine(&self, stance: &Stance) -> Diagnosis {
         let seen = Seen {
             time: 3.0,
             since: 1.0,
             progress: 0.25,
         };
-        examine(&scene, stance, &seen)
+        examine(&self.scene(), stance, &seen)
     }
 }
 
@@ -154,6 +157,31 @@ fn forces_that_balance_are_certified_and_others_not() {
     stance.bearings[1].contact.point.x = -0.15;
     let found = stage.examine(&stance);
     assert!(!found.certified && found.imbalance.is_some_and(|i| i > 0.1));
+}
+
+/// Two posts behind the centre of mass, 0.15 and 0.1 m: the one in front pushes with three weights, the other has to pull
+/// with two; friction of two places at one height has no lever.
+#[test]
+fn a_contact_that_would_have_to_pull_is_named_with_its_force() {
+    let stage = Stage::new();
+    let tolerance = 1e-3;
+    let mut stance = stage.stance([0.5, 0.5]);
+    let held = balance::balance(&stage.scene(), &stance, tolerance).expect("there is a weight");
+    assert!(held.holds() && held.pulls.is_empty());
+    let between = held.holds_between.expect("it holds as it is");
+    assert!(between[0] < 1.0 && between[1] > 1.0);
+
+    stance.bearings[0].contact.point.x = -0.15;
+    stance.bearings[1].contact.point.x = -0.1;
+    let found = balance::balance(&stage.scene(), &stance, tolerance).expect("there is a weight");
+    assert!(!found.holds() && found.holds_between.is_none());
+    let [pull] = found.pulls[..] else {
+        panic!("one pulls: {:?}", found.pulls)
+    };
+    assert_eq!((pull.body, pull.point.x), (0, -0.15));
+    // A residual within the tolerance spares some of it, by the lever between the posts.
+    let weights = pull.force / stage.weight();
+    assert!((weights - 2.0).abs() < 0.05, "{weights}");
 }
 
 #[test]
