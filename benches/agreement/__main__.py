@@ -1,6 +1,7 @@
 """Compare crawler2d's own dynamics with rapier's on random robots.
 
-Usage, from the repository root: ``python -m benches.agreement run`` and ``table``.
+Usage, from the repository root: ``python -m benches.agreement run``,
+``third`` (needs pymunk) and ``table``.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from pathlib import Path
 
 from benches.agreement.pairs import RESULTS, read, run
 from benches.agreement.table import parts
+from benches.agreement.third import ask, read_third
 from benches.engines.telling import tell
 from crawler2d.reports.markdown import spliced
 
@@ -22,14 +24,18 @@ def main() -> None:
     verbs = parser.add_subparsers(dest="verb", required=True)
     runs = verbs.add_parser("run", help="make the pairs, on from where it stopped")
     runs.add_argument("--robots", type=int, default=300)
+    third = verbs.add_parser("third", help="make those that end unlike in Chipmunk, too")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
-    for verb in (runs, tables):
+    for verb in (runs, third, tables):
         verb.add_argument("--output", type=Path, default=RESULTS, help="default: %(default)s")
     given = parser.parse_args()
     if given.verb == "run":
         run(given.robots, given.output)
         return
-    made = parts(read(given.output))
+    if given.verb == "third":
+        ask(read(given.output))
+        return
+    made = parts(read(given.output), read_third())
     tell("\n\n".join(made.values()))
     if given.output == RESULTS:
         page = _PAGE.read_text(encoding="utf-8")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,9 @@ _NEAR = 1e-3  # [m]
 Pair = dict[str, Any]
 
 
-def parts(pairs: Sequence[Pair]) -> dict[str, str]:
-    """Write the tables of a page, by name."""
-    return {"models": _by_model(pairs), "unlike": _unlike(pairs)}
+def parts(pairs: Sequence[Pair], third: Mapping[str, str]) -> dict[str, str]:
+    """Write the tables of a page, by name; a third engine's ends are by the robot's number."""
+    return {"models": _by_model(pairs), "unlike": _unlike(pairs, third)}
 
 
 def _by_model(pairs: Sequence[Pair]) -> str:
@@ -70,9 +70,9 @@ def _spread(values: list[float]) -> str:
     return f"{median:.2g}, {ninth:.2g}"
 
 
-def _unlike(pairs: Sequence[Pair]) -> str:
+def _unlike(pairs: Sequence[Pair], third: Mapping[str, str]) -> str:
     head = (
-        *("robot", "model", "own", "own, finer", "rapier", "rapier, finer"),
+        *("robot", "model", "own", "own, finer", "rapier", "rapier, finer", "Chipmunk"),
         *("the stop is an equilibrium", "rapier sinks in by [mm]"),
     )
     rows = [
@@ -83,6 +83,7 @@ def _unlike(pairs: Sequence[Pair]) -> str:
             pair["finer"]["own"],
             pair["ends"][1]["outcome"],
             pair["finer"]["rapier"],
+            third.get(str(pair["number"]), ""),
             ", ".join("yes" if held else "no" for held in pair["balances"] if held is not None),
             f"{1e3 * pair['ends'][1]['penetration']:.2g}",
         )

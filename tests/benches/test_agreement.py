@@ -41,7 +41,7 @@ def test_a_pair_has_both_ends_and_both_balances(tmp_path: Path) -> None:
     (pair,) = pairs.read(path)
     assert [end["gets_over"] for end in pair["ends"]].count(True) in (0, 2)  # it is no close call
     assert pair["apart"] < 1e-3 or pair["ends"][0]["gets_over"]
-    table = parts([pair])["models"]
+    table = parts([pair], {})["models"]
     assert "| line | 1 | 1 (21 to 100 %) |" in table
 
 
@@ -58,7 +58,7 @@ def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
         "balances": [None, True],
         "finer": {"own": "cleared", "rapier": "cleared"},
     }
-    told = parts([pair])
+    told = parts([pair], {"7": "cleared"})
     assert "| row | 1 | 0 (0 to 79 %) | 0 (0 to 79 %) | 0 | 0 |" in told["models"]
     last = told["unlike"].splitlines()[-1]
-    assert last == "| 7 | row | cleared | cleared | seized | cleared | yes | 0.3 |"
+    assert last == "| 7 | row | cleared | cleared | seized | cleared | cleared | yes | 0.3 |"
