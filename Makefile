@@ -58,9 +58,10 @@ bench: | tools ## benchmarks
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)
 
-bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots, a quarter of an hour; Ctrl-C loses little
+bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots and the study's cells, half an hour; Ctrl-C loses little
 	$(BIN)/python -m benches.agreement run
 	$(BIN)/python -m benches.agreement third
+	$(BIN)/python -m benches.agreement study
 	$(BIN)/python -m benches.agreement table
 
 bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes

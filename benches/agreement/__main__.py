@@ -1,7 +1,7 @@
 """Compare crawler2d's own dynamics with rapier's on random robots.
 
 Usage, from the repository root: ``python -m benches.agreement run``,
-``third`` (needs pymunk) and ``table``.
+``study``, ``third`` (needs pymunk) and ``table``.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import argparse
 from pathlib import Path
 
 from benches.agreement.pairs import RESULTS, read, run
+from benches.agreement.study import study, study_table
 from benches.agreement.table import parts
 from benches.agreement.third import ask, read_third
 from benches.engines.telling import tell
@@ -24,6 +25,8 @@ def main() -> None:
     verbs = parser.add_subparsers(dest="verb", required=True)
     runs = verbs.add_parser("run", help="make the pairs, on from where it stopped")
     runs.add_argument("--robots", type=int, default=300)
+    cells = verbs.add_parser("study", help="make the cells of the seizure study")
+    cells.add_argument("--repeats", type=int, default=8)
     third = verbs.add_parser("third", help="make those that end unlike in Chipmunk, too")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
     for verb in (runs, third, tables):
@@ -35,7 +38,10 @@ def main() -> None:
     if given.verb == "third":
         ask(read(given.output))
         return
-    made = parts(read(given.output), read_third())
+    if given.verb == "study":
+        study(given.repeats)
+        return
+    made = {**parts(read(given.output), read_third()), "study": study_table()}
     tell("\n\n".join(made.values()))
     if given.output == RESULTS:
         page = _PAGE.read_text(encoding="utf-8")

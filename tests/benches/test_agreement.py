@@ -1,11 +1,13 @@
 """The comparison of both engines on random robots: what is drawn, kept and told."""
 
+import dataclasses
+import json
 from pathlib import Path
 
 import pytest
 
 import crawler2d as c2d
-from benches.agreement import pairs
+from benches.agreement import pairs, study
 from benches.agreement.drawing import MODELS, drawn
 from benches.agreement.table import parts
 
@@ -62,3 +64,28 @@ def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
     assert "| row | 1 | 0 (0 to 79 %) | 0 (0 to 79 %) | 0 | 0 |" in told["models"]
     last = told["unlike"].splitlines()[-1]
     assert last == "| 7 | row | cleared | cleared | seized | cleared | cleared | yes | 0.3 |"
+
+
+def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.json"
+    monkeypatch.setattr(study, "_tracks", lambda _: {"line of 3": c2d.LineOfWheels(3)})
+    few = dataclasses.replace(study.FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
+    monkeypatch.setattr(study, "FULL", few)
+    study.study(1, path)
+    study.study(1, path)  # nothing is left to do
+    cells = [cell for part in json.loads(path.read_text(encoding="utf-8")) for cell in part]
+    assert [(cell["obstacle"], cell["height"]) for cell in cells] == [
+        ("step", 0.04),
+        ("step", 0.15),
+        ("knife edge", 0.02),
+    ]
+    last = study.study_table(path).splitlines()[-1]
+    assert last.startswith("| all | 3 | 3 | ")
+
+
+def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:
+    held = study._tracks(0.365)
+    assert {"line of 3", "line of 5 gears", "24 all round", "24 gears all round"} <= set(held)
+    assert "belt" not in held
