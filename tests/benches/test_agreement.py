@@ -10,6 +10,7 @@ import crawler2d as c2d
 from benches.agreement import pairs, study
 from benches.agreement.drawing import MODELS, drawn
 from benches.agreement.table import parts
+from crawler2d.reports.sweeps import FULL
 
 
 def test_every_model_is_drawn_and_rapier_holds_it() -> None:
@@ -71,7 +72,7 @@ def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
 ) -> None:
     path = tmp_path / "study.json"
     monkeypatch.setattr(study, "_tracks", lambda _: {"line of 3": c2d.LineOfWheels(3)})
-    few = dataclasses.replace(study.FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
+    few = dataclasses.replace(FULL, heights={"step": (0.04, 0.15), "knife edge": (0.02,)})
     monkeypatch.setattr(study, "FULL", few)
     study.study(1, path)
     study.study(1, path)  # nothing is left to do
