@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::contact::{Contact, TrackEnvelope};
+use crate::geometry::Rotation;
 use crate::observe::{Bearing, DriveMean};
 use crate::robot::{Model, Mount};
 use crate::scenario::{LineOfWheels, Scenario, Terrain, Track, TrackOutline, Wheel};
@@ -182,6 +183,38 @@ fn a_contact_that_would_have_to_pull_is_named_with_its_force() {
     // A residual within the tolerance spares some of it, by the lever between the posts.
     let weights = pull.force / stage.weight();
     assert!((weights - 2.0).abs() < 0.05, "{weights}");
+}
+
+/// Braked on a slope, two sticking contacts need the tangent of its angle, and motors the sine of the weight.
+#[test]
+fn a_braked_robot_on_a_slope_holds_from_the_friction_of_the_angle_on() {
+    let mut stage = Stage::new();
+    let (friction, angle) = (0.9, 0.4);
+    let turn = Rotation::new(angle);
+    let mut stance = stage.stance([0.5, 0.5]);
+    (stance.angle, stance.position) = (angle, turn * stance.position);
+    for bearing in &mut stance.bearings {
+        let contact = &mut bearing.contact;
+        (contact.point, contact.normal) = (turn * contact.point, turn * contact.normal);
+    }
+    let needed = libm::sin(angle) * stage.weight();
+    for (share, holds) in [(1.01, true), (0.99, false)] {
+        // Both tracks are one drive here.
+        stage.model.drive_force = share * needed / stage.model.motors as f64;
+        // What a residual of a millionth spares is less than what the halvings leave.
+        let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
+        assert_eq!(found.holds(), holds);
+        let Some([from, to]) = found.holds_between else {
+            assert!(!holds, "with {share} of the force it holds");
+            continue;
+        };
+        let expected = libm::tan(angle) / friction;
+        assert!(
+            holds && (from / expected - 1.0).abs() < 5e-4,
+            "{from}, by hand {expected}"
+        );
+        assert!(to.is_infinite());
+    }
 }
 
 #[test]

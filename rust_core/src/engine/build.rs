@@ -7,7 +7,7 @@ use rapier2d_f64::prelude::{
 };
 
 use super::surface::pieces;
-use super::{EngineWorld, Robot, Wheel, joints};
+use super::{EngineWorld, Robot, Wheel, joints, masses};
 use crate::dynamics::State;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Part, Running, WheelBody};
@@ -69,7 +69,7 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
     state.running_after(0.0, model, &mut running);
     let pose = state.pose(model);
     // The chassis takes what the wheels leave of mass, centre of mass and inertia.
-    let (body, wheels) = model.bodies();
+    let (body, wheels) = masses::divided(model);
     let mass = MassProperties::new(body.center_of_mass, body.mass, body.moment_of_inertia);
     let chassis = insert(world, pose, mass);
     for (i, part) in model.parts.iter().enumerate() {

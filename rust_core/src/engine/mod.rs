@@ -9,6 +9,7 @@
 mod build;
 mod joints;
 mod limits;
+mod masses;
 mod reading;
 mod surface;
 

@@ -113,7 +113,7 @@ impl Model {
         (self.chassis_beside(&wheels), wheels)
     }
 
-    fn chassis_beside(&self, wheels: &[WheelBody]) -> ChassisBody {
+    pub(crate) fn chassis_beside(&self, wheels: &[WheelBody]) -> ChassisBody {
         let mass = self.mass - wheels.iter().map(|w| w.mass).sum::<f64>();
         let moment: Vector = wheels.iter().map(|w| w.center * w.mass).sum();
         let center_of_mass = (self.center_of_mass * self.mass - moment) / mass;

@@ -134,7 +134,9 @@ impl Checked {
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
         let parts = lumped.map_or(&[][..], |model| &model.parts);
         check_sizes(&scenario, parts)?;
-        engine::check(&scenario, parts)?;
+        if let Some(model) = lumped {
+            engine::check(&scenario, model)?;
+        }
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
         } else {
