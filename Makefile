@@ -62,6 +62,8 @@ bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random rob
 	$(BIN)/python -m benches.agreement run
 	$(BIN)/python -m benches.agreement third
 	$(BIN)/python -m benches.agreement study
+	$(BIN)/python -m benches.agreement one-by-one
+	$(BIN)/python -m benches.agreement pinched
 	$(BIN)/python -m benches.agreement table
 
 bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes

@@ -1,7 +1,7 @@
 """Compare crawler2d's own dynamics with rapier's on random robots.
 
 Usage, from the repository root: ``python -m benches.agreement run``,
-``study``, ``third`` (needs pymunk) and ``table``.
+``study``, and, with pymunk, ``third``, ``one-by-one`` and ``pinched``; then ``table``.
 """
 
 from __future__ import annotations
@@ -9,7 +9,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from benches.agreement.one_by_one import one_by_one, one_by_one_table
 from benches.agreement.pairs import RESULTS, read, run
+from benches.agreement.pinched import pinched, pinched_table
 from benches.agreement.study import study, study_table
 from benches.agreement.table import parts
 from benches.agreement.third import ask, read_third
@@ -27,6 +29,9 @@ def main() -> None:
     runs.add_argument("--robots", type=int, default=300)
     cells = verbs.add_parser("study", help="make the cells of the seizure study")
     cells.add_argument("--repeats", type=int, default=8)
+    verbs.add_parser("one-by-one", help="make the study's that end unlike on round wheels again")
+    edge = verbs.add_parser("pinched", help="make the runs of 24 wheels on a knife edge")
+    edge.add_argument("--starts", type=int, default=12)
     third = verbs.add_parser("third", help="make those that end unlike in Chipmunk, too")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
     for verb in (runs, third, tables):
@@ -38,10 +43,17 @@ def main() -> None:
     if given.verb == "third":
         ask(read(given.output))
         return
+    if given.verb == "one-by-one":
+        one_by_one()
+        return
+    if given.verb == "pinched":
+        pinched(given.starts)
+        return
     if given.verb == "study":
         study(given.repeats)
         return
     made = {**parts(read(given.output), read_third()), "study": study_table()}
+    made.update({"one by one": one_by_one_table(), "pinched": pinched_table()})
     tell("\n\n".join(made.values()))
     if given.output == RESULTS:
         page = _PAGE.read_text(encoding="utf-8")

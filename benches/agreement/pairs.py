@@ -15,7 +15,7 @@ from crawler2d.parameters.settings import Solver
 from crawler2d.results.balance import Balance
 from crawler2d.runs.run import Run
 
-__all__ = ["RESULTS", "read", "run"]
+__all__ = ["RESULTS", "finer", "read", "run"]
 
 RESULTS = Path(__file__).with_name("results.jsonl")
 _TOLD = 10  # robots between two lines of progress
@@ -60,7 +60,7 @@ def _pair(number: int) -> dict[str, Any]:
             "balances": [_held(balance) for balance in check.balances],
         }
         if len({end["gets_over"] for end in pair["ends"]}) == 2:
-            pair["finer"] = {name: _finer(scenario, solver) for name, solver in _FINER.items()}
+            pair["finer"] = finer(scenario)
     return pair
 
 
@@ -73,9 +73,13 @@ def _end(run: Run) -> dict[str, Any]:
     }
 
 
-def _finer(scenario: Scenario, solver: Solver) -> str:
-    run = c2d.simulate(scenario.replace({"solver": solver}), record="summary", trials=None)
-    return str(run.outcome)
+def finer(scenario: Scenario) -> dict[str, str]:
+    """Say how a scenario ends in each engine, finer."""
+    solved = {name: scenario.replace({"solver": solver}) for name, solver in _FINER.items()}
+    return {
+        name: str(c2d.simulate(each, record="summary", trials=None).outcome)
+        for name, each in solved.items()
+    }
 
 
 def _held(balance: Balance | None) -> bool | None:

@@ -16,7 +16,7 @@ from crawler2d.reports.models import study_models
 from crawler2d.reports.sweeps import FULL
 from crawler2d.sweeps.statistics import newcombe_paired
 
-__all__ = ["STUDY", "study", "study_table"]
+__all__ = ["STUDY", "at_height", "read_cells", "study", "study_table"]
 
 STUDY = Path(__file__).with_name("study.json")
 _ENGINES = ["own", "rapier"]
@@ -29,7 +29,7 @@ def study(repeats: int, path: Path = STUDY) -> None:
     robot = c2d.robots.engineer(flippers=None)
     found = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     for obstacle, heights in list(FULL.heights.items())[len(found) :]:
-        base = Scenario(robot, _ground(obstacle, heights[0]), drive=c2d.Drive(speed=0.4))
+        base = _on(robot, obstacle, heights[0])
         over = {
             "robot.track": _tracks(robot.outline.axle_distance),
             "terrain.height": list(heights),
@@ -37,6 +37,22 @@ def study(repeats: int, path: Path = STUDY) -> None:
         }
         found.append(_cells(obstacle, c2d.sweep(base, over, repeats=repeats)))
         path.write_text(json.dumps(found) + "\n", encoding="utf-8")
+
+
+def read_cells(path: Path = STUDY) -> list[dict[str, Any]]:
+    """Read what came of each cell."""
+    return [cell for part in json.loads(path.read_text(encoding="utf-8")) for cell in part]
+
+
+def at_height(model: str, obstacle: str, height: float) -> Scenario:
+    """Give the scenario of a cell, before its draws."""
+    robot = c2d.robots.engineer(flippers=None)
+    track = _tracks(robot.outline.axle_distance)[model]
+    return _on(robot.with_track(track), obstacle, height)
+
+
+def _on(robot: c2d.Robot, obstacle: str, height: float) -> Scenario:
+    return Scenario(robot, _ground(obstacle, height), drive=c2d.Drive(speed=0.4))
 
 
 def _ground(obstacle: str, height: float) -> Any:
@@ -87,7 +103,7 @@ def study_table(path: Path = STUDY) -> str:
     """Write how runs ended alike, and how far stops are apart, by model."""
     if not path.exists():
         return "Not tried."
-    cells = [cell for part in json.loads(path.read_text(encoding="utf-8")) for cell in part]
+    cells = read_cells(path)
     head = (
         *("model", "runs", "same: gets over or not", "same outcome", "get over: own, rapier"),
         *("difference of rates [%]", "both stop", "apart [mm]: median, 90th"),

@@ -11,8 +11,9 @@ from benches.agreement.drawing import drawn
 from benches.engines.driving import driven
 from benches.engines.telling import tell
 from crawler2d.errors import ScenarioError
+from crawler2d.parameters.scenario import Scenario
 
-__all__ = ["THIRD", "ask", "read_third"]
+__all__ = ["THIRD", "ask", "in_chipmunk", "read_third"]
 
 THIRD = Path(__file__).with_name("chipmunk.json")
 _STEP, _ITERATIONS = 5e-5, 100  # [s]
@@ -33,16 +34,25 @@ def ask(pairs: Sequence[dict[str, Any]], path: Path = THIRD) -> None:
     ImportError
         If pymunk is missing.
     """
-    from benches.engines.engine_pymunk import Pymunk  # noqa: PLC0415 - loads Chipmunk
-
     found = read_third(path)
     for number in (pair["number"] for pair in pairs if "finer" in pair):
         if str(number) not in found:
-            _, scenario = drawn(number)
-            try:
-                end = driven(Pymunk(_STEP, iterations=_ITERATIONS), scenario)["end"]
-            except ScenarioError:  # a ridge, which is not drawn there
-                end = "not held"
-            found[str(number)] = end
+            found[str(number)] = in_chipmunk(drawn(number)[1])
             path.write_text(json.dumps(found) + "\n", encoding="utf-8")
             tell(f"robot {number}: {found[str(number)]}")
+
+
+def in_chipmunk(scenario: Scenario) -> str:
+    """Say how a scenario ends in Chipmunk, finely.
+
+    Raises
+    ------
+    ImportError
+        If pymunk is missing.
+    """
+    from benches.engines.engine_pymunk import Pymunk  # noqa: PLC0415 - loads Chipmunk
+
+    try:
+        return str(driven(Pymunk(_STEP, iterations=_ITERATIONS), scenario)["end"])
+    except ScenarioError:  # a ridge, which is not drawn there
+        return "not held"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
-from benches.agreement import pairs, study
+from benches.agreement import pairs, pinched, study
 from benches.agreement.drawing import MODELS, drawn
 from benches.agreement.table import parts
 from crawler2d.reports.sweeps import FULL
@@ -90,3 +90,15 @@ def test_rapier_holds_rows_gears_and_wheels_all_round_of_the_study() -> None:
     held = study._tracks(0.365)
     assert {"line of 3", "line of 5 gears", "24 all round", "24 gears all round"} <= set(held)
     assert "belt" not in held
+
+
+def test_four_solvers_meet_the_knife_edge_from_the_same_starts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pymunk")
+    path = tmp_path / "pinched.json"
+    monkeypatch.setattr(pinched, "_HEIGHTS", (0.002,))
+    monkeypatch.setattr(pinched, "_SPEEDS", (0.4,))
+    pinched.pinched(1, path)
+    last = pinched.pinched_table(path).splitlines()[-1]
+    assert last == "| 2 | 0.4 | 1 of 1 | 1 of 1 | 1 of 1 | 1 of 1 |"
