@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "Contacts".
 
 use super::levers::Moved;
-use super::meeting::Swing;
+use super::meeting::{Meeting, Swing};
 use super::row::{Link, Row};
 use super::state::State;
 use crate::geometry::{Vector, left_of};
@@ -25,7 +25,17 @@ impl Row {
         if self.has_closed() {
             let swing = self.swing(state, model, mount, &moved);
             self.gains = self.meeting.gains(swing).map(|gain| 0.5 * h * gain);
+            self.overrun = self.overrun(&moved);
         }
+    }
+
+    /// [m] How far the ground has fallen away below an arc that has rolled past the end of its face.
+    fn overrun(&self, moved: &Moved) -> f64 {
+        let Meeting::Arc(radius) = self.meeting else {
+            return 0.0;
+        };
+        let way = self.tangent.unit.dot(moved.way) - radius * moved.of_part.sin();
+        self.face.below(radius, way)
     }
 
     /// Whether it pressed in the first solve or touches now.

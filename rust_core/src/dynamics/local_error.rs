@@ -6,7 +6,6 @@
 //! The equations: docs/physics.md, "Length of a step".
 
 use super::Dynamics;
-use super::row::Row;
 use super::state::{State, Twist};
 
 /// Share of a shoe's error that counts: shoes are light, and swing where the chain is slack.
@@ -14,7 +13,8 @@ const OF_SHOES: f64 = 0.1;
 
 impl Dynamics {
     /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
-    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin.
+    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; what tips dip into the
+    /// ground, and how far it falls away below what has rolled past the end of a face.
     pub(crate) fn local_error(&self, before: &State, after: &State, h: f64, reach: f64) -> f64 {
         let moved = &self.moved;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;
@@ -47,7 +47,7 @@ impl Dynamics {
             let off = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
             most = most.max(OF_SHOES * (off.velocity.length() + half_pitch * off.turn.abs()));
         }
-        let dips = self.rows.iter().map(Row::dip);
+        let dips = self.rows.iter().map(|row| row.dip().max(row.overrun));
         dips.fold(h * most, f64::max)
     }
 }

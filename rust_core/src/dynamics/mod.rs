@@ -20,6 +20,7 @@ mod damper;
 mod descent;
 mod direct;
 mod effort;
+mod face;
 mod flippers;
 mod grip;
 mod identity;
@@ -50,6 +51,7 @@ mod way;
 
 use arm::Arm;
 use chain::Chain;
+use face::Face;
 use identity::{Identity, Numbered};
 use motor::Motor;
 use phase::Phase;
@@ -63,6 +65,7 @@ use crate::contact::Contact;
 use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
+use crate::terrain::Profile;
 
 pub use chains::ChainReading;
 pub(crate) use effort::Effort;
@@ -226,6 +229,14 @@ impl Dynamics {
             self.rows.push(row);
         }
         self.rest_on_guides(state, half);
+    }
+
+    /// Tells the prepared step where the faces end that its contacts are on.
+    pub(crate) fn bound_faces(&mut self, contacts: &[Contact], lanes: &[Profile]) {
+        for (row, contact) in self.rows.iter_mut().zip(contacts) {
+            let lane = self.model.parts[contact.part].lane;
+            row.face = Face::of(contact, &lanes[lane]);
+        }
     }
 
     /// Advances the state by the prepared step of `h` [s].

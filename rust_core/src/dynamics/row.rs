@@ -5,6 +5,7 @@
 use super::LoadedContact;
 use super::action::Action;
 use super::damper::Damper;
+use super::face::Face;
 use super::grip::Grip;
 use super::levers::{Direction, Levers, Place};
 use super::meeting::Meeting;
@@ -98,6 +99,10 @@ pub(super) struct Row {
     pub middle: Place,
     /// [m] Gap at the start of the step.
     pub start: f64,
+    /// The face on which an arc rolls, if it is on one.
+    pub face: Face,
+    /// [m] How far the ground has fallen away below an arc that has left its face within the step.
+    pub overrun: f64,
 }
 
 impl Row {
@@ -188,6 +193,8 @@ impl Row {
             place: 0,
             middle: Place::default(),
             start: 0.0,
+            face: Face::default(),
+            overrun: 0.0,
         }
     }
 
