@@ -72,7 +72,16 @@ def _spread(values: list[float]) -> str:
 
 def _unlike(pairs: Sequence[Pair], third: Mapping[str, str]) -> str:
     head = (
-        *("robot", "model", "own", "own, finer", "rapier", "rapier, finer", "Chipmunk"),
+        *(
+            "robot",
+            "model",
+            "own",
+            "own, finer",
+            "own, fixed steps",
+            "rapier",
+            "rapier, finer",
+            "Chipmunk",
+        ),
         *("the stop is an equilibrium", "rapier sinks in by [mm]"),
     )
     rows = [
@@ -81,6 +90,7 @@ def _unlike(pairs: Sequence[Pair], third: Mapping[str, str]) -> str:
             pair["model"],
             pair["ends"][0]["outcome"],
             pair["finer"]["own"],
+            pair["finer"]["fixed"],
             pair["ends"][1]["outcome"],
             pair["finer"]["rapier"],
             third.get(str(pair["number"]), ""),

@@ -59,12 +59,15 @@ def test_pairs_that_end_unlike_are_told_one_by_one() -> None:
         "turn": 0.1,
         "parted_at": 1.0,
         "balances": [None, True],
-        "finer": {"own": "cleared", "rapier": "cleared"},
+        "finer": {"own": "cleared", "fixed": "slipping", "rapier": "cleared"},
     }
     told = parts([pair], {"7": "cleared"})
     assert "| row | 1 | 0 (0 to 79 %) | 0 (0 to 79 %) | 0 | 0 |" in told["models"]
     last = told["unlike"].splitlines()[-1]
-    assert last == "| 7 | row | cleared | cleared | seized | cleared | cleared | yes | 0.3 |"
+    assert (
+        last
+        == "| 7 | row | cleared | cleared | slipping | seized | cleared | cleared | yes | 0.3 |"
+    )
 
 
 def test_cells_of_the_study_are_in_both_engines_with_the_same_draws(
