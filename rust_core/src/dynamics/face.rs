@@ -2,6 +2,8 @@
 //!
 //! Within a step a normal stays that of the face, and forces are constant: the velocities at both ends of the step do not
 //! tell that the face has ended.
+//!
+//! The equations: docs/physics.md, "Length of a step".
 
 use std::f64::consts::FRAC_PI_2;
 
