@@ -381,8 +381,8 @@ class Run(Record):
         Examples
         --------
         >>> import crawler2d as c2d
-        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(3))
-        >>> run = c2d.simulate(robot, c2d.terrains.step(0.11))
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> run = c2d.simulate(robot, c2d.terrains.step(0.1))
         >>> check = run.cross_check()
         >>> check.same_outcome, all(balance.holds for balance in check.balances)
         (True, True)
