@@ -8,7 +8,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::contact::Contact;
-use crate::geometry::{Vector, right_of};
+use crate::geometry::{Vector, cross, right_of};
 use crate::terrain::Profile;
 
 /// What is left of a face on either side of a point, backwards and forwards along the tangent.
@@ -31,19 +31,15 @@ impl Default for Face {
 }
 
 impl Face {
-    /// The one that a contact is on.
+    /// The one that a contact on no edge is on.
     pub(super) fn of(contact: &Contact, lane: &Profile) -> Self {
-        if contact.edge >= 0 {
-            return Self::default();
-        }
         let (points, facet) = (&lane.points, contact.facet);
         let along = right_of(contact.normal);
         let way = |point: Vector| (point - contact.point).dot(along);
         let way_of = |from: usize, to: usize| points[to] - points[from];
         let direction = way_of(facet, facet + 1);
         let down = |next: Vector, sign: f64| {
-            let cross = direction.x * next.y - direction.y * next.x;
-            (sign * libm::atan2(cross, direction.dot(next))).max(0.0)
+            (sign * libm::atan2(cross(direction, next), direction.dot(next))).max(0.0)
         };
         Self {
             left: [-way(points[facet]), way(points[facet + 1])],

@@ -13,8 +13,8 @@ const OF_SHOES: f64 = 0.1;
 
 impl Dynamics {
     /// [m] The local error of a step of `h` [s] from `before` to `after`: the largest of any point of the robot, whose
-    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; what tips dip into the
-    /// ground, and how far it falls away below what has rolled past the end of a face.
+    /// farthest point is `reach` [m] from its centre of mass, and of any driven surface; a tenth of that of a pin; how deep
+    /// a tip dips into the ground; and how far the ground is below an arc that has rolled past the end of its face.
     pub(crate) fn local_error(&self, before: &State, after: &State, h: f64, reach: f64) -> f64 {
         let moved = &self.moved;
         let off = |ends: [f64; 2], middle: f64| 0.5 * (ends[0] + ends[1]) - middle;

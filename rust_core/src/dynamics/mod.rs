@@ -53,6 +53,7 @@ use arm::Arm;
 use chain::Chain;
 use face::Face;
 use identity::{Identity, Numbered};
+use meeting::Meeting;
 use motor::Motor;
 use phase::Phase;
 use push::Push;
@@ -231,9 +232,10 @@ impl Dynamics {
         self.rest_on_guides(state, half);
     }
 
-    /// Tells the prepared step where the faces end that its contacts are on.
+    /// Tells the prepared step where the faces end on which arcs roll.
     pub(crate) fn bound_faces(&mut self, contacts: &[Contact], lanes: &[Profile]) {
-        for (row, contact) in self.rows.iter_mut().zip(contacts) {
+        let on_faces = self.rows.iter_mut().zip(contacts);
+        for (row, contact) in on_faces.filter(|(row, _)| matches!(row.meeting, Meeting::Arc(_))) {
             let lane = self.model.parts[contact.part].lane;
             row.face = Face::of(contact, &lanes[lane]);
         }

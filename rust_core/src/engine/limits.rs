@@ -78,7 +78,7 @@ fn check_masses(scenario: &Scenario, model: &Model) -> Result<(), ScenarioError>
     }
     let more = inertia_taken(model, &wheels, least) / ON_WHEELS - model.moment_of_inertia;
     let rule = format!(
-        "must be at least {:.3} kg m^2 where solver.engine is rapier: {count} wheels of 0.3 % of the mass have half of it, and \
+        "must be at least {:.3} kg m^2 where solver.engine is rapier: {count} wheels of 0.3 % of the mass take half of that, and \
          its contacts do not hold lighter ones",
         scenario.robot.moment_of_inertia + more
     );
