@@ -2,101 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from functools import cache
-from pathlib import Path
-from typing import Any
-
-import numpy as np
+from dataclasses import asdict
 
 from benches.engines.engine import Scene
-from crawler2d.models.poses import Pose
+from benches.models.ode_child import VERSION, Child, Setting, require
 
-__all__ = ["FINE", "GAZEBO", "Ode", "Setting", "interpreter"]
-
-_WORKER = Path(__file__).with_name("ode_worker.py")
-_CANDIDATES = (sys.executable, "/usr/bin/python3")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Setting:
-    """How ODE's quick step is set.
-
-    Parameters
-    ----------
-    time_step : float
-        [s] Of a step.
-    iterations : int
-        Of its solver.
-    cfm, erp : float
-        [s^2/kg], [-] Constraint force mixing and error reduction of joints.
-    layer : float
-        [m] Depth up to which contacts are left alone.
-    correcting : float
-        [m/s] Largest speed at which a penetration is pushed out.
-    soft_cfm, soft_erp : float
-        Those of contacts.
-    """
-
-    time_step: float
-    iterations: int
-    cfm: float
-    erp: float
-    layer: float
-    correcting: float
-    soft_cfm: float
-    soft_erp: float
-
-
-_KP, _KD, _STEP = 0.5e12, 2.0, 1e-3  # two surfaces of 1e12 N/m and 1 N s/m, in series and beside
-
-GAZEBO = Setting(
-    time_step=_STEP,
-    iterations=50,
-    cfm=0.0,
-    erp=0.2,
-    layer=0.0,
-    correcting=0.01,
-    soft_cfm=1.0 / (_STEP * _KP + _KD),
-    soft_erp=_STEP * _KP / (_STEP * _KP + _KD),
-)
-"""Gazebo classic's: its `min_depth` and `max_vel` of a link stand in place of layer and speed."""
-
-FINE = Setting(
-    time_step=5e-4,
-    iterations=150,
-    cfm=1e-8,
-    erp=0.2,
-    layer=1e-5,
-    correcting=0.1,
-    soft_cfm=1e-8,
-    soft_erp=0.2,
-)
-
-
-@cache
-def interpreter() -> str | None:
-    """Return an interpreter that has ODE, or None.
-
-    Examples
-    --------
-    >>> interpreter() in (None, sys.executable, "/usr/bin/python3")
-    True
-    """
-    for path in dict.fromkeys(_CANDIDATES):
-        try:
-            done = subprocess.run(
-                [path, "-c", "import ode"], capture_output=True, check=False, timeout=60
-            )
-        except OSError:
-            continue
-        if done.returncode == 0:
-            return path
-    return None
+__all__ = ["Ode"]
 
 
 class Ode:
@@ -116,31 +27,15 @@ class Ode:
     in_space = True
 
     def __init__(self, setting: Setting) -> None:
-        path = interpreter()
-        if path is None:
-            raise ImportError("no interpreter has the module ode (Debian: python3-pyode)")
+        require()
         self.setting = setting
         self.time_step = setting.time_step
-        self.version = "ODE 0.16"
-        self._path = path
+        self.version = VERSION
 
-    def world(self, scene: Scene) -> OdeWorld:
+    def world(self, scene: Scene) -> Child:
         """Build a world."""
-        return OdeWorld(self._path, self.setting, scene)
-
-
-class OdeWorld:
-    """A robot on its ground in ODE."""
-
-    def __init__(self, path: str, setting: Setting, scene: Scene) -> None:
-        self._child = subprocess.Popen(
-            [path, str(_WORKER)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._answer = self._ask(
-            do="build",
+        return Child(
+            self.setting,
             bodies=scene.robot.plain(),
             ground=[asdict(block) for block in scene.ground],
             friction=scene.friction,
@@ -148,33 +43,4 @@ class OdeWorld:
             z=scene.z,
             angle=scene.angle,
             phase=scene.phase,
-            setting=asdict(setting),
         )
-
-    def _ask(self, **message: Any) -> dict[str, Any]:
-        stdin, stdout = self._child.stdin, self._child.stdout
-        assert stdin is not None
-        assert stdout is not None
-        stdin.write(json.dumps(message) + "\n")
-        stdin.flush()
-        line = stdout.readline()
-        if not line:
-            raise RuntimeError(f"ODE's process ended with {self._child.wait()}")
-        answer: dict[str, Any] = json.loads(line)
-        return answer
-
-    def advance(self, speeds: Sequence[float]) -> None:
-        """Take a step for each set-point."""
-        self._answer = self._ask(do="advance", speeds=list(speeds))
-
-    def pose(self) -> Pose:
-        """Return where the chassis frame is."""
-        turn = np.array(self._answer["turn"]).reshape(3, 3)
-        return Pose(place=np.array(self._answer["place"]), turn=turn)
-
-    def close(self) -> None:
-        """End the process."""
-        for pipe in (self._child.stdin, self._child.stdout):
-            assert pipe is not None
-            pipe.close()
-        self._child.wait(timeout=10)

@@ -30,6 +30,8 @@ class ModelFile:
     ----------
     path : Path
         The file, without pictures, sensors and plugins.
+    tree : Tree
+        What was read from it, for engines that read no files.
     mass : float
         [kg] Of all of its links.
     wheels : mapping of str to float
@@ -45,6 +47,7 @@ class ModelFile:
     """
 
     path: Path
+    tree: Tree
     mass: float
     wheels: dict[str, float]
     held: dict[str, float]
@@ -152,6 +155,7 @@ def _model_file(path: Path, reading: Reading, angle: float) -> ModelFile:
         moved[name] = axle - origin
     return ModelFile(
         path=path,
+        tree=tree,
         mass=sum(link.mass for link in tree.links),
         wheels={name: _sense(tree, name) / radii[name] for name in names},
         held=held,

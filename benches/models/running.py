@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from benches.models import ode_child
 from benches.models.cases import CASES
 from benches.models.changed import VARIANTS, patch, variant
 from benches.models.driving import driven
@@ -23,9 +24,14 @@ __all__ = ["ENGINES", "FILES", "RESULTS", "engine_of", "model_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 
-ENGINES = ("bullet", "bullet-pyramid", "bullet-prisms", "dart", "dart-dantzig")
+ENGINES = (
+    *("bullet", "bullet-pyramid", "bullet-prisms"),
+    *("dart", "dart-dantzig"),
+    *("ode-fine", "ode"),
+)
 """Bullet with true cylinders, with these and friction limited along and across, and with what its
-readers make of cylinders by default; DART with Coulomb's law, and with its usual solver."""
+readers make of cylinders by default; DART with Coulomb's law, and with its usual solver; ODE
+finely, and as Gazebo classic sets it."""
 
 
 FILES = {
@@ -55,6 +61,10 @@ def engine_of(name: str, time_step: float | None = None) -> Engine:
         if time_step is None:
             return Bullet(is_round=is_round, is_cone=is_cone)
         return Bullet(time_step, is_round=is_round, is_cone=is_cone)
+    if name.startswith("ode"):
+        from benches.models.engine_ode import Ode  # noqa: PLC0415 - only for ODE
+
+        return Ode(ode_child.GAZEBO if name == "ode" else ode_child.FINE, time_step)
     from benches.models.engine_dart import Dart  # noqa: PLC0415 - loads DART
 
     is_coulomb = name == "dart"

@@ -12,13 +12,14 @@ from benches.engines.agreement import apart, pairs, rate, share
 from benches.engines.cells import GROUNDS, STARTS, Cell, read, write
 from benches.engines.driving import driven, scene_of
 from benches.engines.engine import Engine
-from benches.engines.engine_ode import GAZEBO, Ode, interpreter
+from benches.engines.engine_ode import Ode
 from benches.engines.engines import ENGINES, engine_of, holds
 from benches.engines.ground import blocks_of, goal_of
 from benches.engines.predict import PREDICTIONS, check, hash_of
 from benches.engines.predict import read as predictions
 from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
 from benches.engines.solid import solid_of
+from benches.models.ode_child import GAZEBO, interpreter
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import (
     Barrier,

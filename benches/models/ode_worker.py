@@ -41,7 +41,8 @@ class World:
         self.ground = [self._block(each) for each in message["ground"]]
         self.start = [message["x"], 0.0, message["z"]]
         self.angle = message["angle"]
-        self.shapes: list[Any] = []
+        self.shapes: list[tuple[Any, str]] = []
+        self.touches: list[dict[str, Any]] = []
         self.bodies: list[Any] = []
         self.motors: list[tuple[Any, float]] = []
         self.center = [0.0, 0.0, 0.0]
@@ -60,9 +61,10 @@ class World:
         xx, xy, xz, _, yy, yz, _, _, zz = data["inertia"]
         mass.setParameters(data["mass"], 0.0, 0.0, 0.0, xx, yy, zz, xy, xz, yz)
         body.setMass(mass)
-        center = data["center"]
-        body.setPosition(self._placed(center))
-        body.setRotation(_about_y(-self.angle))
+        center, axle = data["center"], data["axle"]
+        turn = 0.0 if axle is None else phase / data["radius"]
+        body.setPosition(self._placed(center if axle is None else _turned(center, axle, turn)))
+        body.setRotation(_about_y(turn - self.angle))
         for shape in data["shapes"]:
             if shape["kind"] == "cylinder":
                 geom = ode.GeomCylinder(None, shape["radius"], shape["length"])
@@ -73,25 +75,22 @@ class World:
             geom.setBody(body)
             geom.setOffsetPosition([a - b for a, b in zip(shape["place"], center, strict=True)])
             geom.setOffsetRotation(shape["turn"])
-            self.shapes.append(geom)
+            self.shapes.append((geom, data["name"]))
         self.bodies.append(body)
-        if data["axle"] is None:
+        if axle is None:
             self.center = center
             return
         hinge = ode.HingeJoint(self.world)
         # ODE has the rate of the first body relative to the second.
         hinge.attach(body, self.bodies[0])
-        hinge.setAnchor(self._placed(data["axle"]))
+        hinge.setAnchor(self._placed(axle))
         hinge.setAxis((0.0, 1.0, 0.0))
         hinge.setParam(_PARAM_FMAX, data["torque"])
         self.motors.append((hinge, data["radius"]))
-        body.setRotation(_about_y(phase / data["radius"] - self.angle))
 
     def _placed(self, point: list[float]) -> list[float]:
         """[m] Return where a point of the chassis frame is at the start."""
-        turn = _about_y(-self.angle)
-        rows = [turn[0:3], turn[3:6], turn[6:9]]
-        turned = [sum(a * b for a, b in zip(row, point, strict=True)) for row in rows]
+        turned = _turned(point, [0.0, 0.0, 0.0], -self.angle)
         return [a + b for a, b in zip(self.start, turned, strict=True)]
 
     def advance(self, speeds: list[float]) -> dict[str, list[float]]:
@@ -105,7 +104,8 @@ class World:
         return self.pose()
 
     def _touch(self) -> None:
-        for shape in self.shapes:
+        self.touches = []
+        for shape, name in self.shapes:
             low_x, high_x, low_y, high_y, low_z, _ = shape.getAABB()
             for block in self.ground:
                 x0, x1, y0, y1, _, z1 = block.getAABB()
@@ -118,6 +118,8 @@ class World:
                     contact.setSoftCFM(self.setting["soft_cfm"])
                     joint = ode.ContactJoint(self.world, self.contacts, contact)
                     joint.attach(shape.getBody(), None)
+                    point, normal = contact.getContactGeomParams()[:2]
+                    self.touches.append({"link": name, "point": point, "normal": normal})
 
     def pose(self) -> dict[str, list[float]]:
         """Return where the chassis frame is, and how it is turned, row by row."""
@@ -133,6 +135,17 @@ def _about_y(angle: float) -> tuple[float, ...]:
     return cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos
 
 
+def _turned(point: list[float], axle: list[float], angle: float) -> list[float]:
+    """[m] Turn a point about an axle along y."""
+    turn = _about_y(angle)
+    arm = [a - b for a, b in zip(point, axle, strict=True)]
+    rows = [turn[0:3], turn[3:6], turn[6:9]]
+    return [
+        at + sum(a * b for a, b in zip(row, arm, strict=True))
+        for at, row in zip(axle, rows, strict=True)
+    ]
+
+
 def main() -> None:
     """Answer every line until there are no more."""
     world: World | None = None
@@ -140,9 +153,11 @@ def main() -> None:
         message = json.loads(line)
         if message["do"] == "build":
             world = World(message)
-            answer = world.pose()
+            answer: dict[str, Any] = world.pose()
         elif world is None:
             raise ValueError("nothing was built")
+        elif message["do"] == "touches":
+            answer = {"touches": world.touches}
         else:
             answer = world.advance(message["speeds"])
         sys.stdout.write(json.dumps(answer) + "\n")
