@@ -69,9 +69,10 @@ bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random rob
 bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over pymunk, some minutes
 	$(BIN)/python -m benches.peers.maps $(ARGS)
 
-# Bullet is built from source, which takes minutes.
+# Bullet is built from source, which takes minutes. ODE is used where an interpreter has it (Debian: python3-pyode).
+MODEL_ENGINES := dart dart-dantzig bullet bullet-pyramid bullet-prisms $(shell for python in $(BIN)/python /usr/bin/python3; do $$python -c 'import ode' 2>/dev/null && echo ode-fine ode && break; done)
 bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet and DART beside the predictions, hours; Ctrl-C loses little
-	for engine in dart dart-dantzig bullet bullet-pyramid bullet-prisms; do $(BIN)/python -m benches.models run $$engine || exit; done
+	for engine in $(MODEL_ENGINES); do $(BIN)/python -m benches.models run $$engine || exit; done
 	$(BIN)/python -m benches.models table
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour

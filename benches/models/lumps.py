@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benches.models.files import ModelFile
 from crawler2d.models.poses import Array, Pose
@@ -106,8 +105,9 @@ def _body(links: Sequence[dict[str, Any]], origin: Array) -> dict[str, Any]:
     }
 
 
-def _about(axis: Array, angle: float) -> NDArray[np.float64]:
+def _about(axis: Array, angle: float) -> Array:
     """Return the rotation about an axis (Rodrigues' formula)."""
     x, y, z = axis / np.linalg.norm(axis)
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * skew @ skew
+    turn: Array = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * skew @ skew
+    return turn

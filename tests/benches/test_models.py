@@ -1,6 +1,7 @@
 """benches/models: the ground is boxes, files are loaded as they were read, one rule judges all."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,6 +16,8 @@ from benches.models.driving import driven
 from benches.models.files import ModelFile, cleaned, exported, public
 from benches.models.ground import DEPTH, WIDTH, boxes_of, profile_of
 from benches.models.judge import Judge
+from benches.models.lumps import lumps
+from benches.models.ode_child import interpreter
 from benches.models.predict import PREDICTIONS, robot_of
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
@@ -189,13 +192,21 @@ def test_flippers_put_on_the_end_axles_move_with_all_their_wheels(tmp_path: Path
     assert np.allclose(low, 0.0, atol=1e-9)
 
 
+def require(engine: str) -> None:
+    if engine.startswith("ode"):
+        if interpreter() is None:
+            pytest.skip("no interpreter has ODE")
+    else:
+        pytest.importorskip("dartpy" if engine.startswith("dart") else "pybullet")
+
+
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
 @pytest.mark.parametrize("engine", running.ENGINES)
 def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
     name: str, engine: str, tmp_path: Path
 ) -> None:
-    pytest.importorskip("dartpy" if engine.startswith("dart") else "pybullet")
+    require(engine)
     if CASES[name].file.endswith(".xacro"):
         pytest.importorskip("xacrodoc")
     case = CASES[name]
@@ -212,6 +223,28 @@ def test_an_engine_has_the_files_as_they_were_read_and_drives_them_forward(
         slip = 0.0125 if name == "marv" and engine.startswith("dart") else 0.006
         assert found["x"] - start == pytest.approx(0.045, abs=slip)
         assert max(found["yaw"], found["roll"], found["bend"]) < 0.01
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.filterwarnings("ignore::crawler2d.errors.ScenarioWarning")
+def test_the_bodies_of_a_file_weigh_what_it_does_where_it_does(name: str, tmp_path: Path) -> None:
+    if CASES[name].file.endswith(".xacro"):
+        pytest.importorskip("xacrodoc")
+    case = replace(CASES[name], angle=0.0)  # the centre of mass of a robot is that with level arms
+    model = public(case, case.form, tmp_path)
+    bodies = lumps(model, torque=1.0)
+    mass = sum(body["mass"] for body in bodies)
+    centre = np.sum([body["mass"] * np.array(body["center"]) for body in bodies], axis=0) / mass
+    robot = case.robot()
+    assert mass == pytest.approx(robot.mass, rel=1e-9)
+    # The side view has the pivots of Absolem's flippers on the end axles, 0.95 mm lower.
+    assert centre[[0, 2]] == pytest.approx(robot.center_of_mass, abs=5e-4)
+    for body in bodies:
+        moments = np.linalg.eigvalsh(np.reshape(body["inertia"], (3, 3)))
+        assert 0.0 < moments[0] <= moments[2] <= (moments[0] + moments[1]) * (1.0 + 1e-6)
+    for body in bodies[1:]:
+        (shape,) = body["shapes"]
+        assert np.subtract(shape["place"], body["axle"])[[0, 2]] == pytest.approx(0.0, abs=1e-5)
 
 
 def test_cleaning_takes_pictures_and_meshes_and_leaves_what_moves() -> None:

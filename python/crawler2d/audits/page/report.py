@@ -17,7 +17,8 @@ from crawler2d.audits.page.robot_drawn import robot_drawn
 from crawler2d.common.markup import escaped
 from crawler2d.pictures.page.parts import (
     as_json,
-    policy_hash,
+    page_template,
+    policy,
     read_part,
     replay_script,
     replay_style,
@@ -58,7 +59,7 @@ def audit_page(
     read = audit.reading
     shapes = () if read is None else read.silhouettes
     # One pass, so that a name of the file stays text even if it looks like a placeholder.
-    return Template(read_part("audit.html", _HERE)).substitute(
+    return Template(page_template(read_part("audit.html", _HERE))).substitute(
         title=escaped(f"{audit.robot.name}: audit"),
         subject=escaped(words.subject(audit)),
         badge=_badge(audit),
@@ -81,8 +82,8 @@ def audit_page(
         version=escaped(str(_core.build_info()["version"])),
         style=style,
         script=script,
-        style_hashes=_policy(style, replay_style()),
-        script_hashes=_policy(script, replay_script()),
+        style_hashes=policy(style, replay_style()),
+        script_hashes=policy(script, replay_script()),
         data=_data(runs),
     )
 
@@ -123,10 +124,6 @@ def _legend(audit: Audited) -> str:
 def _listed(notes: Sequence[str]) -> str:
     items = "".join(f"<li>{escaped(note)}</li>" for note in notes)
     return f"<h3>Decided while reading</h3><ul>{items}</ul>" if notes else ""
-
-
-def _policy(*texts: str) -> str:
-    return " ".join(f"'sha256-{policy_hash(text)}'" for text in texts)
 
 
 def _data(runs: Sequence[Replayed]) -> str:

@@ -8,7 +8,7 @@ import json
 from importlib.resources import files
 from typing import Any
 
-__all__ = ["as_json", "policy_hash", "read_part", "replay_script", "replay_style"]
+__all__ = ["as_json", "page_template", "policy", "read_part", "replay_script", "replay_style"]
 
 # Joined into one script; each part uses only those before it.
 _SCRIPTS = (
@@ -43,9 +43,15 @@ def replay_script() -> str:
     return '"use strict";\n(() => {\n' + "\n".join(map(read_part, _SCRIPTS)) + "})();\n"
 
 
-def policy_hash(text: str) -> str:
-    """Name a script, or a style, for the security policy of a page."""
-    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+def page_template(body: str) -> str:
+    """Put the head that all pages have before a body: its placeholders and those of the head."""
+    return read_part("head.html") + body
+
+
+def policy(*texts: str) -> str:
+    """Name scripts, or styles, for the security policy of a page."""
+    hashes = (hashlib.sha256(text.encode()).digest() for text in texts)
+    return " ".join(f"'sha256-{base64.b64encode(each).decode('ascii')}'" for each in hashes)
 
 
 def as_json(data: Any) -> str:

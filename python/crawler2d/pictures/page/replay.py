@@ -12,7 +12,8 @@ from crawler2d.common.markup import escaped
 from crawler2d.pictures.ghosts import ghosts
 from crawler2d.pictures.page.parts import (
     as_json,
-    policy_hash,
+    page_template,
+    policy,
     read_part,
     replay_script,
     replay_style,
@@ -70,13 +71,14 @@ def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str
         "all_figures": _listed(all_figures(run)),
         "version": escaped(str(_core.build_info()["version"])),
         "identity": run.scenario.identity[:16],
-        "style_hash": policy_hash(replay_style()),
-        "script_hash": policy_hash(replay_script()),
+        "style_hashes": policy(replay_style()),
+        "script_hashes": policy(replay_script()),
         "data": as_json(data),
     }
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
     before, between, after = (
-        Template(piece).substitute(values) for piece in _SAME.split(read_part("page.html"))
+        Template(piece).substitute(values)
+        for piece in _SAME.split(page_template(read_part("page.html")))
     )
     return before, between, after
 
