@@ -63,7 +63,7 @@ class Start(Parameters):
 
 
 _ACCURACY = 3e-7
-_STEP_IN_RAPIER = 2.5e-4
+_STEP_IN_RAPIER = 1.25e-4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,7 +82,7 @@ class Solver(Parameters):
         docs/decisions/0016). It holds lines, circumferential and hybrid wheels and force tracks
         without arms, on motors of their own or, if their radii are equal, on one, where
         `track_mass` has at least 0.3 % of the mass for each wheel; nothing else, no snapshots, and
-        no accuracy: its steps are 0.25 ms unless given.
+        no accuracy: its steps are 0.125 ms unless given.
     contact : {"own", "reference"}
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
         queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,

@@ -118,7 +118,7 @@ pub(crate) fn fixed(scenario: &mut Scenario, time_step: f64) {
 pub(crate) fn in_rapier(scenario: &Scenario) -> Scenario {
     let mut scenario = scenario.clone();
     scenario.solver.engine = Engine::Rapier;
-    fixed(&mut scenario, 2.5e-4);
+    fixed(&mut scenario, 1.25e-4);
     scenario
 }
 

@@ -1,6 +1,6 @@
 //! The closed forms in rapier's dynamics, beside how far our own are off.
 
-use crawler2d_core::{GearWheel, Outcome, Scenario, Terrain, Wheel};
+use crawler2d_core::{GearWheel, Outcome, Scenario, Simulation, Terrain, Wheel};
 
 use crate::candidates::Row;
 use crate::climbing::{
@@ -240,6 +240,33 @@ fn a_row_of_wheels_stops_where_statics_says_in_rapier() {
             assert!(angle_off.to_degrees() < 0.3 && share_off < 0.05);
         }
     }
+}
+
+/// A blow takes from a robot what its plastic impact takes: its front wheel comes down, the rear one may lift.
+#[test]
+fn a_blow_leaves_the_momentum_of_a_plastic_impact_in_rapier() {
+    let mut scenario = engineer_on(line(2));
+    scenario.robot.belly = None;
+    scenario.robot.center_of_mass = [0.0, 0.0];
+    scenario.robot.moment_of_inertia = 2.5;
+    scenario.terrain = slope(0.0, 0.0);
+    scenario.drive.speed = 0.0;
+    scenario.start.angle = 0.1;
+    let (inertia, half) = (2.5, 0.5 * scenario.robot.outline.axle_distance());
+    let of_mass = scenario.robot.mass * half * half;
+    let expected = (inertia - of_mass) / (inertia + of_mass);
+    // Within the millisecond after it gravity takes 2 % of what is left.
+    agree("turn kept", &scenario, (expected, 0.03), |scenario| {
+        let mut simulation = Simulation::new(&checked(scenario));
+        let (mut last, mut turn) = (0.0, 0.0);
+        while turn <= last {
+            last = turn;
+            advance(&mut simulation, 5e-4);
+            turn = simulation.reading().angular_velocity;
+        }
+        advance(&mut simulation, 5e-4);
+        simulation.reading().angular_velocity / last
+    });
 }
 
 /// Oracle 8: what has rolled off a cliff falls freely.
