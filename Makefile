@@ -71,7 +71,7 @@ bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over py
 
 # Bullet is built from source, which takes minutes. ODE is used where an interpreter has it (Debian: python3-pyode).
 MODEL_ENGINES := dart dart-dantzig bullet bullet-pyramid bullet-prisms $(shell for python in $(BIN)/python /usr/bin/python3; do $$python -c 'import ode' 2>/dev/null && echo ode-fine ode && break; done)
-bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet and DART beside the predictions, hours; Ctrl-C loses little
+bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet, ODE and DART beside the predictions, hours; Ctrl-C loses little
 	for engine in $(MODEL_ENGINES); do $(BIN)/python -m benches.models run $$engine || exit; done
 	$(BIN)/python -m benches.models table
 
