@@ -58,7 +58,7 @@ bench: | tools ## benchmarks
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)
 
-bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots and the study's cells, three quarters of an hour; Ctrl-C loses little
+bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots and the study's cells, an hour or two; Ctrl-C loses little
 	$(BIN)/python -m benches.agreement run
 	$(BIN)/python -m benches.agreement third
 	$(BIN)/python -m benches.agreement study
@@ -70,9 +70,8 @@ bench-map: $(VENV)/.built $(VENV)/.peers ## a map of rates beside a loop over py
 	$(BIN)/python -m benches.peers.maps $(ARGS)
 
 # Bullet is built from source, which takes minutes. ODE is used where an interpreter has it (Debian: python3-pyode).
-MODEL_ENGINES := dart dart-dantzig bullet bullet-pyramid bullet-prisms $(shell for python in $(BIN)/python /usr/bin/python3; do $$python -c 'import ode' 2>/dev/null && echo ode-fine ode && break; done)
 bench-models: $(VENV)/.built $(VENV)/.engines ## files of models in Bullet, ODE and DART beside the predictions, hours; Ctrl-C loses little
-	for engine in $(MODEL_ENGINES); do $(BIN)/python -m benches.models run $$engine || exit; done
+	for engine in dart dart-dantzig bullet bullet-pyramid bullet-prisms ode-fine ode; do $(BIN)/python -m benches.models run $$engine || exit; done
 	$(BIN)/python -m benches.models table
 
 bench-peers: $(VENV)/.built $(VENV)/.peers ## the same job in other engines, about three quarters of an hour

@@ -28,7 +28,8 @@ def one_by_one(study: Path = STUDY, path: Path = ONE_BY_ONE) -> None:
     ImportError
         If pymunk is missing.
     """
-    found = []
+    found: list[dict[str, Any]] = []
+    path.write_text(json.dumps(found) + "\n", encoding="utf-8")
     for cell in read_cells(study):
         ends = list(zip(*cell["ends"], strict=True))
         unlike = [k for k, end in enumerate(ends) if end.count("cleared") == 1]

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from benches.models.files import cleaned
-from crawler2d.models.poses import Array, Pose
-from crawler2d.models.tree import Link, Shape, Tree
+from benches.models.ode_child import plain_body
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Shape, Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat
@@ -90,8 +91,9 @@ class Solid:
 
         Rotations are rows of a matrix, one after the other.
         """
-        wheels = {wheel.link: wheel for wheel in self.wheels}
-        return [_plain(link, wheels.get(link.name)) for link in self.tree.links]
+        wheels = {wheel.link: (wheel.axle, wheel.radius, wheel.torque) for wheel in self.wheels}
+        free = None, None, None
+        return [plain_body(link, *wheels.get(link.name, free)) for link in self.tree.links]
 
 
 def solid_of(robot: Robot) -> Solid:
@@ -137,28 +139,3 @@ def _low(shape: Shape, axle: Array, angle: float) -> float:
 def _about_y(angle: float) -> Array:
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
-
-
-def _plain(link: Link, wheel: Wheel | None) -> dict[str, Any]:
-    return {
-        "name": link.name,
-        "mass": link.mass,
-        "center": link.center.tolist(),
-        "inertia": link.inertia.ravel().tolist(),
-        "shapes": [_shape(shape) for shape in link.shapes],
-        "axle": None if wheel is None else list(wheel.axle),
-        "radius": None if wheel is None else wheel.radius,
-        "torque": None if wheel is None else wheel.torque,
-    }
-
-
-def _shape(shape: Shape) -> dict[str, Any]:
-    pose: Pose = shape.pose
-    return {
-        "kind": shape.kind,
-        "place": pose.place.tolist(),
-        "turn": pose.turn.ravel().tolist(),
-        "radius": shape.radius,
-        "length": shape.length,
-        "size": shape.size.tolist(),
-    }

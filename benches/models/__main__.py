@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benches.models.cases import CASES, STARTS
 from benches.models.predict import PREDICTIONS, predicted
-from benches.models.running import ENGINES, FILES, RESULTS, run
+from benches.models.running import ENGINES, FILES, RESULTS, engine_of, run
 from benches.models.table import table
 from crawler2d.reports.markdown import spliced
 
@@ -45,6 +45,11 @@ def main() -> None:
         found |= {name: predicted(CASES[name], threads=1) for name in given.cases}
         PREDICTIONS.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     elif given.verb == "run":
+        try:
+            engine_of(given.engine)
+        except ImportError as error:
+            sys.stdout.write(f"{given.engine} is left out: {error}\n")
+            return
         path = given.output or RESULTS / f"{given.engine}.json"
         for case, file in product(given.cases, given.files):
             if file not in CASES[case].files:

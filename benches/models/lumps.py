@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from benches.models.files import ModelFile
-from crawler2d.models.poses import Array, Pose
+from benches.models.ode_child import plain_body
+from crawler2d.models.poses import Pose, from_quaternion
 from crawler2d.models.tree import Joint, Link
 from crawler2d.reading.rounds import below
 
@@ -31,83 +33,57 @@ def lumps(model: ModelFile, torque: float) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        `name`, `mass` [kg], `center` [m], `inertia` [kg m^2] row by row, `shapes`, and of a wheel
-        `axle` and `radius` [m] and `torque` [N m].
+        See `plain_body`.
     """
     tree = model.tree
     hanging = below(tree)
-    held = {
-        name: (tree.joints[flipper], angle)
-        for flipper, angle in model.held.items()
-        for name in hanging[flipper]
-    }
-    links = {link.name: _moved(link, *held.get(link.name, (None, 0.0))) for link in tree.links}
+    to_chassis = Pose(place=-model.origin)
+    moves = dict.fromkeys(hanging, to_chassis)
+    for flipper, angle in model.held.items():
+        moves |= dict.fromkeys(
+            hanging[flipper], to_chassis.then(_turned(tree.joints[flipper], angle))
+        )
+    links = {link.name: _moved(link, moves[link.name]) for link in tree.links}
     wheels = {wheel: [links[name] for name in hanging[wheel]] for wheel in model.wheels}
-    turning = {link["name"] for each in wheels.values() for link in each}
-    rest = [link for name, link in links.items() if name not in turning]
-    chassis = _body(rest, model.origin) | {"axle": None, "radius": None, "torque": None}
+    turning = {link.name for parts in wheels.values() for link in parts}
+    chassis = _body([link for name, link in links.items() if name not in turning])
     return [
-        chassis,
+        plain_body(chassis, None, None, None),
         *(
-            _body(parts, model.origin)
-            | {"axle": model.axles[name].tolist(), "radius": model.radii[name], "torque": torque}
+            plain_body(_body(parts), model.axles[name].tolist(), model.radii[name], torque)
             for name, parts in wheels.items()
         ),
     ]
 
 
-def _moved(link: Link, joint: Joint | None, angle: float) -> dict[str, Any]:
-    """Turn a link about a joint, and leave it where it is without one."""
-    turn, place = np.eye(3), np.zeros(3)
-    if joint is not None:
-        turn, place = _about(joint.axis, angle), joint.place
-    return {
-        "name": link.name,
-        "mass": link.mass,
-        "center": place + turn @ (link.center - place),
-        "inertia": turn @ link.inertia @ turn.T,
-        "shapes": [
-            (
-                shape,
-                Pose(place=place + turn @ (shape.pose.place - place), turn=turn @ shape.pose.turn),
-            )
+def _turned(joint: Joint, angle: float) -> Pose:
+    """Return what a turn about a joint makes of the frame of the model."""
+    along = np.sin(0.5 * angle) * joint.axis / np.linalg.norm(joint.axis)
+    turn = from_quaternion((np.cos(0.5 * angle), *along)).turn
+    return Pose(place=joint.place - turn @ joint.place, turn=turn)
+
+
+def _moved(link: Link, move: Pose) -> Link:
+    """Return a link as it is seen from another frame."""
+    return replace(
+        link,
+        center=move.at(link.center),
+        inertia=move.turn @ link.inertia @ move.turn.T,
+        shapes=tuple(
+            replace(shape, pose=move.then(shape.pose))
             for shape in link.shapes
             if shape.kind != "mesh"
-        ],
-    }
+        ),
+    )
 
 
-def _body(links: Sequence[dict[str, Any]], origin: Array) -> dict[str, Any]:
-    """Make one body of links."""
-    mass = sum(link["mass"] for link in links)
-    center = sum((link["mass"] * link["center"] for link in links), np.zeros(3)) / mass
+def _body(links: Sequence[Link]) -> Link:
+    """Make one body of links, under the name of the first."""
+    mass = sum(link.mass for link in links)
+    center = sum((link.mass * link.center for link in links), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
     for link in links:
-        arm = link["center"] - center
-        inertia += link["inertia"] + link["mass"] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return {
-        "name": links[0]["name"],
-        "mass": mass,
-        "center": (center - origin).tolist(),
-        "inertia": inertia.ravel().tolist(),
-        "shapes": [
-            {
-                "kind": shape.kind,
-                "place": (pose.place - origin).tolist(),
-                "turn": pose.turn.ravel().tolist(),
-                "radius": shape.radius,
-                "length": shape.length,
-                "size": shape.size.tolist(),
-            }
-            for link in links
-            for shape, pose in link["shapes"]
-        ],
-    }
-
-
-def _about(axis: Array, angle: float) -> Array:
-    """Return the rotation about an axis (Rodrigues' formula)."""
-    x, y, z = axis / np.linalg.norm(axis)
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turn: Array = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * skew @ skew
-    return turn
+        arm = link.center - center
+        inertia += link.inertia + link.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    shapes = tuple(shape for link in links for shape in link.shapes)
+    return replace(links[0], mass=mass, center=center, inertia=inertia, shapes=shapes)

@@ -14,8 +14,18 @@ from typing import Any
 import numpy as np
 
 from crawler2d.models.poses import Pose
+from crawler2d.models.tree import Link, Shape
 
-__all__ = ["FINE", "GAZEBO", "VERSION", "Child", "Setting", "interpreter", "require"]
+__all__ = [
+    "FINE",
+    "GAZEBO",
+    "VERSION",
+    "Child",
+    "Setting",
+    "interpreter",
+    "plain_body",
+    "require",
+]
 
 VERSION = "ODE 0.16"
 
@@ -112,6 +122,46 @@ def require() -> str:
     if path is None:
         raise ImportError("no interpreter has the module ode (Debian: python3-pyode)")
     return path
+
+
+def plain_body(
+    link: Link, axle: Sequence[float] | None, radius: float | None, torque: float | None
+) -> dict[str, Any]:
+    """Write a link as the worker takes it, in the chassis frame; rotations are row by row.
+
+    Parameters
+    ----------
+    link : Link
+        The body.
+    axle : sequence of float, optional
+        [m] Of a wheel.
+    radius : float, optional
+        [m] Of a wheel.
+    torque : float, optional
+        [N m] Limit of its motor.
+    """
+    return {
+        "name": link.name,
+        "mass": link.mass,
+        "center": link.center.tolist(),
+        "inertia": link.inertia.ravel().tolist(),
+        "shapes": [_shape(shape) for shape in link.shapes],
+        "axle": None if axle is None else list(axle),
+        "radius": radius,
+        "torque": torque,
+    }
+
+
+def _shape(shape: Shape) -> dict[str, Any]:
+    pose: Pose = shape.pose
+    return {
+        "kind": shape.kind,
+        "place": pose.place.tolist(),
+        "turn": pose.turn.ravel().tolist(),
+        "radius": shape.radius,
+        "length": shape.length,
+        "size": shape.size.tolist(),
+    }
 
 
 class Child:

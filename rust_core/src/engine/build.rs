@@ -19,13 +19,13 @@ const SUBSTEPS: usize = 1;
 /// Rounds of the solver over all contacts and joints, in either of its two passes. With one, the engine's default, a blow
 /// leaves the wrong momentum: docs/decisions/0016.
 const ROUNDS: usize = 20;
-/// [Hz] Natural frequency and damping ratio of its contacts, found by trials: docs/decisions/0016. Half of it lets robots sink in
-/// by four times as much; at 1000 Hz, stops rattle.
+/// [Hz] Natural frequency and damping ratio of its contacts, found by trials with one round: docs/decisions/0016. Half of it lets
+/// robots sink in by four times as much; at 1000 Hz, stops rattle.
 const CONTACT: (f64, f64) = (240.0, 5.0);
 /// [m/s] Largest speed at which a penetration is pushed out.
 const PUSH_OUT: f64 = 0.5;
-/// Share of the inertia of wheels on one motor that is on their shaft. Sweeps over the joints settle the sooner the less a
-/// wheel has to say: with none on it, 24 wheels never do, and their motor's limit is not kept.
+/// Share of the inertia of wheels on one motor that is on their shaft. Rounds over the joints settle the sooner the less a
+/// wheel has to say: with none on it and one round, 24 wheels never do, and their motor's limit is not kept.
 const ON_SHAFT: f64 = 0.9;
 /// [m] Depth up to which the engine lets bodies sink in.
 const SLOP: f64 = 1e-5;

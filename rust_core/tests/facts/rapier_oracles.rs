@@ -252,8 +252,8 @@ fn a_blow_leaves_the_momentum_of_a_plastic_impact_in_rapier() {
     scenario.terrain = slope(0.0, 0.0);
     scenario.drive.speed = 0.0;
     scenario.start.angle = 0.1;
-    let (inertia, half) = (2.5, 0.5 * scenario.robot.outline.axle_distance());
-    let of_mass = scenario.robot.mass * half * half;
+    let (robot, inertia) = (&scenario.robot, scenario.robot.moment_of_inertia);
+    let of_mass = robot.mass * (0.5 * robot.outline.axle_distance()).powi(2);
     let expected = (inertia - of_mass) / (inertia + of_mass);
     // Within the millisecond after it gravity takes 2 % of what is left.
     agree("turn kept", &scenario, (expected, 0.03), |scenario| {

@@ -59,7 +59,7 @@ def audit_page(
     read = audit.reading
     shapes = () if read is None else read.silhouettes
     # One pass, so that a name of the file stays text even if it looks like a placeholder.
-    return Template(page_template(read_part("audit.html", _HERE))).substitute(
+    return Template(page_template("audit.html", _HERE)).substitute(
         title=escaped(f"{audit.robot.name}: audit"),
         subject=escaped(words.subject(audit)),
         badge=_badge(audit),

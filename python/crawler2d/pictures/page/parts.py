@@ -10,6 +10,8 @@ from typing import Any
 
 __all__ = ["as_json", "page_template", "policy", "read_part", "replay_script", "replay_style"]
 
+_HERE = "crawler2d.pictures.page"
+
 # Joined into one script; each part uses only those before it.
 _SCRIPTS = (
     "data.js",
@@ -28,7 +30,7 @@ _SCRIPTS = (
 _MARKUP = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 
 
-def read_part(name: str, package: str = "crawler2d.pictures.page") -> str:
+def read_part(name: str, package: str = _HERE) -> str:
     """Read a file that stands beside the modules of a package."""
     return (files(package) / name).read_text(encoding="utf-8")
 
@@ -43,9 +45,9 @@ def replay_script() -> str:
     return '"use strict";\n(() => {\n' + "\n".join(map(read_part, _SCRIPTS)) + "})();\n"
 
 
-def page_template(body: str) -> str:
-    """Put the head that all pages have before a body: its placeholders and those of the head."""
-    return read_part("head.html") + body
+def page_template(name: str, package: str = _HERE) -> str:
+    """Read the body of a page, and put the head that all pages have before it."""
+    return read_part("head.html") + read_part(name, package)
 
 
 def policy(*texts: str) -> str:

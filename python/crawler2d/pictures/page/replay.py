@@ -14,7 +14,6 @@ from crawler2d.pictures.page.parts import (
     as_json,
     page_template,
     policy,
-    read_part,
     replay_script,
     replay_style,
 )
@@ -77,8 +76,7 @@ def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str
     }
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
     before, between, after = (
-        Template(piece).substitute(values)
-        for piece in _SAME.split(page_template(read_part("page.html")))
+        Template(piece).substitute(values) for piece in _SAME.split(page_template("page.html"))
     )
     return before, between, after
 
