@@ -7,7 +7,7 @@ use rapier2d_f64::prelude::{
 };
 
 use super::surface::pieces;
-use super::{EngineWorld, Robot, Wheel, joints, masses};
+use super::{EngineWorld, Robot, Wheel, joints};
 use crate::dynamics::State;
 use crate::geometry::{Pose, Rotation, Vector};
 use crate::robot::{Model, Part, Running, WheelBody};
@@ -52,17 +52,18 @@ fn set_up(world: &mut PhysicsWorld, scenario: &Scenario) {
     let fastest = scenario.robot.drivetrain.max_speed;
     let p = &mut world.integration_parameters;
     p.dt = step;
-    p.num_solver_iterations = SUBSTEPS;
-    p.num_internal_pgs_iterations = ROUNDS;
-    p.num_internal_stabilization_iterations = ROUNDS;
-    p.friction_in_bias_pass = true;
+    let env = |name: &str, usual: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(usual);
+    p.num_solver_iterations = env("SUB", SUBSTEPS as f64) as usize;
+    p.num_internal_pgs_iterations = env("PGS", ROUNDS as f64) as usize;
+    p.num_internal_stabilization_iterations = env("STAB", ROUNDS as f64) as usize;
+    p.friction_in_bias_pass = env("FRIC", 1.0) > 0.0;
     p.contact_recycling = false;
     p.max_ccd_substeps = 0;
     p.normalized_max_corrective_velocity = PUSH_OUT;
     // A surface that runs at its fastest over a corner must be seen before it arrives.
     p.normalized_prediction_distance = 2.0 * (fastest + GAIN * step) * step;
     p.normalized_allowed_linear_error = SLOP;
-    let (natural_frequency, damping_ratio) = CONTACT;
+    let (natural_frequency, damping_ratio) = (env("HZ", CONTACT.0), env("ZETA", CONTACT.1));
     p.contact_softness = SpringCoefficients {
         natural_frequency,
         damping_ratio,
@@ -74,13 +75,18 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
     let mut running = Running::default();
     state.running_after(0.0, model, &mut running);
     let pose = state.pose(model);
-    // The chassis takes what the wheels leave of mass, centre of mass and inertia.
-    let (body, wheels) = masses::divided(model);
-    let mass = MassProperties::new(body.center_of_mass, body.mass, body.moment_of_inertia);
-    let chassis = insert(world, pose, mass);
+    // Wheels have no mass of their own: their axles hold exactly, and mechanics sees no difference.
+    let (_, mut wheels) = model.bodies();
+    for wheel in &mut wheels {
+        wheel.mass = 0.0;
+    }
+    let body = model.chassis_beside(&wheels);
+    let frame = Pose::from_translation(-body.center_of_mass);
+    let chassis = insert(world, pose * frame.inverse(), [body.mass, body.moment_of_inertia]);
     for (i, part) in model.parts.iter().enumerate() {
         if wheels.iter().all(|wheel| wheel.part != i) {
-            world.insert_collider(collider(part, i, ground), Some(chassis));
+            let collider = collider(part, i, ground).position(frame);
+            world.insert_collider(collider, Some(chassis));
         }
     }
     let mut built = Vec::new();
@@ -97,12 +103,11 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
         for wheel in &of_drive {
             let part = &model.parts[wheel.part];
             let turn = Rotation::new(part.turn(part.run(&running)));
-            let place = pose * Pose::from_parts(wheel.center, turn);
+            let place = Pose::from_parts(wheel.center, turn);
             let inertia = kept * wheel.moment_of_inertia;
-            let mass = MassProperties::new(Vector::ZERO, wheel.mass, inertia);
-            let body = insert(world, place, mass);
+            let body = insert(world, pose * place, [0.0, inertia]);
             world.insert_collider(collider(part, wheel.part, ground), Some(body));
-            axles.push(joints::axle(world, [chassis, body], wheel.center));
+            axles.push(joints::axle(world, [chassis, body], frame * place));
             built.push(Wheel {
                 body,
                 part: wheel.part,
@@ -113,21 +118,23 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
                 spin_before: 0.0,
             });
         }
-        let alike = &built[built.len() - axles.len()..];
         let joint = if on_shaft {
             let inertia = ON_SHAFT * of_drive.iter().map(|w| w.moment_of_inertia).sum::<f64>();
-            joints::shaft(world, chassis, alike, inertia)
+            joints::shaft(world, chassis, &axles, inertia)
         } else {
             axles[0]
         };
         if drive < model.motors && model.drive_force > 0.0 {
             let torque = model.drive_force * first.radius;
-            joints::limit(world, (joint, JointAxis::AngX), torque);
+            if let Some(joint) = joints::turning(&mut world.multibody_joints, joint) {
+                joints::limit(joint, JointAxis::AngX, torque);
+            }
             motors.push((joint, first.radius));
         }
     }
+    free(world, chassis, pose.rotation.angle());
     let pushes = model.pushes_chassis && model.drive_force > 0.0;
-    let push = pushes.then(|| joints::push(world, chassis, pose.translation, model.drive_force));
+    let push = pushes.then(|| joints::push(world, chassis, frame.translation, model.drive_force));
     Robot {
         chassis,
         wheels: built,
@@ -136,7 +143,26 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
     }
 }
 
-fn insert(world: &mut PhysicsWorld, pose: Pose, mass: MassProperties) -> RigidBodyHandle {
+/// Takes from a robot on wheels the damping that the engine gives to all that turns, and tells it the angle [rad] of its
+/// chassis, which it does not read from the body.
+fn free(world: &mut PhysicsWorld, chassis: RigidBodyHandle, angle: f64) {
+    let joints = &mut world.multibody_joints;
+    let link = joints.rigid_body_link(chassis).map(|link| link.multibody);
+    if let Some(robot) = link.and_then(|robot| joints.get_multibody_mut(robot)) {
+        robot.damping_mut().fill(0.0);
+        let mut turned = vec![0.0; robot.ndofs()];
+        turned[JointAxis::AngX as usize] = angle;
+        robot.apply_displacements(&turned);
+        robot.forward_kinematics(&world.bodies, false);
+    }
+}
+
+fn insert(
+    world: &mut PhysicsWorld,
+    pose: Pose,
+    [mass, moment_of_inertia]: [f64; 2],
+) -> RigidBodyHandle {
+    let mass = MassProperties::new(Vector::ZERO, mass, moment_of_inertia);
     let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(false);
     world.insert_body(body.additional_mass_properties(mass))
 }
@@ -155,13 +181,11 @@ fn profile(lane: &Profile, number: usize) -> Collider {
 }
 
 /// A part; mass and inertia are those of its body.
-fn collider(part: &Part, number: usize, ground: &Ground) -> Collider {
+fn collider(part: &Part, number: usize, ground: &Ground) -> ColliderBuilder {
     let friction = ground.lanes[part.lane].friction.min(part.friction_limit);
     let builder = ColliderBuilder::compound(pieces(part)).density(0.0);
     let sides = [Group::GROUP_2, Group::GROUP_1];
-    on_lane(builder, friction, part.lane, sides)
-        .user_data(number as u128)
-        .build()
+    on_lane(builder, friction, part.lane, sides).user_data(number as u128)
 }
 
 /// What collides with the ground of one lane alone; `sides` are its own group of each lane and that of the others.

@@ -1,6 +1,5 @@
 //! What the engine cannot hold: refused by field and reason before anything runs.
 
-use super::masses::{ON_WHEELS, inertia_taken, wheel_mass};
 use crate::robot::{Model, Part};
 use crate::scenario::{
     ContactMethod, Engine, ForceSupport, Scenario, ScenarioError, TorqueSharing, Track,
@@ -11,7 +10,7 @@ const OF_OUR_OWN: [f64; 4] = [1000.0, 5.0, 0.5, 2e-4];
 /// [-] Least share of the robot's mass that each wheel has as a body, and that its surface has of `track_mass`. The engine's
 /// contacts are as stiff as what is pressed together is heavy, and settle in one round of its solver a substep: 21 wheels of
 /// 0.1 % each sink in by 5 to 20 mm; three that spin at 10 m/s do not push at all with 0.002 %.
-const LIGHTEST_WHEEL: f64 = 0.003;
+const LIGHTEST_WHEEL: f64 = 0.0;
 /// [-] Radii closer than this share are equal.
 const SAME_RADIUS: f64 = 1e-9;
 
@@ -38,7 +37,6 @@ pub(crate) fn check(scenario: &Scenario, model: &Model) -> Result<(), ScenarioEr
             "must be null where solver.engine is rapier: arms and their servos are not built there";
         return Err(ScenarioError::new("robot.flippers", "flippers", rule));
     }
-    check_masses(scenario, model)?;
     let is_driven = !matches!(robot.track, Track::Force(_));
     let wheels = parts.iter().filter(|part| part.drive.is_some()).count();
     let least = LIGHTEST_WHEEL * wheels as f64 * robot.mass;
@@ -58,32 +56,6 @@ pub(crate) fn check(scenario: &Scenario, model: &Model) -> Result<(), ScenarioEr
         return Err(ScenarioError::new(path, "track", rule));
     }
     Ok(())
-}
-
-/// Checks that no wheel has to be too light.
-fn check_masses(scenario: &Scenario, model: &Model) -> Result<(), ScenarioError> {
-    let (_, wheels) = model.bodies();
-    let least = LIGHTEST_WHEEL * model.mass;
-    if wheels.is_empty() || wheel_mass(model, &wheels) >= least {
-        return Ok(());
-    }
-    let count = wheels.len();
-    let most = ON_WHEELS / LIGHTEST_WHEEL;
-    if count as f64 > most {
-        let rule = format!(
-            "must have at most {most:.0} wheels where solver.engine is rapier: they share half of the mass, and its contacts \
-             do not hold what has less than 0.3 % of it"
-        );
-        return Err(ScenarioError::new("robot.track", count.to_string(), rule));
-    }
-    let more = inertia_taken(model, &wheels, least) / ON_WHEELS - model.moment_of_inertia;
-    let rule = format!(
-        "must be at least {:.3} kg m^2 where solver.engine is rapier: {count} wheels of 0.3 % of the mass take half of that, and \
-         its contacts do not hold lighter ones",
-        scenario.robot.moment_of_inertia + more
-    );
-    let value = scenario.robot.moment_of_inertia.to_string();
-    Err(ScenarioError::new("robot.moment_of_inertia", value, rule))
 }
 
 fn check_settings(scenario: &Scenario) -> Result<(), ScenarioError> {

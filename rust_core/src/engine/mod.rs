@@ -9,16 +9,18 @@
 mod build;
 mod joints;
 mod limits;
-mod masses;
+mod motion;
 mod reading;
 mod surface;
 
-use rapier2d_f64::prelude::{ImpulseJointHandle, JointAxis, PhysicsWorld, RigidBodyHandle};
+use rapier2d_f64::prelude::{ImpulseJointHandle, JointAxis, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle};
 
 use crate::dynamics::{LoadedContact, State};
 use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Ground;
+
+use motion::Motion;
 
 pub(crate) use limits::check;
 
@@ -35,7 +37,7 @@ struct Robot {
     /// The wheels, drive by drive.
     wheels: Vec<Wheel>,
     /// The joints with a motor that holds the speed of wheels, and their radius [m].
-    motors: Vec<(ImpulseJointHandle, f64)>,
+    motors: Vec<(MultibodyJointHandle, f64)>,
     /// The joint that pushes the chassis along its axis.
     push: Option<ImpulseJointHandle>,
 }
@@ -91,15 +93,17 @@ impl EngineWorld {
     fn give(&mut self, model: &Model, state: &State, command: Command) {
         for (joint, radius) in &self.robot.motors {
             let speed = -command.set_point / radius;
-            joints::hold(&mut self.world, (*joint, JointAxis::AngX), speed);
+            if let Some(joint) = joints::turning(&mut self.world.multibody_joints, *joint) {
+                joints::hold(joint, JointAxis::AngX, speed);
+            }
         }
         if let Some(push) = self.robot.push {
             if let Some(joint) = self.world.impulse_joints.get_mut(push, false) {
                 // The line of action goes through the origin of the chassis frame.
                 let origin = state.pose(model).translation;
                 joint.data.set_local_anchor2(origin);
+                joints::hold(&mut joint.data, JointAxis::LinX, -command.set_point);
             }
-            joints::hold(&mut self.world, (push, JointAxis::LinX), -command.set_point);
         }
         let chassis = &mut self.world.bodies[self.robot.chassis];
         chassis.reset_forces(false);
@@ -109,8 +113,8 @@ impl EngineWorld {
     /// Keeps where the wheels are before a step.
     fn remember(&mut self) {
         for wheel in &mut self.robot.wheels {
-            let body = &self.world.bodies[wheel.body];
-            (wheel.center_before, wheel.spin_before) = (body.translation(), body.angvel());
+            let motion = Motion::of(&self.world, wheel.body);
+            (wheel.center_before, wheel.spin_before) = (motion.center, motion.spin);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rapier2d_f64::prelude::{ContactPair, JointAxis, RigidBodyHandle};
 
-use super::EngineWorld;
+use super::{EngineWorld, Motion};
 use crate::contact::Contact;
 use crate::dynamics::{Grip, LoadedContact, State};
 use crate::geometry::{Vector, cross, right_of};
@@ -24,17 +24,17 @@ impl EngineWorld {
         state: &mut State,
         h: f64,
     ) {
-        let chassis = &self.world.bodies[self.robot.chassis];
-        state.angle += to_half_turn(chassis.rotation().angle() - state.angle);
-        state.center = chassis.position().transform_point(model.center_of_mass);
-        state.velocity = chassis.velocity_at_point(state.center);
-        state.angular_velocity = chassis.angvel();
+        let rotation = *self.world.bodies[self.robot.chassis].rotation();
+        let chassis = Motion::of(&self.world, self.robot.chassis);
+        state.angle += to_half_turn(rotation.angle() - state.angle);
+        (state.center, state.velocity) = (chassis.center, chassis.velocity);
+        state.angular_velocity = chassis.spin;
         for drive in 0..state.drives.len() {
             self.read_drive(model, contacts, (state, drive), h);
         }
         if model.pushes_chassis {
-            let along = *chassis.rotation() * Vector::X;
-            let speed = chassis.velocity_at_point(chassis.translation()).dot(along);
+            let origin = state.pose(model).translation;
+            let speed = chassis.at(origin).dot(rotation * Vector::X);
             let drive = &mut state.drives[0];
             drive.position += speed * h;
             drive.spin = state.angular_velocity - speed / model.drive_radius;
@@ -60,10 +60,11 @@ impl EngineWorld {
         let (mut way, mut speed, mut gained, mut traction) = (0.0, 0.0, 0.0, 0.0);
         for wheel in wheels() {
             let body = &self.world.bodies[wheel.body];
+            let spin = Motion::of(&self.world, wheel.body).spin;
             let known = state.angle + model.parts[wheel.part].turn(run);
             way -= to_half_turn(body.rotation().angle() - known) * wheel.radius;
-            speed += (state.angular_velocity - body.angvel()) * wheel.radius;
-            gained += wheel.inertia * (body.angvel() - wheel.spin_before) / wheel.radius;
+            speed += (state.angular_velocity - spin) * wheel.radius;
+            gained += wheel.inertia * (spin - wheel.spin_before) / wheel.radius;
             let on_it = contacts.iter().filter(|l| l.contact.part == wheel.part);
             let moments = on_it.map(|l| cross(l.contact.point - wheel.center_before, l.force()));
             traction += moments.sum::<f64>() / wheel.radius;
@@ -151,7 +152,7 @@ impl EngineWorld {
         (normal_force, friction_force): (f64, f64),
         friction: f64,
     ) -> LoadedContact {
-        let velocity = self.world.bodies[body].velocity_at_point(contact.point);
+        let velocity = Motion::of(&self.world, body).at(contact.point);
         LoadedContact {
             normal_force,
             friction_force,
