@@ -16,16 +16,15 @@ use crate::terrain::{Ground, Profile};
 
 /// Substeps of a step: in more than one, contacts are those of its beginning.
 const SUBSTEPS: usize = 1;
-/// Rounds of the solver over all contacts and joints, in either of its two passes. With one, the engine's default, a blow
-/// leaves the wrong momentum: docs/decisions/0016.
+/// Rounds of the solver over all contacts, motors and shafts, in either of its two passes. With four, 24 wheels on one motor
+/// exceed its limit by a quarter.
 const ROUNDS: usize = 20;
-/// [Hz] Natural frequency and damping ratio of its contacts, found by trials with one round: docs/decisions/0016. Half of it lets
-/// robots sink in by four times as much; at 1000 Hz, stops rattle.
-const CONTACT: (f64, f64) = (240.0, 5.0);
+/// [Hz] Natural frequency and damping ratio of its contacts. With a quarter of the frequency robots sink in more, and paths
+/// differ more from those of shorter steps: docs/decisions/0016.
+const CONTACT: (f64, f64) = (1000.0, 5.0);
 /// [m/s] Largest speed at which a penetration is pushed out.
 const PUSH_OUT: f64 = 0.5;
-/// Share of the inertia of wheels on one motor that is on their shaft. Rounds over the joints settle the sooner the less a
-/// wheel has to say: with none on it and one round, 24 wheels never do, and their motor's limit is not kept.
+/// Share of the inertia of wheels on one motor that is on their shaft. Rounds settle the sooner the less a wheel has to say.
 const ON_SHAFT: f64 = 0.9;
 /// [m] Depth up to which the engine lets bodies sink in.
 const SLOP: f64 = 1e-5;
@@ -52,18 +51,17 @@ fn set_up(world: &mut PhysicsWorld, scenario: &Scenario) {
     let fastest = scenario.robot.drivetrain.max_speed;
     let p = &mut world.integration_parameters;
     p.dt = step;
-    let env = |name: &str, usual: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(usual);
-    p.num_solver_iterations = env("SUB", SUBSTEPS as f64) as usize;
-    p.num_internal_pgs_iterations = env("PGS", ROUNDS as f64) as usize;
-    p.num_internal_stabilization_iterations = env("STAB", ROUNDS as f64) as usize;
-    p.friction_in_bias_pass = env("FRIC", 1.0) > 0.0;
+    p.num_solver_iterations = SUBSTEPS;
+    p.num_internal_pgs_iterations = ROUNDS;
+    p.num_internal_stabilization_iterations = ROUNDS;
+    p.friction_in_bias_pass = true;
     p.contact_recycling = false;
     p.max_ccd_substeps = 0;
     p.normalized_max_corrective_velocity = PUSH_OUT;
     // A surface that runs at its fastest over a corner must be seen before it arrives.
     p.normalized_prediction_distance = 2.0 * (fastest + GAIN * step) * step;
     p.normalized_allowed_linear_error = SLOP;
-    let (natural_frequency, damping_ratio) = (env("HZ", CONTACT.0), env("ZETA", CONTACT.1));
+    let (natural_frequency, damping_ratio) = CONTACT;
     p.contact_softness = SpringCoefficients {
         natural_frequency,
         damping_ratio,
@@ -99,7 +97,9 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
         };
         let on_shaft = of_drive.len() > 1;
         let kept = if on_shaft { 1.0 - ON_SHAFT } else { 1.0 };
-        let mut axles = Vec::new();
+        // All on one motor have one surface speed.
+        let ratio = |wheel: &WheelBody| first.radius / wheel.radius;
+        let mut turning = Vec::new();
         for wheel in &of_drive {
             let part = &model.parts[wheel.part];
             let turn = Rotation::new(part.turn(part.run(&running)));
@@ -107,7 +107,8 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             let inertia = kept * wheel.moment_of_inertia;
             let body = insert(world, pose * place, [0.0, inertia]);
             world.insert_collider(collider(part, wheel.part, ground), Some(body));
-            axles.push(joints::axle(world, [chassis, body], frame * place));
+            let axle = joints::axle(world, [chassis, body], frame * place);
+            turning.push((axle, ratio(wheel)));
             built.push(Wheel {
                 body,
                 part: wheel.part,
@@ -119,10 +120,10 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             });
         }
         let joint = if on_shaft {
-            let inertia = ON_SHAFT * of_drive.iter().map(|w| w.moment_of_inertia).sum::<f64>();
-            joints::shaft(world, chassis, &axles, inertia)
+            let on_it = |wheel: &&WheelBody| ON_SHAFT * wheel.moment_of_inertia * ratio(wheel).powi(2);
+            joints::shaft(world, chassis, &turning, of_drive.iter().map(on_it).sum())
         } else {
-            axles[0]
+            turning[0].0
         };
         if drive < model.motors && model.drive_force > 0.0 {
             let torque = model.drive_force * first.radius;

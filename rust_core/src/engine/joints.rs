@@ -30,12 +30,12 @@ pub(super) fn axle(
         .unwrap_or_else(|| unreachable!("a wheel has one axle"))
 }
 
-/// What wheels on one motor have in common: a body without weight that turns on the chassis, and they with it, with its
-/// moment of inertia [kg m^2].
+/// What wheels on one motor have in common: a body without weight that turns on the chassis, with a moment of inertia
+/// [kg m^2]. Each wheel turns so many times as fast as it.
 pub(super) fn shaft(
     world: &mut PhysicsWorld,
     chassis: RigidBodyHandle,
-    wheels: &[MultibodyJointHandle],
+    wheels: &[(MultibodyJointHandle, f64)],
     inertia: f64,
 ) -> MultibodyJointHandle {
     let body = RigidBodyBuilder::dynamic()
@@ -45,10 +45,10 @@ pub(super) fn shaft(
     let body = world.insert_body(body);
     let shaft = axle(world, [chassis, body], Pose::IDENTITY);
     let joints = &mut world.multibody_joints;
-    let link_of = |wheel: &MultibodyJointHandle| Some(joints.get(*wheel)?.1);
-    let links: Vec<usize> = wheels.iter().filter_map(link_of).collect();
+    let link_of = |(wheel, ratio): &(_, f64)| Some((joints.get(*wheel)?.1, *ratio));
+    let links: Vec<(usize, f64)> = wheels.iter().filter_map(link_of).collect();
     if let Some((robot, shaft)) = joints.get_mut(shaft) {
-        for wheel in links {
+        for (wheel, ratio) in links {
             let turning = JointAxis::AngX as usize;
             robot.add_dof_coupling(MultibodyDofCoupling {
                 link1: shaft,
@@ -57,7 +57,7 @@ pub(super) fn shaft(
                 link2: wheel,
                 dof2: 0,
                 axis2: turning,
-                coeff: 1.0,
+                coeff: ratio,
                 offset: 0.0,
             });
         }

@@ -134,9 +134,7 @@ impl Checked {
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
         let parts = lumped.map_or(&[][..], |model| &model.parts);
         check_sizes(&scenario, parts)?;
-        if let Some(model) = lumped {
-            engine::check(&scenario, model)?;
-        }
+        engine::check(&scenario)?;
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
         } else {
