@@ -80,9 +80,8 @@ class Solver(Parameters):
         What moves the robot: "own" is crawler2d's own dynamics; "rapier" builds the same robot of
         bodies, joints and motors of the game engine rapier, and is there for comparison (see
         docs/decisions/0016). It holds lines, circumferential and hybrid wheels and force tracks
-        without arms, on motors of their own or, if their radii are equal, on one, where
-        `track_mass` has at least 0.3 % of the mass for each wheel; nothing else, no snapshots, and
-        no accuracy: its steps are 0.125 ms unless given.
+        without arms; nothing else, no snapshots, and no accuracy: its steps are 0.125 ms unless
+        given.
     contact : {"own", "reference"}
         How contacts are found: "own" uses our own exact geometry; "reference" uses the engine's
         queries of convex pieces on one polyline. It is slower, cuts rounded edges into facets,

@@ -24,7 +24,7 @@ const ROUNDS: usize = 20;
 const CONTACT: (f64, f64) = (1000.0, 5.0);
 /// [m/s] Largest speed at which a penetration is pushed out.
 const PUSH_OUT: f64 = 0.5;
-/// Share of the inertia of wheels on one motor that is on their shaft. Rounds settle the sooner the less a wheel has to say.
+/// Share of the inertia of wheels on one motor that is on their shaft; the engine cannot turn what has none.
 const ON_SHAFT: f64 = 0.9;
 /// [m] Depth up to which the engine lets bodies sink in.
 const SLOP: f64 = 1e-5;
@@ -80,7 +80,11 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
     }
     let body = model.chassis_beside(&wheels);
     let frame = Pose::from_translation(-body.center_of_mass);
-    let chassis = insert(world, pose * frame.inverse(), [body.mass, body.moment_of_inertia]);
+    let chassis = insert(
+        world,
+        pose * frame.inverse(),
+        [body.mass, body.moment_of_inertia],
+    );
     for (i, part) in model.parts.iter().enumerate() {
         if wheels.iter().all(|wheel| wheel.part != i) {
             let collider = collider(part, i, ground).position(frame);
@@ -120,7 +124,8 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             });
         }
         let joint = if on_shaft {
-            let on_it = |wheel: &&WheelBody| ON_SHAFT * wheel.moment_of_inertia * ratio(wheel).powi(2);
+            let on_it =
+                |wheel: &&WheelBody| ON_SHAFT * wheel.moment_of_inertia * ratio(wheel).powi(2);
             joints::shaft(world, chassis, &turning, of_drive.iter().map(on_it).sum())
         } else {
             turning[0].0

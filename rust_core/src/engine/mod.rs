@@ -13,7 +13,9 @@ mod motion;
 mod reading;
 mod surface;
 
-use rapier2d_f64::prelude::{ImpulseJointHandle, JointAxis, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle};
+use rapier2d_f64::prelude::{
+    ImpulseJointHandle, JointAxis, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle,
+};
 
 use crate::dynamics::{LoadedContact, State};
 use crate::geometry::Vector;
@@ -97,13 +99,13 @@ impl EngineWorld {
                 joints::hold(joint, JointAxis::AngX, speed);
             }
         }
-        if let Some(push) = self.robot.push {
-            if let Some(joint) = self.world.impulse_joints.get_mut(push, false) {
-                // The line of action goes through the origin of the chassis frame.
-                let origin = state.pose(model).translation;
-                joint.data.set_local_anchor2(origin);
-                joints::hold(&mut joint.data, JointAxis::LinX, -command.set_point);
-            }
+        let joints = &mut self.world.impulse_joints;
+        let push = self.robot.push.and_then(|push| joints.get_mut(push, false));
+        if let Some(push) = push {
+            // The line of action goes through the origin of the chassis frame.
+            let origin = state.pose(model).translation;
+            push.data.set_local_anchor2(origin);
+            joints::hold(&mut push.data, JointAxis::LinX, -command.set_point);
         }
         let chassis = &mut self.world.bodies[self.robot.chassis];
         chassis.reset_forces(false);

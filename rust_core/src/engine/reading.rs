@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use rapier2d_f64::prelude::{ContactPair, JointAxis, RigidBodyHandle};
 
-use super::{EngineWorld, Motion};
+use super::EngineWorld;
+use super::motion::Motion;
 use crate::contact::Contact;
 use crate::dynamics::{Grip, LoadedContact, State};
 use crate::geometry::{Vector, cross, right_of};

@@ -250,12 +250,19 @@ fn wheels_of_unlike_radii_climb_on_one_motor_and_on_a_motor_each_in_rapier() {
 fn wheels_of_a_hundred_thousandth_of_the_mass_climb_in_rapier() {
     for track in [line(3), circumferential(24, Wheel::Round)] {
         let mut scenario = on_wheels();
-        let wheels = if matches!(track, Track::Line(_)) { 3.0 } else { 24.0 };
+        let wheels = if matches!(track, Track::Line(_)) {
+            3.0
+        } else {
+            24.0
+        };
         scenario.robot.track = track;
         scenario.robot.track_mass = 2e-5 * wheels * scenario.robot.mass;
         scenario.terrain = step(0.05, 0.9);
         let run = summary(&scenario);
-        println!("{}, {:.1e} m deep", run.outcome, run.metrics.max_penetration);
+        println!(
+            "{}, {:.1e} m deep",
+            run.outcome, run.metrics.max_penetration
+        );
         assert_eq!(run.outcome, Outcome::Cleared);
         assert!(run.metrics.max_penetration < 5e-5);
     }
