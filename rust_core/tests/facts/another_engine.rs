@@ -1,6 +1,6 @@
 //! Who climbs, and where it stops, in the engine's own dynamics.
 
-use crawler2d_core::{Run, TorqueSharing, Track, Wheel};
+use crawler2d_core::{Run, Scenario, TorqueSharing, Track, Wheel};
 
 use crate::common::*;
 
@@ -46,6 +46,31 @@ fn the_engines_own_dynamics_agree_on_who_climbs_and_where_it_stops() {
     }
 }
 
+/// Five wheels, with a servo each, rock on an edge: blows against it and against the ground, in turns, decide the path.
+#[test]
+fn the_engines_path_goes_to_ours_as_its_step_goes_to_zero() {
+    let mut scenario = engineer_on(line(5));
+    let drive = &mut scenario.robot.drivetrain;
+    (drive.torque_sharing, drive.max_acceleration) = (TorqueSharing::Wheel, 1.0);
+    scenario.terrain = step(0.026, 1.0);
+    scenario.drive.speed = 0.2;
+    scenario.start.approach = 0.05;
+    let place = |scenario: &Scenario| after(scenario, 1.75).reading().position;
+    let with_step = |mut scenario: Scenario, h: f64| {
+        fixed(&mut scenario, h);
+        place(&scenario)
+    };
+    let ours = with_step(scenario.clone(), 1e-5);
+    let apart = [1.25e-4, 3e-5, 1e-5].map(|h| (with_step(in_rapier(&scenario), h) - ours).length());
+    println!(
+        "from ours at 10 us: ours by its accuracy {:.6} m, rapier {apart:.6?} m",
+        (place(&scenario) - ours).length()
+    );
+    // Of first order: 0.24 and 0.08 of the distance at 0.125 ms.
+    assert!(apart[1] < 0.3 * apart[0] && apart[2] < 0.1 * apart[0]);
+    assert!(apart[2] < 1e-4);
+}
+
 /// How many of some starts, spread over a grouser pitch, end on top: ours, and the engine's.
 fn climbs(track: &Track, torque: f64, height: f64, starts: u32) -> (u32, u32) {
     let (mut ours, mut theirs) = (0, 0);
@@ -67,12 +92,12 @@ fn climbs(track: &Track, torque: f64, height: f64, starts: u32) -> (u32, u32) {
     (ours, theirs)
 }
 
-const STARTS: u32 = 24;
-/// Of as many at equal rates near 0.5, two counts are farther apart once in seventy times.
-const MOST_APART: u32 = 8;
-/// The same for 24 wheels, which cost rapier a second a run; so far apart once in two hundred times.
-const FEW_STARTS: u32 = 12;
-const MOST_OF_FEW: u32 = 6;
+const STARTS: u32 = 12;
+/// Of as many at equal rates near 0.5, two counts are farther apart once in 150 times.
+const MOST_APART: u32 = 6;
+/// The same for 24 wheels, which cost rapier two seconds a run; farther apart once in 157 times.
+const FEW_STARTS: u32 = 6;
+const MOST_OF_FEW: u32 = 4;
 
 /// Chaotic from grouser to grouser, so that only rates mean anything.
 #[test]
@@ -86,14 +111,14 @@ fn the_engines_own_dynamics_agree_on_who_climbs_with_gear_wheels() {
     }
 }
 
-/// Each small wheel bears its share of the torque alone: the motors must be strong.
+/// Each small wheel bears its share of the torque alone: the motors must be strong. Gear wheels at 0.06 m are not among
+/// them: their tips chatter in rapier, and it slips (docs/decisions/0016).
 #[test]
 fn the_engines_own_dynamics_agree_on_small_wheels_round_the_outline() {
     for (name, wheel, height) in [
         ("round", Wheel::Round, 0.03),
         ("round", Wheel::Round, 0.06),
         ("gear", paper_gear(), 0.03),
-        ("gear", paper_gear(), 0.06),
     ] {
         let (ours, theirs) = climbs(&circumferential(24, wheel), 100.0, height, FEW_STARTS);
         println!(
