@@ -99,20 +99,18 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
         let Some(first) = of_drive.first() else {
             continue; // a force along the chassis
         };
-        let on_shaft = of_drive.len() > 1;
-        let kept = if on_shaft { 1.0 - ON_SHAFT } else { 1.0 };
         // All on one motor have one surface speed.
-        let ratio = |wheel: &WheelBody| first.radius / wheel.radius;
-        let mut turning = Vec::new();
+        let ratios = of_drive.iter().map(|wheel| first.radius / wheel.radius);
+        let shared = if of_drive.len() > 1 { ON_SHAFT } else { 0.0 };
+        let mut axles = Vec::new();
         for wheel in &of_drive {
             let part = &model.parts[wheel.part];
             let turn = Rotation::new(part.turn(part.run(&running)));
             let place = Pose::from_parts(wheel.center, turn);
-            let inertia = kept * wheel.moment_of_inertia;
+            let inertia = (1.0 - shared) * wheel.moment_of_inertia;
             let body = insert(world, pose * place, [0.0, inertia]);
             world.insert_collider(collider(part, wheel.part, ground), Some(body));
-            let axle = joints::axle(world, [chassis, body], frame * place);
-            turning.push((axle, ratio(wheel)));
+            axles.push(joints::axle(world, [chassis, body], frame * place));
             built.push(Wheel {
                 body,
                 part: wheel.part,
@@ -123,12 +121,15 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
                 spin_before: 0.0,
             });
         }
-        let joint = if on_shaft {
-            let on_it =
-                |wheel: &&WheelBody| ON_SHAFT * wheel.moment_of_inertia * ratio(wheel).powi(2);
-            joints::shaft(world, chassis, &turning, of_drive.iter().map(on_it).sum())
+        let joint = if let [axle] = axles[..] {
+            axle
         } else {
-            turning[0].0
+            let spins = of_drive.iter().zip(ratios.clone());
+            let inertia: f64 = spins
+                .map(|(w, ratio)| w.moment_of_inertia * ratio * ratio)
+                .sum();
+            let wheels: Vec<_> = axles.into_iter().zip(ratios).collect();
+            joints::shaft(world, chassis, &wheels, shared * inertia)
         };
         if drive < model.motors && model.drive_force > 0.0 {
             let torque = model.drive_force * first.radius;
