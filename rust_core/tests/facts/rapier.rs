@@ -247,7 +247,7 @@ fn wheels_of_unlike_radii_climb_on_one_motor_and_on_a_motor_each_in_rapier() {
 
 /// Axles hold exactly, so a wheel needs no mass of its own.
 #[test]
-fn wheels_of_a_hundred_thousandth_of_the_mass_climb_in_rapier() {
+fn wheels_that_weigh_next_to_nothing_climb_in_rapier() {
     for track in [line(3), circumferential(24, Wheel::Round)] {
         let mut scenario = on_wheels();
         let wheels = if matches!(track, Track::Line(_)) {
