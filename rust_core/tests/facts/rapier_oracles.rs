@@ -95,7 +95,7 @@ fn a_single_wheel_climbs_as_high_as_its_friction_allows_in_rapier() {
     for mu in [0.4, 0.7, 1.0_f64] {
         let expected = 0.064 * (1.0 - 1.0 / (1.0 + mu * mu).sqrt());
         let mut scenario = single_wheel(expected, mu);
-        // A robot of 20 m; its wheels then have 18 % of its mass each.
+        // A robot of 20 m.
         (scenario.robot.track_mass, scenario.robot.moment_of_inertia) = (0.42, 3000.0);
         // So that what is left of its motion does not tip it: the closed form is without the far wheel's push, 0.3 %.
         scenario.robot.center_of_mass = [9.97, 0.0];
@@ -138,7 +138,10 @@ fn a_gap_is_bridged_up_to_the_shorter_end_in_rapier() {
     let mut scenario = rigid_track(0.365, 0.064, 0.4, 0.0);
     scenario.robot.track = line(21);
     scenario.robot.track_mass = 1.4;
-    for scenario in [scenario.clone(), in_rapier(&scenario)] {
+    // Twice the usual step: 21 wheels cost a second a run, and the bounds are wide.
+    let mut theirs = in_rapier(&scenario);
+    fixed(&mut theirs, 2.5e-4);
+    for scenario in [scenario, theirs] {
         let found = about(1.2 * shorter, 0.25, |width| {
             let run = summary(&before_a_gap(&scenario, width));
             run.metrics.min_angle > -0.03 && run.metrics.max_angle < 0.03
