@@ -19,12 +19,12 @@ const SUBSTEPS: usize = 1;
 /// Rounds of the solver over all contacts, motors and shafts, in either of its two passes. With four, 24 wheels on one motor
 /// exceed its limit by a quarter.
 const ROUNDS: usize = 20;
-/// [Hz] Natural frequency and damping ratio of its contacts. With a quarter of the frequency robots sink in more, and paths
-/// differ more from those of shorter steps: docs/decisions/0016.
+/// [Hz] Natural frequency and damping ratio of its contacts. With a quarter of the frequency a path was farther from that of
+/// shorter steps: docs/decisions/0016.
 const CONTACT: (f64, f64) = (1000.0, 5.0);
 /// [m/s] Largest speed at which a penetration is pushed out.
 const PUSH_OUT: f64 = 0.5;
-/// Share of the inertia of wheels on one motor that is on their shaft; the engine cannot turn what has none.
+/// Share of the inertia of wheels on one motor that is on their shaft, which has no other.
 const ON_SHAFT: f64 = 0.9;
 /// [m] Depth up to which the engine lets bodies sink in.
 const SLOP: f64 = 1e-5;
