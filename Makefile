@@ -63,6 +63,7 @@ bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random rob
 	$(BIN)/python -m benches.agreement third
 	$(BIN)/python -m benches.agreement study
 	$(BIN)/python -m benches.agreement one-by-one
+	$(BIN)/python -m benches.agreement ensembles
 	$(BIN)/python -m benches.agreement pinched
 	$(BIN)/python -m benches.agreement table
 

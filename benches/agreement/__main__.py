@@ -1,7 +1,8 @@
 """Compare crawler2d's own dynamics with rapier's on random robots.
 
 Usage, from the repository root: ``python -m benches.agreement run``,
-``study``, and, with pymunk, ``third``, ``one-by-one`` and ``pinched``; then ``table``.
+``study``, and, with pymunk, ``third``, ``one-by-one``, ``ensembles`` and ``pinched``; then
+``table``.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from benches.agreement.ensembles import ensembles, ensembles_table
 from benches.agreement.one_by_one import one_by_one, one_by_one_table
 from benches.agreement.pairs import RESULTS, read, run
 from benches.agreement.pinched import pinched, pinched_table
@@ -30,6 +32,8 @@ def main() -> None:
     cells = verbs.add_parser("study", help="make the cells of the seizure study")
     cells.add_argument("--repeats", type=int, default=8)
     verbs.add_parser("one-by-one", help="make the study's that end unlike on round wheels again")
+    many = verbs.add_parser("ensembles", help="make cells that end unlike over many starts")
+    many.add_argument("--starts", type=int, default=24)
     edge = verbs.add_parser("pinched", help="make the runs of 24 wheels on a knife edge")
     edge.add_argument("--starts", type=int, default=12)
     third = verbs.add_parser("third", help="make those that end unlike in Chipmunk, too")
@@ -37,25 +41,29 @@ def main() -> None:
     for verb in (runs, third, tables):
         verb.add_argument("--output", type=Path, default=RESULTS, help="default: %(default)s")
     given = parser.parse_args()
-    if given.verb == "run":
-        run(given.robots, given.output)
-        return
-    if given.verb == "third":
-        ask(read(given.output))
-        return
-    if given.verb == "one-by-one":
-        one_by_one()
-        return
-    if given.verb == "pinched":
-        pinched(given.starts)
-        return
-    if given.verb == "study":
-        study(given.repeats)
-        return
-    made = {**parts(read(given.output), read_third()), "study": study_table()}
-    made.update({"one by one": one_by_one_table(), "pinched": pinched_table()})
+    match given.verb:
+        case "run":
+            run(given.robots, given.output)
+        case "third":
+            ask(read(given.output))
+        case "study":
+            study(given.repeats)
+        case "one-by-one":
+            one_by_one()
+        case "ensembles":
+            ensembles(given.starts)
+        case "pinched":
+            pinched(given.starts)
+        case _:
+            _tell_tables(given.output)
+
+
+def _tell_tables(output: Path) -> None:
+    made = {**parts(read(output), read_third()), "study": study_table()}
+    made.update({"one by one": one_by_one_table(), "ensembles": ensembles_table()})
+    made["pinched"] = pinched_table()
     tell("\n\n".join(made.values()))
-    if given.output == RESULTS:
+    if output == RESULTS:
         page = _PAGE.read_text(encoding="utf-8")
         _PAGE.write_text(spliced(page, made), encoding="utf-8", newline="\n")
 

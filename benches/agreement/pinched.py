@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import crawler2d as c2d
-from benches.engines.driving import driven
+from benches.agreement.passing import gets_over, gets_over_in_chipmunk
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
@@ -24,7 +23,6 @@ _SOLVERS = {
     "own, fixed steps": Solver(time_step=5e-5),
     "rapier": Solver(engine="rapier"),
 }
-_STEP, _ITERATIONS = 5e-4, 100  # [s] of Chipmunk
 _HEIGHTS = (0.02, 0.04, 0.06)  # [m]
 _SPEEDS = (0.4, 0.05)  # [m/s]
 _APPROACH, _SPREAD = 0.1, 0.03  # [m] over which the starts are drawn
@@ -39,8 +37,6 @@ def pinched(starts: int, path: Path = PINCHED) -> None:
     ImportError
         If pymunk is missing.
     """
-    from benches.engines.engine_pymunk import Pymunk  # noqa: PLC0415 - loads Chipmunk
-
     rng = np.random.default_rng(_SEED)
     found = []
     for height in _HEIGHTS:
@@ -49,9 +45,8 @@ def pinched(starts: int, path: Path = PINCHED) -> None:
             for approach in _APPROACH + _SPREAD * rng.random(starts):
                 scenario = _scenario(height, speed, float(approach))
                 for name, solver in _SOLVERS.items():
-                    gets[name].append(_gets_over(scenario.replace({"solver": solver})))
-                end = driven(Pymunk(_STEP, iterations=_ITERATIONS), scenario)["end"]
-                gets["Chipmunk"].append(end == "cleared")
+                    gets[name].append(gets_over(scenario.replace({"solver": solver})))
+                gets["Chipmunk"].append(gets_over_in_chipmunk(scenario))
             found.append({"height": height, "speed": speed, "gets_over": gets})
             tell(f"knife edge of {1e3 * height:.0f} mm at {speed} m/s")
     path.write_text(json.dumps(found) + "\n", encoding="utf-8")
@@ -62,13 +57,6 @@ def _scenario(height: float, speed: float, approach: float) -> Scenario:
     edge = c2d.terrains.knife_edge(height, thickness=0.01, friction=0.9)
     start = c2d.Start(approach=approach)
     return Scenario(robot, edge, drive=c2d.Drive(speed=speed), start=start)
-
-
-def _gets_over(scenario: Scenario) -> bool:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", c2d.ScenarioWarning)
-        run = c2d.simulate(scenario, record="summary", trials=None)
-    return run.outcome is c2d.Outcome.CLEARED
 
 
 def pinched_table(path: Path = PINCHED) -> str:
@@ -89,7 +77,3 @@ def pinched_table(path: Path = PINCHED) -> str:
         for cell in found
     ]
     return markdown_table(("knife edge [mm]", "speed [m/s]", *names), rows)
-
-
-def _count(gets_over: list[bool]) -> str:
-    return f"{sum(gets_over)} of {len(gets_over)}"
