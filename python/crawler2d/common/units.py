@@ -83,7 +83,7 @@ METRICS = {
     "repeated_steps": "1",
     "solves": "1",
     "solve_rounds": "1",
-    "descents": "1",
+    "lowerings": "1",
     "unresolved_solves": "1",
 }
 """Unit of every metric of a run."""

@@ -96,8 +96,8 @@ class Solver(Parameters):
         shorter only where something strikes the ground, a command changes or a run ends.
     iterations : int, optional
         Largest number of rounds in the search for forces that satisfy all contacts; each is a
-        few guesses and a descent. None takes 30, or 4 for a chain of shoes, whose rounds are
-        longer; usually one is enough.
+        few guesses and, if none is right, a lowering of the robot onto its contacts. None takes
+        8; usually one is enough.
     contact_frequency : float
         [Hz] Natural frequency of the contact softness.
     contact_damping_ratio : float

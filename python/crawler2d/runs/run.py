@@ -104,10 +104,10 @@ class Run(Record):
     `solves`                 -      searches for forces that satisfy all contacts, motors and pins
     `solve_rounds`           -      linear systems solved in them: one per solve if the first guess
                                     of what sticks and what slides is right
-    `descents`               -      solves in which no guess was right and a descent method took
-                                    over
-    `unresolved_solves`      -      solves that found no consistent forces: their friction was
-                                    reduced until it added no energy
+    `lowerings`              -      how often no guess was right, so that the robot was lifted off
+                                    and lowered onto its contacts
+    `unresolved_solves`      -      solves that found no consistent forces: contacts close a little
+                                    faster in them than they should
     =======================  =====  ===============================================================
 
     On level ground the track distance exceeds the path length by the slip; on gear wheels also

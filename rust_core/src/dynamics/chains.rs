@@ -213,20 +213,4 @@ impl Dynamics {
         }
         off
     }
-
-    /// The chains' part of the slope of the potential along a change.
-    pub(super) fn slope_of_chains(
-        &self,
-        state: &State,
-        change: &Twist,
-        phase: &Phase,
-        share: f64,
-    ) -> f64 {
-        let of_chain = |k: usize| {
-            let given = self.given(k, phase);
-            let moved = (*change, self.system.spins[k].change);
-            self.chains[k].slope(state, moved, (phase.set_point, given), share)
-        };
-        (0..self.chains.len()).map(of_chain).sum()
-    }
 }

@@ -1,6 +1,6 @@
 //! A change of all velocities, from those of a state to those of a solve.
 //!
-//! The equations: docs/physics.md, "Descent".
+//! The equations: docs/physics.md, "Lowering".
 
 use super::Dynamics;
 use super::chain::Chain;
@@ -44,17 +44,5 @@ impl Dynamics {
         let idler = |k: usize| self.chains[k].idler_rate;
         let spin = |k: usize| self.system.spins[k].change;
         row.count(*change, shoe, spin, idler, |k| self.system.changes[k])
-    }
-
-    /// [m/s] Approximate upper bound of the change of any velocity.
-    pub(super) fn largest(&self, change: &Twist) -> f64 {
-        let spins = self.system.spins.iter();
-        let of_spins = spins.map(|spin| (spin.change * self.model.drive_radius).abs());
-        let of_flippers = self.system.changes.iter().map(|change| change.abs());
-        let of_spins = of_spins.chain(of_flippers);
-        let of_spins = of_spins.fold(change.velocity.length() + change.turn.abs(), f64::max);
-        let shoes = self.chains.iter().flat_map(|chain| &chain.solved);
-        let of_shoes = shoes.map(|change| change.velocity.length() + change.turn.abs());
-        of_shoes.fold(of_spins, f64::max)
     }
 }

@@ -32,18 +32,6 @@ impl Damper {
         }
     }
 
-    /// The damper at a speed if its impulse has a limit [N s]: beyond it, a constant impulse.
-    pub(super) fn up_to(self, limit: f64, speed: f64) -> Self {
-        let impulse = self.at(speed);
-        if impulse.abs() <= limit {
-            self
-        } else if limit > 0.0 {
-            Self::constant(limit.copysign(impulse))
-        } else {
-            Self::default()
-        }
-    }
-
     /// [N s] Impulse at a speed.
     pub(super) fn at(self, speed: f64) -> f64 {
         self.impulse - self.stiffness * speed

@@ -31,14 +31,12 @@ impl Dynamics {
         for _ in 0..AT_ONCE {
             self.effort.rounds += 1;
             self.assemble(phase);
-            if self.take_solution(state).is_none() {
+            let Some(change) = self.solve_for_change(state) else {
                 return false;
-            }
-            let mut change = self.rows_follow_velocities(state);
+            };
+            self.move_by(state, &change, 1.0);
+            let off = self.follow_velocities(state, phase);
             let fits = self.mend();
-            if let Some(push) = &mut self.push {
-                change = change.max(push.follow_velocities(state));
-            }
             if !fits {
                 continue;
             }
@@ -46,7 +44,7 @@ impl Dynamics {
             if self.switch_motors(state, phase) {
                 self.act_with_motors(state, phase);
             } else {
-                if change < AGREEMENT {
+                if off < AGREEMENT {
                     return true;
                 }
                 self.settle();
@@ -66,12 +64,16 @@ impl Dynamics {
         Some(())
     }
 
-    /// Updates the rows' impulses to match the velocities; returns the largest error of a velocity [m/s].
-    fn rows_follow_velocities(&mut self, state: &State) -> f64 {
-        let bearing = self.rows.iter_mut().filter(|row| row.bears);
-        bearing.fold(0.0, |off, row| {
-            off.max(row.follow_speeds(row.speeds(state)))
-        })
+    /// Updates all impulses to match the velocities; returns the largest error of a velocity [m/s].
+    pub(super) fn follow_velocities(&mut self, state: &mut State, phase: &Phase) -> f64 {
+        let mut off: f64 = 0.0;
+        for row in self.rows.iter_mut().filter(|row| row.bears) {
+            off = off.max(row.follow_speeds(row.speeds(state)));
+        }
+        if let Some(push) = &mut self.push {
+            off = off.max(push.follow_velocities(state));
+        }
+        off.max(self.chains_follow_velocities(state, phase))
     }
 
     /// Corrects the grips that do not fit; returns whether all fitted.

@@ -13,11 +13,11 @@ pub(crate) struct Effort {
     pub repeated_steps: u64,
     /// Searches for impulses that satisfy all constraints: two a step.
     pub solves: u64,
-    /// Linear systems solved in direct searches.
+    /// Linear systems solved in them.
     pub rounds: u64,
-    /// Descents, where no guess could be corrected.
-    pub descents: u64,
-    /// Solves that ended without a solution.
+    /// How often no guess could be corrected, so that the robot was lowered onto its contacts.
+    pub lowerings: u64,
+    /// Solves that ended without a solution, with contacts that are lifted a little.
     pub unresolved: u64,
 }
 
@@ -29,7 +29,7 @@ impl Effort {
             repeated_steps: self.repeated_steps + more.repeated_steps,
             solves: self.solves + more.solves,
             rounds: self.rounds + more.rounds,
-            descents: self.descents + more.descents,
+            lowerings: self.lowerings + more.lowerings,
             unresolved: self.unresolved + more.unresolved,
         }
     }

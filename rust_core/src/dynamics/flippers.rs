@@ -152,28 +152,6 @@ impl Dynamics {
         }
     }
 
-    /// The flippers' part of the slope of the potential along a change, at a share of it.
-    pub(super) fn slope_of_flippers(
-        &self,
-        state: &State,
-        change: &Twist,
-        phase: &Phase,
-        share: f64,
-    ) -> f64 {
-        let mut slope = 0.0;
-        for (k, arm) in self.flippers.iter().enumerate() {
-            let (rate, of_rate) = (state.flippers[k].rate, self.system.changes[k]);
-            for (action, damper) in arm.dampers(phase) {
-                let lever = action.flipper_lever;
-                let speed =
-                    action.speed(state.velocity, state.angular_velocity, 0.0) + lever * rate;
-                let of_change = action.change(change.velocity, change.turn, 0.0) + lever * of_rate;
-                slope -= damper.at(speed + of_change * share) * of_change;
-            }
-        }
-        slope
-    }
-
     /// [N m s] Angular impulse of a flipper's motor so far, upwards at the front.
     pub(super) fn flipper_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
         let (arm, rate) = (&self.flippers[k], state.flippers[k].rate);
@@ -192,26 +170,26 @@ impl Dynamics {
         of_arm - of_contacts.sum::<f64>()
     }
 
-    /// Releases motors of flippers beyond their limit and, if `both`, lets those past their rate hold again;
-    /// returns whether any changed.
-    pub(super) fn switch_flippers(&mut self, state: &State, phase: &Phase, both: bool) -> bool {
+    /// [rad/s] How far the rate of a flipper exceeds the one at which its motor aims.
+    pub(super) fn flipper_ahead(&self, state: &State, k: usize) -> f64 {
+        state.flippers[k].rate - state.angular_velocity - self.flippers[k].rate
+    }
+
+    /// Releases motors of flippers beyond their limit, and lets those past their rate hold again; returns whether
+    /// any changed.
+    pub(super) fn switch_flippers(&mut self, state: &State, phase: &Phase) -> bool {
         let mut switched = false;
         for k in 0..self.flippers.len() {
             let arm = &self.flippers[k];
             let next = match arm.motor {
-                none @ (Motor::Free | Motor::Servo) => none,
+                Motor::Free => Motor::Free,
                 Motor::Holds => {
                     let limit = arm.given(1.0, phase) * (1.0 + AT_LIMIT);
                     Motor::within(self.flipper_impulse(state, phase, k), limit)
                 }
                 at_limit => {
-                    let ahead = state.flippers[k].rate - state.angular_velocity - arm.rate;
-                    let past = ahead * at_limit.share().unwrap_or_default();
-                    if both && past > PAST {
-                        Motor::Holds
-                    } else {
-                        at_limit
-                    }
+                    let past = self.flipper_ahead(state, k) * at_limit.share().unwrap_or_default();
+                    if past > PAST { Motor::Holds } else { at_limit }
                 }
             };
             switched |= next != arm.motor;

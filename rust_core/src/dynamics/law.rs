@@ -1,7 +1,6 @@
 //! Coulomb's law with softness: the grip and the impulses of a contact at given velocities.
 //!
-//! The searches write the same limit of friction into the equations: `direct` and `newton` for what slides,
-//! `descent` for limits that are frozen.
+//! The searches write the same limit of friction into the equations of what slides.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
@@ -23,20 +22,6 @@ impl Row {
     /// Goes back to the impulses about which the contact is damped.
     pub(super) fn unsettle(&mut self) {
         (self.normal_impulse, self.friction_impulse) = self.center;
-    }
-
-    /// Guesses the grip from the impulses.
-    pub(super) fn guess_grip(&mut self) {
-        let limit = self.friction * self.normal_impulse * (1.0 - 1e-9);
-        self.grip = if self.normal_impulse <= 0.0 {
-            Grip::Open
-        } else if self.friction_impulse >= limit {
-            Grip::Forwards
-        } else if self.friction_impulse <= -limit {
-            Grip::Backwards
-        } else {
-            Grip::Sticks
-        };
     }
 
     /// Sets the dampers about their centres.

@@ -17,7 +17,6 @@ mod chains;
 mod change;
 mod course;
 mod damper;
-mod descent;
 mod direct;
 mod effort;
 mod face;
@@ -29,6 +28,7 @@ mod law;
 mod levers;
 mod loaded;
 mod local_error;
+mod lowering;
 mod meeting;
 mod motor;
 mod motors;
@@ -36,8 +36,6 @@ mod newton;
 mod phase;
 mod push;
 mod row;
-mod servo;
-mod servos;
 mod set_point;
 mod softness;
 mod solve;
@@ -58,7 +56,6 @@ use motor::Motor;
 use phase::Phase;
 use push::Push;
 use row::Row;
-use servo::Servo;
 use softness::Softness;
 use system::System;
 
@@ -97,15 +94,13 @@ pub(crate) struct Dynamics {
     /// The push of a track that is modelled as a force only.
     push: Option<Push>,
     motors: Vec<Motor>,
-    /// The motors in a descent.
-    servos: Vec<Servo>,
     /// [N m s] Angular impulse of the contacts on each drive in this step.
     torques: Vec<f64>,
     /// [kg m^2] Moment of inertia of the chassis with the drives that turn with it.
     inertia: f64,
     system: System,
-    /// Shares of a descent step at which the potential has kinks.
-    kinks: Vec<f64>,
+    /// Conditions of the states on the way down to the ground.
+    conditions: Vec<lowering::Condition>,
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
     shoes_a_chain: usize,
@@ -135,11 +130,10 @@ impl Dynamics {
         };
         Self {
             motors: (0..model.drives).map(motor).collect(),
-            servos: Vec::new(),
             torques: vec![0.0; model.drives],
             inertia: model.moment_of_inertia,
             system: System::new(model.drives, model.flippers.len()),
-            kinks: Vec::new(),
+            conditions: Vec::new(),
             tip_speed: model.tip_speed(),
             shoes_a_chain: model.chains.first().map_or(1, |chain| chain.path.count),
             flippers: model.flippers.iter().cloned().map(Arm::new).collect(),
@@ -260,7 +254,7 @@ impl Dynamics {
         (phase.set_point, phase.elapsed) = (set_point.end, h);
         self.aim_at_end(state, phase.angular_velocity);
         self.hold_chains(state, h);
-        self.guess_more(half);
+        self.guess_more();
         self.keep_closed(h);
         self.solve(state, &phase);
         self.end_phase(state, phase);

@@ -15,8 +15,6 @@ pub(super) enum Motor {
     Brakes,
     /// There is no motor.
     Free,
-    /// Only in a descent: a servo acts in its place.
-    Servo,
 }
 
 /// Relative tolerance of the limit; a smaller excess is rounding.
@@ -31,7 +29,7 @@ impl Motor {
             Self::Holds => None,
             Self::Pushes => Some(1.0),
             Self::Brakes => Some(-1.0),
-            Self::Free | Self::Servo => Some(0.0),
+            Self::Free => Some(0.0),
         }
     }
 

@@ -14,10 +14,10 @@ use super::state::State;
 impl Dynamics {
     /// Releases motors beyond their limit, and lets those past the set-point hold again; returns whether any changed.
     pub(super) fn switch_motors(&mut self, state: &State, phase: &Phase) -> bool {
-        let mut switched = self.switch_flippers(state, phase, true);
+        let mut switched = self.switch_flippers(state, phase);
         for k in 0..self.motors.len() {
             let next = match self.motors[k] {
-                none @ (Motor::Free | Motor::Servo) => none,
+                Motor::Free => Motor::Free,
                 Motor::Holds => self.at_limit(state, phase, k),
                 at_limit => {
                     let ahead = self.ahead(state, phase, k);
@@ -31,20 +31,8 @@ impl Dynamics {
         switched
     }
 
-    /// Releases motors beyond their limit; returns whether any changed.
-    pub(super) fn limit_motors(&mut self, state: &State, phase: &Phase) -> bool {
-        let mut switched = self.switch_flippers(state, phase, false);
-        for k in 0..self.motors.len() {
-            if self.motors[k] == Motor::Holds {
-                self.motors[k] = self.at_limit(state, phase, k);
-                switched |= self.motors[k] != Motor::Holds;
-            }
-        }
-        switched
-    }
-
     /// [m/s] How far the surface speed of a drive exceeds the set-point.
-    fn ahead(&self, state: &State, phase: &Phase, k: usize) -> f64 {
+    pub(super) fn ahead(&self, state: &State, phase: &Phase, k: usize) -> f64 {
         let speed = match self.chains.get(k) {
             Some(chain) => chain.drive_speed(state),
             None => state.track_speed(&self.model, k),

@@ -17,11 +17,9 @@ use super::solve::AGREEMENT;
 use super::state::{State, Twist};
 
 /// Steps at most; a typical solve takes three.
-const STEPS: u32 = 16;
+const STEPS: u32 = 20;
 /// Smallest share of a step to take.
 const LEAST: f64 = 1.0 / 16.0;
-/// How often that may happen before the descent takes over.
-const STALLS: u32 = 2;
 /// Smallest share of the promised improvement that a step must achieve.
 const PAYS: f64 = 0.1;
 
@@ -30,7 +28,6 @@ impl Dynamics {
     pub(super) fn solve_in_steps(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.settle();
         self.set_out(state);
-        let mut stalls = 0;
         for step in 0..STEPS {
             self.effort.rounds += 1;
             self.assemble(phase);
@@ -47,10 +44,6 @@ impl Dynamics {
             self.move_by(state, &change, share);
             let (change, fits) = self.arrive(state, phase, share);
             if !fits || share < 1.0 {
-                stalls += u32::from(share <= LEAST);
-                if stalls > STALLS {
-                    return false;
-                }
                 continue;
             }
             self.turn_with_chassis(state, phase);
@@ -172,7 +165,7 @@ mod tests {
         // Nothing strikes and pins are exact, so most first guesses are right.
         assert!(effort.rounds >= effort.solves);
         assert!(effort.rounds <= 3 * effort.solves);
-        assert_eq!((effort.descents, effort.unresolved), (0, 0));
+        assert_eq!((effort.lowerings, effort.unresolved), (0, 0));
     }
 
     #[test]

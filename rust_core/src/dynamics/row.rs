@@ -78,10 +78,6 @@ pub(super) struct Row {
     pub dampers: [Damper; 2],
     /// Its line in a step of Newton's method.
     pub way: Way,
-    /// [N s] Friction limit in a descent.
-    pub limit: f64,
-    /// Dampers of normal and tangent in a descent.
-    pub frozen: [Damper; 2],
     /// [N s] Impulses about which a direct solve damps it.
     pub center: (f64, f64),
     /// [N] Normal force to start from, the last one.
@@ -182,8 +178,6 @@ impl Row {
             fitting: Grip::Open,
             dampers: [Damper::default(); 2],
             way: Way::default(),
-            limit: 0.0,
-            frozen: [Damper::default(); 2],
             center: (0.0, 0.0),
             normal_guess: 0.0,
             friction_guess: 0.0,

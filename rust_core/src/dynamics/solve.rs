@@ -18,11 +18,8 @@ use crate::geometry::Vector;
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
 /// corresponds to a force of 1e-5 of the weight, far below anything that decides an outcome.
 pub(super) const AGREEMENT: f64 = 1e-7;
-/// Rounds of a search at most, unless the scenario says otherwise; a robot without arms usually takes one.
-const ITERATIONS: u32 = 30;
-/// The same of a robot on chains, for which a round is many steps: of 742 searches in which these led nowhere at first,
-/// 682 agreed within four rounds, and two more within thirty.
-const ITERATIONS_WITH_CHAINS: u32 = 4;
+/// Rounds of a search at most, unless the scenario says otherwise; most take one.
+const ITERATIONS: u32 = 8;
 
 impl Dynamics {
     /// Finds the impulses that satisfy all constraints.
@@ -32,7 +29,6 @@ impl Dynamics {
             self.search(state, phase) || (self.forget_gains() && self.search(state, phase));
         if !agreed {
             self.effort.unresolved += 1;
-            self.end_search(state, phase);
         }
         // From the impulses, so that momentum is conserved to the last digit; with pins, the pins matter more.
         if self.model.is_one_body() {
@@ -45,15 +41,22 @@ impl Dynamics {
     /// Searches for them; returns whether they agree.
     fn search(&mut self, state: &mut State, phase: &Phase) -> bool {
         self.set_actions(state, phase);
-        let (most, guess): (_, fn(&mut Self, &mut State, &Phase) -> bool) =
-            if self.chains.is_empty() {
-                (ITERATIONS, Self::solve_at_once)
-            } else {
-                (ITERATIONS_WITH_CHAINS, Self::solve_in_steps)
-            };
-        // A descent, with frozen friction limits, gives a better guess of which contacts grip and which slide.
-        (0..self.solver.iterations.unwrap_or(most))
-            .any(|_| guess(self, state, phase) || self.descend(state, phase))
+        let guess = if self.chains.is_empty() {
+            Self::solve_at_once
+        } else {
+            Self::solve_in_steps
+        };
+        for _ in 0..self.solver.iterations.unwrap_or(ITERATIONS) {
+            if guess(self, state, phase) {
+                return true;
+            }
+            match self.lower(state, phase) {
+                Some(off) if off < AGREEMENT => return true,
+                Some(_) => {}
+                None => return false,
+            }
+        }
+        false
     }
 
     /// Keeps all directions as they are in the middle of the step: contacts that jam cannot all open or slide as the
@@ -180,32 +183,6 @@ impl Dynamics {
         }
     }
 
-    /// [J] Energy added by the contacts, at the velocities that follow from their impulses, without the work of
-    /// pushing out of the ground.
-    pub(super) fn energy_of_contacts(&self, state: &State) -> f64 {
-        let m = &self.model;
-        let (mut work, mut impulse, mut moment) = (0.0, Vector::ZERO, 0.0);
-        for row in &self.rows {
-            let ([n, t], [approach, slip]) = (&row.actions, row.speeds(state));
-            let pushed_out = (-row.bias).max(0.0);
-            work += row.normal_impulse * (approach - pushed_out) + row.friction_impulse * slip;
-            impulse += row.impulse();
-            moment += n.lever * row.normal_impulse + t.lever * row.friction_impulse;
-        }
-        if let Some(push) = &self.push {
-            work += push.impulse * push.slip(state);
-            impulse += push.action.unit * push.impulse;
-            moment += push.action.lever * push.impulse;
-        }
-        let own = (0..self.motors.len()).filter(|k| self.motors[*k].share().is_some());
-        let of_spins: f64 = own
-            .map(|k| self.torques[k] * self.torques[k] / m.drive_inertia(k))
-            .sum();
-        // The work of an impulse uses the mean of the speeds before and after.
-        let change = impulse.length_squared() / m.mass + moment * moment / self.inertia + of_spins;
-        work - 0.5 * change
-    }
-
     /// [1/kg] Velocity along an action per unit impulse along it.
     fn admittance(&self, action: &Action, link: Link, drive: Option<usize>) -> f64 {
         let of_body = |mass: f64, inertia: f64, lever: f64| {
@@ -272,18 +249,17 @@ impl Dynamics {
         }
     }
 
-    /// The same for the other half, for contacts that bear.
-    pub(super) fn guess_more(&mut self, half: f64) {
+    /// Starts the solve over all of the step, for contacts that bear: from the forces of its first half, in which springs
+    /// shared the load. From those of the last step, wheels that share a load in many ways went on to pass it round.
+    pub(super) fn guess_more(&mut self) {
         for row in &mut self.rows {
             row.bears = row.has_closed();
             (row.bias, row.compliance) = (0.0, 0.0);
-            if row.normal_impulse >= row.normal_guess * half {
-                row.normal_impulse += row.normal_guess * half;
-                row.friction_impulse += row.friction_guess * half;
-            }
+            row.normal_impulse *= 2.0;
+            row.friction_impulse *= 2.0;
         }
         if let Some(push) = &mut self.push {
-            push.impulse += push.force * half;
+            push.impulse *= 2.0;
         }
     }
 

@@ -12,8 +12,6 @@ const FLIPPERS: usize = 2;
 const CHASSIS: usize = 3;
 const UNKNOWNS: usize = CHASSIS + FLIPPERS;
 const RIGHT: usize = UNKNOWNS;
-/// A pivot below this share of the largest entry counts as zero.
-const SINGULAR: f64 = 1e-12;
 
 /// The linear system, and the equations of the drives with a spin of their own.
 pub(super) struct System {
@@ -23,7 +21,7 @@ pub(super) struct System {
     pub(super) spins: Vec<Spin>,
     /// [rad/s] Solved rates of the flippers.
     pub(super) turns: [f64; FLIPPERS],
-    /// [rad/s] Changes of these rates in a step of the descent.
+    /// [rad/s] Changes of these rates on the way to a solution.
     pub(super) changes: [f64; FLIPPERS],
 }
 
@@ -46,7 +44,7 @@ pub(super) struct Spin {
     acts: bool,
     /// [rad/s] Solved spin.
     pub value: f64,
-    /// [rad/s] Change of the spin in a step of the descent.
+    /// [rad/s] Change of the spin on the way to a solution.
     pub change: f64,
 }
 
@@ -164,64 +162,36 @@ impl System {
                 self.rows[i][RIGHT] -= share * spin.moment;
             }
         }
-        for own in (CHASSIS..COUNT).rev() {
-            self.eliminate_flipper(own)?;
-        }
-        let body = eliminate(self.of_chassis())?;
-        let mut known = [0.0; COUNT];
-        known[..CHASSIS].copy_from_slice(&body);
-        for own in CHASSIS..COUNT {
-            let row = &self.rows[own];
-            let of_known: f64 = (0..own).map(|j| row[j] * known[j]).sum();
-            known[own] = (row[RIGHT] - of_known) / row[own];
-            self.turns[own - CHASSIS] = known[own];
-        }
+        let known = eliminate::<COUNT>(&mut self.rows)?;
+        self.turns[..COUNT - CHASSIS].copy_from_slice(&known[CHASSIS..]);
         for spin in &mut self.spins {
             let of_body: f64 = (0..COUNT).map(|i| spin.columns[i] * known[i]).sum();
             spin.value = (spin.moment - of_body) / spin.inertia;
         }
-        let [x, y, turn] = body;
-        Some((Vector::new(x, y), turn))
-    }
-
-    /// Eliminates the rate of a flipper from the rows before its own; none if it has no inertia.
-    fn eliminate_flipper(&mut self, own: usize) -> Option<()> {
-        let pivot = self.rows[own];
-        if pivot[own] <= 0.0 || !pivot[own].is_finite() {
-            return None;
-        }
-        for row in &mut self.rows[..own] {
-            let share = row[own] / pivot[own];
-            for j in (0..own).chain([RIGHT]) {
-                row[j] -= share * pivot[j];
-            }
-        }
-        Some(())
+        Some((Vector::new(known[0], known[1]), known[2]))
     }
 }
 
-/// Gaussian elimination with pivoting.
-fn eliminate(mut a: [[f64; 4]; 3]) -> Option<[f64; 3]> {
-    let largest = a
-        .iter()
-        .flat_map(|r| &r[..3])
-        .fold(0.0, |m: f64, e| m.max(e.abs()));
-    for i in 0..3 {
-        let pivot = (i..3).max_by(|p, q| a[*p][i].abs().total_cmp(&a[*q][i].abs()))?;
+/// Gaussian elimination with pivoting; none if the system is singular.
+fn eliminate<const COUNT: usize>(a: &mut [[f64; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f64; COUNT]> {
+    for i in 0..COUNT {
+        let pivot = (i..COUNT).max_by(|p, q| a[*p][i].abs().total_cmp(&a[*q][i].abs()))?;
         a.swap(i, pivot);
-        if a[i][i].abs() <= SINGULAR * largest {
+        if a[i][i] == 0.0 || !a[i][i].is_finite() {
             return None;
         }
-        for j in i + 1..3 {
-            let share = a[j][i] / a[i][i];
-            let above = a[i];
-            for (entry, above) in a[j].iter_mut().zip(above) {
-                *entry -= share * above;
+        let above = a[i];
+        for row in &mut a[i + 1..COUNT] {
+            let share = row[i] / above[i];
+            for j in (i + 1..COUNT).chain([RIGHT]) {
+                row[j] -= share * above[j];
             }
         }
     }
-    let turn = a[2][3] / a[2][2];
-    let y = (a[1][3] - a[1][2] * turn) / a[1][1];
-    let x = (a[0][3] - a[0][1] * y - a[0][2] * turn) / a[0][0];
-    Some([x, y, turn])
+    let mut known = [0.0; COUNT];
+    for i in (0..COUNT).rev() {
+        let of_known: f64 = (i + 1..COUNT).map(|j| a[i][j] * known[j]).sum();
+        known[i] = (a[i][RIGHT] - of_known) / a[i][i];
+    }
+    Some(known)
 }

@@ -146,8 +146,8 @@ fn energy(m: &Model, state: &State) -> f64 {
 fn contacts_from_all_sides_take_energy_within_coulombs_law() {
     let mut drawn = Draw(1);
     let mut draw = |low, high| drawn.between(low, high);
-    for iterations in [1, 30] {
-        let mut jams = 0;
+    for iterations in [1, 8] {
+        let (mut jams, mut unresolved) = (0, 0);
         for case in 0..20_000 {
             let (mut dynamics, mut state) = setup(|s| {
                 s.robot.drivetrain.max_torque = 0.0;
@@ -175,6 +175,7 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
             contacts.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
             let before = energy(dynamics.model(), &state);
             advance(&mut dynamics, &mut state, 1, 0.0, &contacts);
+            unresolved += dynamics.effort().unresolved;
             let left = energy(dynamics.model(), &state) / before;
             jams += u32::from(left < 1e-6);
             assert!(left < 1.0 + 1e-9, "case {case}: {left} of the energy");
@@ -183,6 +184,8 @@ fn contacts_from_all_sides_take_energy_within_coulombs_law() {
                 assert!(l.normal_force >= 0.0 && l.friction_force.abs() <= most * (1.0 + 1e-9));
             }
         }
+        // Rounding leaves some of the jams open.
+        assert!(iterations == 1 || unresolved <= 8, "{unresolved} of 40,000");
         assert!(jams > 2000, "{jams} of 20,000 jam");
     }
 }
@@ -212,16 +215,14 @@ fn force_alone_drives_the_chassis_in_the_air() {
 
 #[test]
 fn a_state_that_is_no_number_is_seen_after_a_step_on_contacts_too() {
-    let huge = 1e300;
-    for value in [f64::NAN, f64::INFINITY, huge] {
+    for value in [f64::NAN, f64::INFINITY] {
         for has_contacts in [false, true] {
             let (mut dynamics, mut state) = setup(|_| {});
             let clamped = clamped(&state);
             let contacts = if has_contacts { &clamped[..] } else { &[] };
             state.velocity.x = value;
             dynamics.take(&mut state, contacts, 0.0, STEP);
-            // Without contacts a robot may be as fast as that.
-            assert!(!state.is_finite() || value <= huge && !has_contacts);
+            assert!(!state.is_finite());
         }
     }
 }

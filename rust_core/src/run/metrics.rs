@@ -63,9 +63,9 @@ pub struct Metrics {
     pub solves: f64,
     /// Linear systems solved in them; one per solve if every first guess is right.
     pub solve_rounds: f64,
-    /// Solves in which no guess was right and a descent method took over.
-    pub descents: f64,
-    /// Solves that found no consistent forces: their friction was reduced until it added no energy.
+    /// How often no guess was right, so that the robot was lowered onto its contacts.
+    pub lowerings: f64,
+    /// Solves that found no consistent forces: they let contacts sink in a little faster than they should.
     pub unresolved_solves: f64,
 }
 
@@ -108,7 +108,7 @@ impl Metrics {
             repeated_steps: seen.effort.repeated_steps as f64,
             solves: seen.effort.solves as f64,
             solve_rounds: seen.effort.rounds as f64,
-            descents: seen.effort.descents as f64,
+            lowerings: seen.effort.lowerings as f64,
             unresolved_solves: seen.effort.unresolved as f64,
         }
     }
@@ -144,7 +144,7 @@ impl Metrics {
             ("repeated_steps", self.repeated_steps),
             ("solves", self.solves),
             ("solve_rounds", self.solve_rounds),
-            ("descents", self.descents),
+            ("lowerings", self.lowerings),
             ("unresolved_solves", self.unresolved_solves),
         ]
     }

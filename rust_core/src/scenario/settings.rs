@@ -58,7 +58,7 @@ pub struct Solver {
     /// [s] Length of a step; `None` if its accuracy is given.
     pub time_step: Option<f64>,
     /// Largest number of rounds in the search for forces that satisfy all constraints of a step; each is a few
-    /// guesses and a descent. `None` takes the solver's own.
+    /// guesses, and a lowering if none is right. `None` takes the solver's own.
     pub iterations: Option<u32>,
     /// [Hz] Natural frequency of the contact softness.
     pub contact_frequency: f64,

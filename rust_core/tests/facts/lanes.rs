@@ -62,8 +62,14 @@ fn equal_lanes_are_both_tracks_as_one() {
             _ => 1e-6,
         };
         assert!(pose < limit);
-        // The speed of a chain is that of every blow of its shoes.
-        assert!(name.starts_with("chain") || speed < limit);
+        // The motors bring a drive back from a blow by 60 m/s^2: if it comes 10 us sooner, that is 0.6 mm/s. The speed of
+        // a chain is that of every blow of its shoes.
+        let most = if name == "line of 3 gear wheels" {
+            1e-3
+        } else {
+            limit
+        };
+        assert!(name.starts_with("chain") || speed < most);
     }
 }
 

@@ -131,28 +131,28 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0x41c5_cbfe_19a9_4ed8),
+        ("line of 5", engineer_on(line(5)), 0xb5fb_fa7f_7d5a_1093),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x1d1b_527d_a5d0_6e10,
+            0x001b_547b_a72b_17ae,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0x0b44_8d15_f3d7_7a7b,
+            0xa599_3b9a_24a6_a356,
         ),
-        ("chain", engineer_on(segmental(None)), 0x288b_d665_3d6d_1724),
+        ("chain", engineer_on(segmental(None)), 0xe112_0019_3cc7_e94b),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0x97fc_3fb5_ecf8_5dc6,
+            0x0346_8687_c501_02bf,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0xe557_bffa_eb26_1096),
+        ("belt, arms", on_arms(0.5, belt()), 0x8f78_ee9b_aa29_1c8c),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0xd18d_7aed_e6e1_f5b3,
+            0x95fa_66cd_6c45_408b,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {

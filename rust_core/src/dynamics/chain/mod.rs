@@ -211,10 +211,15 @@ impl Chain {
         [self.idler_rate, self.spin] = self.system.follow(chassis, &mut self.solved);
     }
 
+    /// [N s] Impulse of a drive that holds, and is so much faster [m/s] than it aims to be.
+    pub(super) fn held(&self, ahead: f64) -> f64 {
+        self.pull.damper().at(ahead)
+    }
+
     /// Updates the drive's impulse to match a drive that is so much faster [m/s] than it aims to be; returns the error
     /// of its speed [m/s].
     pub(super) fn follow_drive(&mut self, ahead: f64, given: Option<f64>) -> f64 {
-        self.pull.impulses.impulse = given.unwrap_or_else(|| self.pull.damper().at(ahead));
+        self.pull.impulses.impulse = given.unwrap_or_else(|| self.held(ahead));
         if given.is_none() { ahead.abs() } else { 0.0 }
     }
 
@@ -260,34 +265,6 @@ impl Chain {
     pub(super) fn admittance(&self, lever: f64) -> f64 {
         let sprocket = self.rule.sprocket.as_ref();
         sprocket.map_or(0.0, |sprocket| lever * lever / sprocket.inertia)
-    }
-
-    /// The slope of the potential of shoes and drive along the change `solved`, at a share of it. The pins hold in
-    /// every solution of the system, so they have no part in the change from one to another.
-    pub(super) fn slope(
-        &self,
-        state: &State,
-        (chassis, spin): (Twist, f64),
-        (set_point, given): (f64, Option<f64>),
-        share: f64,
-    ) -> f64 {
-        let shoes = &state.shoes[self.rule.shoes.clone()];
-        let mass = self.rule.shoe_mass;
-        let mut slope = 0.0;
-        for (i, change) in self.solved.iter().enumerate() {
-            let gained = shoes[i].twist.plus(*change, share).less(self.free[i]);
-            slope += mass * gained.velocity.dot(change.velocity)
-                + self.inertias[i] * gained.turn * change.turn;
-        }
-        if let Some(sprocket) = &self.rule.sprocket {
-            let gained = state.drives[self.rule.number].spin + spin * share - self.free_spin;
-            slope += sprocket.inertia * gained * spin;
-        }
-        let of_drive = self.pull.speed(chassis, spin, |i| self.solved[i]);
-        let ahead = self.drive_speed(state) - set_point + of_drive * share;
-        let rate = state.idlers[self.rule.number].rate + self.idler_rate * share;
-        slope -= self.idler.at(rate) * self.idler_rate;
-        slope - given.unwrap_or_else(|| self.pull.damper().at(ahead)) * of_drive
     }
 
     /// Whether the drive has anything to act on.

@@ -67,11 +67,6 @@ impl Chain {
         }
     }
 
-    /// Lets the pins hold in the directions in which they push, as a descent needs it.
-    pub(in crate::dynamics) fn hold_as_pushed(&mut self) {
-        self.system.hold_as_pushed();
-    }
-
     /// Turns the pins' arms with the shoes.
     fn turn_pins(&mut self, shoes: &[Shoe]) {
         self.alongs.clear();

@@ -137,13 +137,6 @@ impl ChainSystem {
         }
     }
 
-    /// Lets the pins hold in the directions in which they push, so that their forces do no work.
-    pub(super) fn hold_as_pushed(&mut self) {
-        for joint in &mut self.joints {
-            joint.rows = joint.pushes;
-        }
-    }
-
     /// Starts from the shoes without constraints and an idler on a damper.
     pub(super) fn start(&mut self, idler: Damper) {
         for (shoe, [masses, momentum]) in self.shoes.iter_mut().zip(&self.free) {
