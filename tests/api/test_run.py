@@ -96,7 +96,7 @@ def test_steps_are_counted_and_longer_where_less_happens() -> None:
     given, easy, hard, fine = (run.metrics for run in c2d.simulate_many(scenarios))
     assert (given["steps"], given["repeated_steps"]) == (2500, 0)
     assert 2.5 / 0.016 < easy["steps"] < hard["steps"] < fine["steps"]
-    assert 0 < hard["repeated_steps"] < 0.1 * hard["steps"]
+    assert 0 < hard["repeated_steps"] < 0.15 * hard["steps"]
     assert given["solves"] >= 2500
 
 

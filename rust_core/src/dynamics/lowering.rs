@@ -17,6 +17,9 @@ use super::state::{State, Twist};
 
 /// Conditions met on the way, at most, for each contact and motor.
 const TURNS: usize = 16;
+/// Conditions within this share of the way are met together: one after the other, contacts and motors of both tracks on equal
+/// ground would part, and left and right with them.
+const TOGETHER: f64 = 1e-9;
 /// Rounds in which all motors switch at once; from then on the first that has to, which cannot go on for ever (Murty 1974).
 const AT_ONCE: usize = 4;
 
@@ -38,10 +41,10 @@ pub(super) struct Condition {
     there: f64,
 }
 
-/// What is met on the way: a condition, after a share of the way down to the ground, below 0 if the way leads up; the
+/// What is met on the way: conditions, after a share of the way down to the ground, below 0 if the way leads up; the
 /// ground; or nothing, on a way up.
 enum Met {
-    Condition(f64, Switch),
+    Conditions(f64),
     Ground,
     Nothing,
 }
@@ -87,11 +90,18 @@ impl Dynamics {
             };
             match first_met(&conditions, back) {
                 Met::Ground => lift = 0.0,
-                Met::Condition(share, switch) => {
+                Met::Conditions(share) => {
                     self.move_by(state, &change, share - 1.0);
                     lift *= 1.0 - share;
                     self.bear(state, phase, lift);
-                    back = Some(self.make(switch, state, phase));
+                    let met = conditions.iter().filter(|c| c.is_met_at(share, back));
+                    let mut made: Vec<Switch> = Vec::with_capacity(2);
+                    for switch in met.map(|c| c.switch) {
+                        if !made.iter().any(|other| other.is_of_the_same(switch)) {
+                            made.push(self.make(switch, state, phase));
+                        }
+                    }
+                    back = made.first().copied();
                 }
                 Met::Nothing => {
                     self.move_by(state, &change, -1.0);
@@ -260,24 +270,44 @@ impl Dynamics {
 /// switch has left must grow; if it falls on the way down, the way leads up.
 fn first_met(conditions: &[Condition], back: Option<Switch>) -> Met {
     let left = conditions.iter().find(|c| Some(c.switch) == back);
-    let is_down = left.is_none_or(|c| c.there >= c.now);
-    let way = if is_down { 1.0 } else { -1.0 };
-    let mut first = if is_down {
-        (1.0, None)
-    } else {
-        (f64::INFINITY, None)
+    let way = match left {
+        Some(left) if left.there < left.now => -1.0,
+        _ => 1.0,
     };
-    for condition in conditions.iter().filter(|c| Some(c.switch) != back) {
-        let falls = (condition.now - condition.there) * way;
-        let share = condition.now.max(0.0) / falls;
-        if falls > 0.0 && share < first.0 {
-            first = (share, Some(condition.switch));
-        }
+    let met = conditions.iter().filter_map(|c| c.met(way, back));
+    let first = met.fold(f64::INFINITY, f64::min);
+    if first < 1.0 || (way < 0.0 && first.is_finite()) {
+        Met::Conditions(way * first)
+    } else if way > 0.0 {
+        Met::Ground
+    } else {
+        Met::Nothing
     }
-    match first {
-        (share, Some(switch)) => Met::Condition(way * share, switch),
-        _ if is_down => Met::Ground,
-        _ => Met::Nothing,
+}
+
+impl Condition {
+    /// The share of the way, down or up, after which it is met, if it is.
+    fn met(&self, way: f64, back: Option<Switch>) -> Option<f64> {
+        let falls = (self.now - self.there) * way;
+        (falls > 0.0 && Some(self.switch) != back).then(|| self.now.max(0.0) / falls)
+    }
+
+    /// Whether it is met after a share of the way, or so near that rounding decides.
+    fn is_met_at(&self, share: f64, back: Option<Switch>) -> bool {
+        let met = self.met(1.0_f64.copysign(share), back);
+        met.is_some_and(|met| met <= share.abs() + TOGETHER)
+    }
+}
+
+impl Switch {
+    /// Whether both are switches of one contact or motor.
+    fn is_of_the_same(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Contact(i, _), Self::Contact(k, _))
+            | (Self::Drive(i, _), Self::Drive(k, _))
+            | (Self::Arm(i, _), Self::Arm(k, _)) => i == k,
+            _ => false,
+        }
     }
 }
 
