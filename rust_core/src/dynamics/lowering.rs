@@ -17,10 +17,11 @@ use super::state::{State, Twist};
 
 /// Conditions met on the way, at most, for each contact and motor.
 const TURNS: usize = 16;
-/// Conditions within this share of the way are met together: one after the other, contacts and motors of both tracks on equal
-/// ground would part, and left and right with them.
+/// Conditions within this share of the way are met together: one by one, both tracks of a robot on equal ground would
+/// part.
 const TOGETHER: f64 = 1e-9;
-/// Rounds in which all motors switch at once; from then on the first that has to, which cannot go on for ever (Murty 1974).
+/// Rounds in which all motors switch at once; from then on the first that has to, which cannot go on for ever (Murty
+/// 1974).
 const AT_ONCE: usize = 4;
 
 /// What the state of a contact or a motor becomes.
@@ -95,13 +96,7 @@ impl Dynamics {
                     lift *= 1.0 - share;
                     self.bear(state, phase, lift);
                     let met = conditions.iter().filter(|c| c.is_met_at(share, back));
-                    let mut made: Vec<Switch> = Vec::with_capacity(2);
-                    for switch in met.map(|c| c.switch) {
-                        if !made.iter().any(|other| other.is_of_the_same(switch)) {
-                            made.push(self.make(switch, state, phase));
-                        }
-                    }
-                    back = made.first().copied();
+                    back = self.make_all(met.map(|c| c.switch), state, phase);
                 }
                 Met::Nothing => {
                     self.move_by(state, &change, -1.0);
@@ -119,8 +114,8 @@ impl Dynamics {
         Some(lowest)
     }
 
-    /// Finds the conditions of the present states, and how velocities change from where contacts are lifted by `lift` [m/s] to
-    /// where these states are a solution on the ground. The state is there then; it stays if there is none.
+    /// Finds the conditions of the present states, and how velocities change from where contacts are lifted by `lift`
+    /// [m/s] to where these states are a solution on the ground. The state is there then; it stays if there is none.
     fn look_down(
         &mut self,
         state: &mut State,
@@ -230,6 +225,22 @@ impl Dynamics {
                 found(Switch::Arm(k, motor), value);
             });
         }
+    }
+
+    /// Makes switches, one of each contact and motor; returns the one that would take back the first.
+    fn make_all(
+        &mut self,
+        switches: impl Iterator<Item = Switch>,
+        state: &State,
+        phase: &Phase,
+    ) -> Option<Switch> {
+        let mut made: Vec<Switch> = Vec::new();
+        for switch in switches {
+            if !made.iter().any(|other| other.is_of_the_same(switch)) {
+                made.push(self.make(switch, state, phase));
+            }
+        }
+        made.first().copied()
     }
 
     /// Makes a switch; returns the one that would take it back.
