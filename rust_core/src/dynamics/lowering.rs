@@ -42,10 +42,10 @@ pub(super) struct Condition {
     there: f64,
 }
 
-/// What is met on the way: conditions, after a share of the way down to the ground, below 0 if the way leads up; the
+/// What is met on the way, which leads down (1) or up (-1): conditions, after a share of the way to the ground; the
 /// ground; or nothing, on a way up.
 enum Met {
-    Conditions(f64),
+    Conditions { way: f64, share: f64 },
     Ground,
     Nothing,
 }
@@ -91,11 +91,15 @@ impl Dynamics {
             };
             match first_met(&conditions, back) {
                 Met::Ground => lift = 0.0,
-                Met::Conditions(share) => {
-                    self.move_by(state, &change, share - 1.0);
-                    lift *= 1.0 - share;
+                Met::Conditions { way, share } => {
+                    self.move_by(state, &change, way * share - 1.0);
+                    lift *= 1.0 - way * share;
                     self.bear(state, phase, lift);
-                    let met = conditions.iter().filter(|c| c.is_met_at(share, back));
+                    let is_met = |c: &&Condition| {
+                        let met = c.met(way, back);
+                        met.is_some_and(|met| met <= share + TOGETHER)
+                    };
+                    let met = conditions.iter().filter(is_met);
                     back = self.make_all(met.map(|c| c.switch), state, phase);
                 }
                 Met::Nothing => {
@@ -286,9 +290,9 @@ fn first_met(conditions: &[Condition], back: Option<Switch>) -> Met {
         _ => 1.0,
     };
     let met = conditions.iter().filter_map(|c| c.met(way, back));
-    let first = met.fold(f64::INFINITY, f64::min);
-    if first < 1.0 || (way < 0.0 && first.is_finite()) {
-        Met::Conditions(way * first)
+    let share = met.fold(f64::INFINITY, f64::min);
+    if share < 1.0 || (way < 0.0 && share.is_finite()) {
+        Met::Conditions { way, share }
     } else if way > 0.0 {
         Met::Ground
     } else {
@@ -301,12 +305,6 @@ impl Condition {
     fn met(&self, way: f64, back: Option<Switch>) -> Option<f64> {
         let falls = (self.now - self.there) * way;
         (falls > 0.0 && Some(self.switch) != back).then(|| self.now.max(0.0) / falls)
-    }
-
-    /// Whether it is met after a share of the way, or so near that rounding decides.
-    fn is_met_at(&self, share: f64, back: Option<Switch>) -> bool {
-        let met = self.met(1.0_f64.copysign(share), back);
-        met.is_some_and(|met| met <= share.abs() + TOGETHER)
     }
 }
 
