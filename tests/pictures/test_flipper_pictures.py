@@ -143,7 +143,8 @@ def test_an_edge_between_wheels_of_a_flipper_is_marked_and_named() -> None:
 
 @pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
 def test_an_intrusion_is_in_the_belt_of_what_the_page_says(terrain: Any) -> None:
-    run = c2d.simulate(ROBOTS["gears"], terrain, drive=CLIMB, duration=4.0)
+    run = c2d.simulate(ROBOTS["gears"], terrain, drive=CLIMB, duration=6.0)
+    assert run.outcome == "cleared"
     borne = scene_of(run).carriers
     told = [event for event in page_of(run)["events"] if event["kind"] == "intrusion"]
     assert {event["carrier"] for event in told} == {0, 1, 2}
