@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from benches.agreement.passing import gets_over, gets_over_in_chipmunk
+from benches.agreement.passing import counts, who_gets_over
 from benches.agreement.study import STUDY, at_height, read_cells
 from benches.engines.telling import tell
 from crawler2d.parameters.settings import Solver, Start
@@ -45,13 +45,9 @@ def ensembles(starts: int, study: Path = STUDY, path: Path = ENSEMBLES) -> None:
         if _key(cell) in there or not _some_end_unlike(cell):
             continue
         base = at_height(cell["model"], cell["obstacle"], cell["height"])
-        gets: dict[str, list[bool]] = {name: [] for name in (*_SOLVERS, "Chipmunk")}
         spread = _PITCH * (np.arange(starts) + 0.5) / starts
-        for approach in _APPROACH + spread:
-            scenario = base.replace({"start": Start(approach=float(approach))})
-            for name, solver in _SOLVERS.items():
-                gets[name].append(gets_over(scenario.replace({"solver": solver})))
-            gets["Chipmunk"].append(gets_over_in_chipmunk(scenario))
+        over = [base.replace({"start": Start(approach=float(a))}) for a in _APPROACH + spread]
+        gets = who_gets_over(over, _SOLVERS)
         found.append({**dict(zip(_KEY, _key(cell), strict=True)), "gets_over": gets})
         path.write_text(json.dumps(found) + "\n", encoding="utf-8")
         tell(f"{_key(cell)}: {[sum(each) for each in gets.values()]} of {starts}")
@@ -76,16 +72,16 @@ def ensembles_table(path: Path = ENSEMBLES) -> str:
     found: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))
     names = list(found[0]["gets_over"])
     head = (*_KEY[:2], "mm", *names, "rapier less own [%]", "Chipmunk less own [%]")
-    return markdown_table(head, [_row(cell, names) for cell in found])
+    return markdown_table(head, [_row(cell) for cell in found])
 
 
-def _row(cell: dict[str, Any], names: list[str]) -> tuple[str, ...]:
+def _row(cell: dict[str, Any]) -> tuple[str, ...]:
     gets = cell["gets_over"]
     return (
         cell["model"],
         cell["obstacle"],
         f"{1e3 * cell['height']:.0f}",
-        *(f"{sum(gets[name])} of {len(gets[name])}" for name in names),
+        *counts(gets),
         *(_gap(gets[name], gets["own"]) for name in ("rapier", "Chipmunk")),
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import crawler2d as c2d
-from benches.agreement.passing import gets_over, gets_over_in_chipmunk
+from benches.agreement.passing import counts, who_gets_over
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Solver
@@ -41,12 +41,9 @@ def pinched(starts: int, path: Path = PINCHED) -> None:
     found = []
     for height in _HEIGHTS:
         for speed in _SPEEDS:
-            gets: dict[str, list[bool]] = {name: [] for name in (*_SOLVERS, "Chipmunk")}
-            for approach in _APPROACH + _SPREAD * rng.random(starts):
-                scenario = _scenario(height, speed, float(approach))
-                for name, solver in _SOLVERS.items():
-                    gets[name].append(gets_over(scenario.replace({"solver": solver})))
-                gets["Chipmunk"].append(gets_over_in_chipmunk(scenario))
+            starting = _APPROACH + _SPREAD * rng.random(starts)
+            over = [_scenario(height, speed, float(approach)) for approach in starting]
+            gets = who_gets_over(over, _SOLVERS)
             found.append({"height": height, "speed": speed, "gets_over": gets})
             tell(f"knife edge of {1e3 * height:.0f} mm at {speed} m/s")
     path.write_text(json.dumps(found) + "\n", encoding="utf-8")
@@ -69,10 +66,7 @@ def pinched_table(path: Path = PINCHED) -> str:
         (
             f"{1e3 * cell['height']:.0f}",
             str(cell["speed"]),
-            *(
-                f"{sum(cell['gets_over'][name])} of {len(cell['gets_over'][name])}"
-                for name in names
-            ),
+            *counts(cell["gets_over"]),
         )
         for cell in found
     ]

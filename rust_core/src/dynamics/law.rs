@@ -90,4 +90,16 @@ impl Row {
         };
         (grip, [normal.max(0.0), friction])
     }
+
+    /// [N s] Impulses along normal and tangent at these speeds for the guessed grip.
+    pub(super) fn guessed(&self, [approach, slip]: [f64; 2]) -> [f64; 2] {
+        let [n, t] = self.dampers;
+        let normal = n.at(approach);
+        match self.grip {
+            Grip::Open => [0.0, 0.0],
+            Grip::Sticks => [normal, t.at(slip)],
+            Grip::Forwards => [normal, self.friction * normal],
+            Grip::Backwards => [normal, -self.friction * normal],
+        }
+    }
 }

@@ -183,7 +183,8 @@ impl Dynamics {
     /// Sets all impulses to those of the present states at the velocities, while contacts are lifted.
     fn bear(&mut self, state: &mut State, phase: &Phase, lift: f64) {
         for row in self.rows.iter_mut().filter(|row| row.bears) {
-            [row.normal_impulse, row.friction_impulse] = row.borne(row.speeds(state), lift);
+            let [approach, slip] = row.speeds(state);
+            [row.normal_impulse, row.friction_impulse] = row.guessed([approach + lift, slip]);
         }
         if let Some(push) = &mut self.push {
             push.follow_velocities(state);
@@ -333,17 +334,6 @@ impl Row {
             self.dampers[0].at(approach + lift),
             self.dampers[1].at(slip),
         ]
-    }
-
-    /// [N s] Impulses along normal and tangent in the guessed state.
-    fn borne(&self, speeds: [f64; 2], lift: f64) -> [f64; 2] {
-        let [normal, friction] = self.unlimited(speeds, lift);
-        match self.grip {
-            Grip::Open => [0.0; 2],
-            Grip::Sticks => [normal, friction],
-            Grip::Forwards => [normal, self.friction * normal],
-            Grip::Backwards => [normal, -self.friction * normal],
-        }
     }
 
     /// The way in which it starts to slide when it touches.

@@ -10,7 +10,6 @@
 //! The equations: docs/physics.md, "Chains".
 
 use super::Dynamics;
-use super::grip::Grip;
 use super::phase::Phase;
 use super::row::Row;
 use super::solve::AGREEMENT;
@@ -121,25 +120,12 @@ impl Dynamics {
     }
 }
 
-impl Row {
-    /// [N s] Impulses along normal and tangent at these speeds for the guessed grip.
-    fn guessed(&self, [approach, slip]: [f64; 2]) -> [f64; 2] {
-        let [n, t] = self.dampers;
-        let normal = n.at(approach);
-        match self.grip {
-            Grip::Open => [0.0, 0.0],
-            Grip::Sticks => [normal, t.at(slip)],
-            Grip::Forwards => [normal, self.friction * normal],
-            Grip::Backwards => [normal, -self.friction * normal],
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::dynamics::grip::Grip;
     use crate::geometry::Vector;
     use crate::robot::Model;
     use crate::scenario::Scenario;
