@@ -15,7 +15,7 @@ from benches.engines.cells import STARTS, Cell, read, write
 from benches.engines.convergence import FINER, JAM, LADDERS, USUAL, converge
 from benches.engines.engines import ENGINES, FINE
 from benches.engines.momentum import speed_up
-from benches.engines.predict import predict
+from benches.engines.predict import PREDICTIONS, predict, unlike
 from benches.engines.refining import refine
 from benches.engines.running import RESULTS, run
 from benches.engines.scan import scanned
@@ -34,7 +34,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benches.engines", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
     verbs.add_parser("scan", help="find the cells; predictions and results are void then")
-    verbs.add_parser("predict", help="write down what crawler2d says; results are void then")
+    says = verbs.add_parser("predict", help="write down what crawler2d says; results are void then")
+    says.add_argument("--output", type=Path, help="into this file, beside those that are kept")
     runs = verbs.add_parser("run", help="run the engines, where they stopped the last time")
     engines = ", ".join(ENGINES)
     runs.add_argument("--engines", nargs="+", choices=ENGINES, metavar="ENGINE", help=engines)
@@ -61,7 +62,7 @@ def main() -> None:
         case "scan":
             _scan()
         case "predict":
-            predict(read())
+            _predict(given.output)
         case "run":
             _run(given)
         case "converge":
@@ -82,6 +83,12 @@ def _scan() -> None:
         cells.append(cell)
         tell(f"{rate:.2f} {cell.label}")
     write(cells)
+
+
+def _predict(path: Path | None) -> None:
+    predict(read(), path or PREDICTIONS)
+    if path is not None:
+        tell(unlike(path))
 
 
 def _run(given: argparse.Namespace) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,12 @@ import crawler2d
 from benches.engines.cells import Cell
 from benches.engines.own import simulated
 from benches.engines.telling import tell
+from crawler2d.results.outcome import Outcome
 
-__all__ = ["PREDICTIONS", "check", "hash_of", "predict", "read"]
+__all__ = ["PREDICTIONS", "check", "hash_of", "predict", "read", "unlike"]
 
 PREDICTIONS = Path(__file__).with_name("predictions.json")
+_NEAR = 1e-3  # [m]
 
 
 def predict(cells: Sequence[Cell], path: Path = PREDICTIONS) -> None:
@@ -47,6 +50,28 @@ def hash_of(path: Path = PREDICTIONS) -> str:
         If nothing was predicted.
     """
     return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def unlike(path: Path, kept: Path = PREDICTIONS) -> str:
+    """Say how many runs of another file end otherwise than those of the kept one."""
+    before, now = read(kept), read(path)
+    lines = []
+    for wheels, has_gears in (("round wheels", False), ("gear wheels", True)):
+        pairs = [
+            pair
+            for label, runs in now.items()
+            if ("gears" in label) is has_gears
+            for pair in zip(before[label], runs, strict=True)
+        ]
+        clears = sum((one["end"] == "cleared") != (two["end"] == "cleared") for one, two in pairs)
+        ends = sum(one["end"] != two["end"] for one, two in pairs)
+        stops = [pair for pair in pairs if all(Outcome(run["end"]).is_stop for run in pair)]
+        far = sum(hypot(one["x"] - two["x"], one["y"] - two["y"]) > _NEAR for one, two in stops)
+        lines.append(
+            f"{wheels}, {len(pairs)} runs: {clears} clear in one of both, {ends} have another "
+            f"outcome; {far} of {len(stops)} that stop in both do so more than 1 mm apart"
+        )
+    return "\n".join(lines)
 
 
 def check(cells: Sequence[Cell], results: dict[str, Any], path: Path = PREDICTIONS) -> str:

@@ -15,7 +15,7 @@ from benches.engines.engine import Engine
 from benches.engines.engine_ode import Ode
 from benches.engines.engines import ENGINES, engine_of, holds
 from benches.engines.ground import blocks_of, goal_of
-from benches.engines.predict import PREDICTIONS, check, hash_of
+from benches.engines.predict import PREDICTIONS, check, hash_of, unlike
 from benches.engines.predict import read as predictions
 from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
 from benches.engines.solid import solid_of
@@ -72,6 +72,24 @@ def test_the_predictions_are_for_these_cells_and_the_results_for_these_predictio
             results = json.loads(path.read_text(encoding="utf-8"))
             assert results["predictions"] == hash_of(), name
             assert set(results["runs"]) <= set(predicted), name
+
+
+def test_predictions_made_again_are_compared_run_by_run(tmp_path: Path) -> None:
+    def write_runs(name: str, *ends: str, x: float) -> Path:
+        runs = [{"end": end, "x": x, "y": 0.0} for end in ends]
+        cells = {"a; line of 3; b": runs, "a; 3 gears; b": runs[:1]}
+        path = tmp_path / name
+        path.write_text(json.dumps({"cells": cells}), encoding="utf-8")
+        return path
+
+    kept = write_runs("kept", "cleared", "seized", "stalled", "timed_out", x=0.0)
+    now = write_runs("now", "cleared", "cleared", "slipping", "timed_out", x=0.002)
+    assert unlike(now, kept).splitlines() == [
+        "round wheels, 4 runs: 1 clear in one of both, 2 have another outcome; "
+        "1 of 1 that stop in both do so more than 1 mm apart",
+        "gear wheels, 1 runs: 0 clear in one of both, 0 have another outcome; "
+        "0 of 0 that stop in both do so more than 1 mm apart",
+    ]
 
 
 def test_nothing_runs_without_its_prediction(tmp_path: Path) -> None:
