@@ -27,6 +27,7 @@ mod observe;
 mod robot;
 mod run;
 mod scenario;
+mod solver;
 mod terrain;
 mod version;
 

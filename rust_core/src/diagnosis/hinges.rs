@@ -2,9 +2,9 @@
 
 use super::scene::Scene;
 use super::statics::Hinge;
-use crate::dynamics::Direction;
 use crate::geometry::{Pose, Vector, cross};
 use crate::robot::Mount;
+use crate::solver::Direction;
 
 impl Scene<'_> {
     /// The hinges of the robot in a pose.
@@ -34,7 +34,7 @@ impl Scene<'_> {
         };
         let arm = point - pose.transform_point(self.model.flippers[k].pivot);
         let hung = directions.map(|direction| Direction {
-            flipper_lever: cross(arm, direction.unit) - direction.drive_lever,
+            joint_lever: cross(arm, direction.unit) - direction.spin_lever,
             ..direction
         });
         (Some(k), hung)

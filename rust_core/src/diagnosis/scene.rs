@@ -155,8 +155,8 @@ impl Scene<'_> {
 
         let bearing = stance.bearings.iter().filter(|b| b.normal_force > 0.0);
         bearing.zip(contacts).any(|(bearing, contact)| {
-            // A surface speed of 1 moves the surface by -drive_lever / drive_radius along the normal.
-            let into_ground = self.levers(stance, &bearing.contact).normal.drive_lever;
+            // A surface speed of 1 moves the surface by -spin_lever / drive_radius along the normal.
+            let into_ground = self.levers(stance, &bearing.contact).normal.spin_lever;
             contact.in_pocket
                 && self.direction() * into_ground > INTO_GROUND * self.model.drive_radius
         })

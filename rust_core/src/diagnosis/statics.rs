@@ -8,8 +8,9 @@
 mod tests;
 
 use super::linear_program::Rows;
-use crate::dynamics::{Direction, push_axis};
+use crate::dynamics::push_axis;
 use crate::robot::Model;
+use crate::solver::Direction;
 
 /// Multiple of the weight above which a force counts as unlimited.
 const WITHOUT_LIMIT: f64 = 1e3;
@@ -223,10 +224,10 @@ impl Statics {
         (effect[0], effect[1]) = (unit.x, unit.y);
         effect[2] = (n.lever + t.lever * friction) / self.lever;
         if let Some(k) = support.drive {
-            effect[3 + k] = (n.drive_lever + t.drive_lever * friction) / self.radius;
+            effect[3 + k] = (n.spin_lever + t.spin_lever * friction) / self.radius;
         }
         if let Some(k) = support.hinge {
-            let lever = n.flipper_lever + t.flipper_lever * friction;
+            let lever = n.joint_lever + t.joint_lever * friction;
             effect[3 + self.motors.len() + k] = lever / self.lever;
         }
         effect

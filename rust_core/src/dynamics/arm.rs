@@ -2,19 +2,14 @@
 //!
 //! The equations: docs/physics.md, "Arms".
 
-use super::action::Action;
 use super::approach::Approach;
-use super::damper::Damper;
-use super::motor::Motor;
-use super::phase::Phase;
-use super::state::Twist;
 use crate::geometry::{Vector, left_of};
 use crate::robot::Flipper;
+use crate::solver::{Damper, Direction, Hung, Joint, Twist};
 
 /// The arms at one end of the robot.
 pub(super) struct Arm {
     pub rule: Flipper,
-    pub motor: Motor,
     /// [rad/s] Rate relative to the chassis at which this solve aims.
     pub rate: f64,
     /// Its approach to the angle that it is to hold, in this step.
@@ -31,10 +26,8 @@ pub(super) struct Arm {
 
 impl Arm {
     pub(super) fn new(rule: Flipper) -> Self {
-        let has_motor = rule.torque_limit > 0.0;
         Self {
             rule,
-            motor: if has_motor { Motor::Holds } else { Motor::Free },
             rate: 0.0,
             approach: Approach::default(),
             keeps_level: false,
@@ -42,11 +35,6 @@ impl Arm {
             center: Vector::ZERO,
             free: Twist::default(),
         }
-    }
-
-    /// [rad/s] Its rate relative to the chassis, if its motor holds it.
-    pub(super) fn held_rate(&self) -> Option<f64> {
-        self.motor.share().is_none().then_some(self.rate)
     }
 
     /// [kg m^2] Moment of inertia about the pivot.
@@ -76,48 +64,38 @@ impl Arm {
         chassis.at(self.pivot) + rate * left_of(self.center)
     }
 
-    /// [N m s] Angular impulse of its motor at a share of its limit.
-    pub(super) fn given(&self, share: f64, phase: &Phase) -> f64 {
-        share * self.rule.torque_limit * phase.elapsed
+    /// The arm as contacts on it feel it. Beside shoes it is as light as they are; otherwise its grip would keep changing
+    /// with theirs.
+    pub(super) fn joint(&self, shoe_mass: Option<f64>) -> Joint {
+        match shoe_mass {
+            Some(mass) => Joint::new(f64::INFINITY, mass),
+            None => Joint::new(self.inertia_about_pivot(), f64::INFINITY),
+        }
     }
 
-    /// Its inertia along x, along y and in rotation, and its motor: the directions in which they act, and
-    /// their dampers.
-    pub(super) fn dampers(&self, phase: &Phase) -> [(Action, Damper); 4] {
+    /// Its inertia along x, along y and in rotation.
+    pub(super) fn hung(&self, joint: usize) -> [Hung; 3] {
         let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {
             mass,
             moment_of_inertia: inertia,
             ..
         } = self.rule;
-        let action = |unit: Vector, lever: f64, flipper_lever: f64| {
-            let action = Action {
+        let free = self.free;
+        let hung = |unit: Vector, [lever, joint_lever]: [f64; 2], inertia: f64, free: f64| Hung {
+            joint,
+            along: Direction {
                 unit,
                 lever,
-                flipper_lever,
-                ..Action::default()
-            };
-            action.of_flipper(self.held_rate())
+                joint_lever,
+                ..Direction::default()
+            },
+            inertia: Damper::new(inertia * free, inertia),
         };
-        let free = self.free.velocity;
-        let share = self.motor.share().unwrap_or_default();
         [
-            (
-                action(Vector::X, pivot.x, arm.x),
-                Damper::new(mass * free.x, mass),
-            ),
-            (
-                action(Vector::Y, pivot.y, arm.y),
-                Damper::new(mass * free.y, mass),
-            ),
-            (
-                action(Vector::ZERO, 0.0, 1.0),
-                Damper::new(inertia * self.free.turn, inertia),
-            ),
-            (
-                action(Vector::ZERO, -1.0, 1.0),
-                Damper::constant(self.given(share, phase)),
-            ),
+            hung(Vector::X, [pivot.x, arm.x], mass, free.velocity.x),
+            hung(Vector::Y, [pivot.y, arm.y], mass, free.velocity.y),
+            hung(Vector::ZERO, [0.0, 1.0], inertia, free.turn),
         ]
     }
 }

@@ -5,9 +5,10 @@
 //!
 //! The equations: docs/physics.md, "Length of a step".
 
-use super::state::{Shoe, State, Twist};
+use super::state::{Shoe, State};
 use crate::geometry::Vector;
 use crate::robot::Model;
+use crate::solver::Twist;
 
 /// A time within a step.
 #[derive(Clone, Copy)]

@@ -7,10 +7,10 @@ mod tests;
 
 use super::Dynamics;
 use super::chain::{Chain, Stand};
-use super::phase::Phase;
-use super::row::{Link, Row};
-use super::state::{State, Twist};
+use super::state::State;
+use super::touch::{Touch, is_on_ground};
 use crate::geometry::Vector;
+use crate::solver::{Acts, Twist};
 
 /// [m] A shoe this close to the guide may come to rest on it within a step.
 const NEAR_GUIDE: f64 = 2e-3;
@@ -42,8 +42,9 @@ impl Dynamics {
             reading.sprocket_slip = reading.sprocket_slip.max(chain.sprocket_slip());
             reading.is_off |= chain.is_off;
         }
-        let on_guide = |row: &&Row| matches!(row.link, Link::Guide { .. } | Link::Tooth { .. });
-        let gaps = self.rows.iter().filter(on_guide).map(|row| row.gap);
+        let contacts = self.touches.iter().zip(&self.problem.contacts);
+        let on_guide = contacts.filter(|(_, solved)| !is_on_ground(solved));
+        let gaps = on_guide.map(|(touch, _)| touch.gap);
         reading.guide_penetration = gaps.fold(0.0, |deepest, gap| deepest.max(-gap));
         reading
     }
@@ -59,7 +60,7 @@ impl Dynamics {
         state.velocity * self.model.mass + of_shoes + self.momentum_of_flippers(state)
     }
 
-    /// Adds a row for each place where a shoe rests on guide, wheel or tooth, or nearly does, in the middle of
+    /// Adds a contact for each place where a shoe rests on guide, wheel or tooth, or nearly does, in the middle of
     /// the step.
     pub(super) fn rest_on_guides(&mut self, state: &State, half: f64) {
         let pose = state.pose_after(half, &self.model);
@@ -76,27 +77,30 @@ impl Dynamics {
             chain.rests(stand, place_of, NEAR_GUIDE, |chain, rest| {
                 let of = (first + rest.shoe, number);
                 let last = chain.recall(&rest);
-                self.rows.push(Row::at_rest(&rest, last, state, of, half));
+                let (touch, solved) = Touch::at_rest(&rest, last, state, of, half);
+                self.touches.push(touch);
+                self.problem.contacts.push(solved);
             });
         }
     }
 
-    /// Stores the forces of the rests, whose rows come after those of the contacts with the ground.
+    /// Stores the forces of the rests, which come after the contacts with the ground.
     pub(super) fn remember_rests(&mut self, contacts: usize) {
         for chain in &mut self.chains {
             chain.forget_rests();
         }
-        for row in &self.rows[contacts..] {
-            if let Link::Guide { shoe, chain } | Link::Tooth { shoe, chain } = row.link {
-                self.chains[chain].remember_rest(shoe % self.shoes_a_chain, row);
+        let rests = self.touches.iter().zip(&self.problem.contacts);
+        for (touch, solved) in rests.skip(contacts) {
+            if let Acts::LinkAndSlide(link) | Acts::LinkAndSpin { link, .. } = solved.acts {
+                self.chains[link.ring].remember_rest(link.number, touch, solved.grip);
             }
         }
     }
 
     /// Moves shoes and idlers by `h` [s] at their velocities.
     pub(super) fn move_chains(&mut self, state: &mut State, h: f64) {
-        for chain in &mut self.chains {
-            chain.count(state, h);
+        for (chain, ring) in self.chains.iter_mut().zip(&self.problem.rings) {
+            chain.count(ring.drive_speed(&self.problem.velocities), state, h);
         }
         for shoe in &mut state.shoes {
             *shoe = shoe.after(h);
@@ -110,25 +114,26 @@ impl Dynamics {
     pub(super) fn start_chains(&mut self, state: &State, h: f64) {
         let weight = self.weight(0.5 * h);
         let pose = state.pose_after(0.5 * h, &self.model);
-        for chain in &mut self.chains {
-            let shoes = &state.shoes[chain.rule.shoes.clone()];
-            for (free, shoe) in chain.free.iter_mut().zip(shoes) {
-                *free = shoe.twist.plus(weight, 1.0);
-            }
-            chain.follow(state, pose, h);
-            chain.guess(0.5 * h);
+        let free = &mut self.problem.free.links;
+        for (free, shoe) in free.iter_mut().zip(&state.shoes) {
+            *free = shoe.twist.plus(weight, 1.0);
+        }
+        for (chain, ring) in self.chains.iter_mut().zip(&mut self.problem.rings) {
+            chain.follow(ring, (state, pose), free, h);
+            chain.guess(ring, 0.5 * h);
         }
     }
 
     /// Continues after the motion of a step of `h` [s]: the other half of the weight, and pins where they are now.
     pub(super) fn hold_chains(&mut self, state: &State, h: f64) {
         let weight = self.weight(0.5 * h);
-        for chain in &mut self.chains {
-            for free in &mut chain.free {
-                *free = free.plus(weight, 1.0);
-            }
-            chain.hold(state, h);
-            chain.guess_more(0.5 * h);
+        let free = &mut self.problem.free.links;
+        for free in free.iter_mut() {
+            *free = free.plus(weight, 1.0);
+        }
+        for (chain, ring) in self.chains.iter_mut().zip(&mut self.problem.rings) {
+            chain.hold(ring, state, free, h);
+            chain.guess_more(ring, 0.5 * h);
         }
     }
 
@@ -140,77 +145,13 @@ impl Dynamics {
         }
     }
 
-    /// [N s] Impulse of a chain's drive, if its motor does not hold the speed.
-    fn given(&self, k: usize, phase: &Phase) -> Option<f64> {
-        if !self.chains[k].has_hold() {
-            return Some(0.0);
-        }
-        let share = self.motors[k].share()?;
-        Some(phase.motor_impulse(share, &self.model))
-    }
-
-    pub(super) fn assemble_chains(&mut self, phase: &Phase) {
-        for k in 0..self.chains.len() {
-            let given = self.given(k, phase);
-            self.chains[k].assemble(phase.set_point, given);
-        }
-    }
-
-    /// Velocity and angular velocity of the chassis, chains included; none if the constraints contradict
-    /// each other.
-    pub(super) fn solve_system(&mut self) -> Option<(Vector, f64)> {
-        if !self.chains.is_empty() {
-            let mut rows = self.system.of_chassis();
-            for chain in &mut self.chains {
-                chain.eliminate(&mut rows)?;
-            }
-            self.system.set_of_chassis(rows);
-        }
-        let (velocity, turn) = self.system.solve()?;
-        for (chain, spin) in self.chains.iter_mut().zip(&mut self.system.spins) {
-            chain.solve([velocity.x, velocity.y, turn]);
-            if chain.has_sprocket() {
-                spin.value = chain.spin;
-            }
-        }
-        Some((velocity, turn))
-    }
-
-    /// Converts the velocities of the last solve into changes.
-    pub(super) fn change_shoes(&mut self, state: &State) {
-        let solved = self.chains.iter_mut().flat_map(|chain| &mut chain.solved);
-        for (twist, shoe) in solved.zip(&state.shoes) {
-            *twist = twist.less(shoe.twist);
-        }
-        for (chain, idler) in self.chains.iter_mut().zip(&state.idlers) {
-            chain.idler_rate -= idler.rate;
-        }
-    }
-
-    /// Changes the shoes' velocities by a share of the change.
-    pub(super) fn move_shoes(&self, state: &mut State, share: f64) {
-        let changes = self.chains.iter().flat_map(|chain| &chain.solved);
-        for (shoe, change) in state.shoes.iter_mut().zip(changes) {
-            shoe.twist = shoe.twist.plus(*change, share);
-        }
-        for (idler, chain) in state.idlers.iter_mut().zip(&self.chains) {
-            idler.rate += chain.idler_rate * share;
-        }
-    }
-
-    /// Updates the impulses of pins and drives, and the speeds of the drives, to match the velocities; returns
-    /// the largest error of a velocity [m/s].
-    pub(super) fn chains_follow_velocities(&mut self, state: &mut State, phase: &Phase) -> f64 {
-        let mut off: f64 = 0.0;
-        for k in 0..self.chains.len() {
-            let given = self.given(k, phase);
-            let chain = &mut self.chains[k];
-            let speed = chain.drive_speed(state);
-            off = off.max(chain.follow_drive(speed - phase.set_point, given));
-            if !chain.has_sprocket() {
+    /// Sets the spins of the drives that have no sprocket, from the speeds of their chains.
+    pub(super) fn spin_with_chains(&self, state: &mut State) {
+        for (k, ring) in self.problem.rings.iter().enumerate() {
+            if ring.spin.is_none() {
+                let speed = ring.drive_speed(&self.problem.velocities);
                 state.drives[k].spin = state.angular_velocity - speed / self.model.drive_radius;
             }
         }
-        off
     }
 }

@@ -1,9 +1,7 @@
 //! The flippers in the equations of motion.
 //!
 //! An arm is a body that hangs on the chassis by its pivot, so it adds one unknown, its rate, and none while
-//! its motor holds the commanded rate: it then adds to the inertia of the chassis. Its mass enters as a damper
-//! about the velocity that its centre of mass would have without the pivot; the impulse of that damper is the
-//! impulse of the pivot.
+//! its motor holds the commanded rate.
 //!
 //! The equations: docs/physics.md, "Arms".
 
@@ -11,16 +9,13 @@
 mod tests;
 
 use super::Dynamics;
-use super::action::Action;
 use super::approach::Approach;
 use super::arm::Arm;
-use super::motor::{AT_LIMIT, Motor, PAST};
-use super::phase::Phase;
-use super::state::{State, Twist};
-use super::system::Acts;
+use super::state::{State, Turn};
 use super::trend::Trend;
-use crate::geometry::{Vector, left_of};
+use crate::geometry::Vector;
 use crate::scenario::End;
+use crate::solver::Twist;
 
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
@@ -93,123 +88,23 @@ impl Dynamics {
         }
     }
 
-    pub(super) fn assemble_flippers(&mut self, phase: &Phase) {
-        for (k, arm) in self.flippers.iter().enumerate() {
-            if arm.held_rate().is_some() {
-                self.system.hold(k);
-            }
-            let acts = Acts {
-                drive: None,
-                flipper: Some(k),
-            };
-            for (action, damper) in arm.dampers(phase) {
-                self.system.add(&action, &action, acts, damper);
-            }
-        }
-    }
-
-    /// Sets the flippers' rates to those of the last solve.
-    pub(super) fn take_flippers(&self, state: &mut State) {
-        for (turn, solved) in state.flippers.iter_mut().zip(self.system.turns) {
-            turn.rate = solved;
-        }
-        self.turn_flippers_with_chassis(state);
-    }
-
-    /// [1/kg] The flipper's part of the admittance of its contacts.
-    pub(super) fn admittance_of_flipper(&self, k: usize, action: &Action) -> f64 {
-        // Beside shoes it is as soft as they are; otherwise its grip would keep changing with theirs.
-        if let Some(chain) = self.chains.first() {
-            return action.unit.length_squared() / chain.rule.shoe_mass;
-        }
-        let lever = action.flipper_lever;
-        lever * lever / self.flippers[k].inertia_about_pivot()
-    }
-
-    /// Sets the rates of flippers held by their motors, which turn with the chassis.
-    pub(super) fn turn_flippers_with_chassis(&self, state: &mut State) {
-        for (turn, arm) in state.flippers.iter_mut().zip(&self.flippers) {
-            if let Some(rate) = arm.held_rate() {
-                turn.rate = state.angular_velocity + rate;
-            }
-        }
-    }
-
-    /// Converts the solved rates into changes, given that of the chassis.
-    pub(super) fn change_flippers(&mut self, state: &State, chassis: &Twist) {
-        for (k, arm) in self.flippers.iter().enumerate() {
-            self.system.changes[k] = match arm.held_rate() {
-                Some(_) => chassis.turn,
-                None => self.system.turns[k] - state.flippers[k].rate,
-            };
-        }
-    }
-
-    /// Changes the flippers' rates by a share of the changes.
-    pub(super) fn move_flippers(&self, state: &mut State, share: f64) {
-        for (turn, change) in state.flippers.iter_mut().zip(self.system.changes) {
-            turn.rate += change * share;
-        }
-    }
-
-    /// [N m s] Angular impulse of a flipper's motor so far, upwards at the front.
-    pub(super) fn flipper_impulse(&self, state: &State, phase: &Phase, k: usize) -> f64 {
-        let (arm, rate) = (&self.flippers[k], state.flippers[k].rate);
-        if let Some(share) = arm.motor.share() {
-            return arm.given(share, phase);
-        }
-        // The motor has made the change of angular momentum about the pivot that the contacts have not.
-        let gained = arm.velocity(state.twist(), rate) - arm.free.velocity;
-        let of_arm = arm.rule.mass * left_of(arm.center).dot(gained)
-            + arm.rule.moment_of_inertia * (rate - arm.free.turn);
-        let on_it = self.rows.iter().filter(|row| row.flipper() == Some(k));
-        let of_contacts = on_it.map(|row| {
-            row.normal.flipper_lever * row.normal_impulse
-                + row.tangent.flipper_lever * row.friction_impulse
-        });
-        of_arm - of_contacts.sum::<f64>()
-    }
-
-    /// [rad/s] How far the rate of a flipper exceeds the one at which its motor aims.
-    pub(super) fn flipper_ahead(&self, state: &State, k: usize) -> f64 {
-        state.flippers[k].rate - state.angular_velocity - self.flippers[k].rate
-    }
-
-    /// Releases motors of flippers beyond their limit, and lets those past their rate hold again; returns whether
-    /// any changed.
-    pub(super) fn switch_flippers(&mut self, state: &State, phase: &Phase) -> bool {
-        let mut switched = false;
-        for k in 0..self.flippers.len() {
-            let arm = &self.flippers[k];
-            let next = match arm.motor {
-                Motor::Free => Motor::Free,
-                Motor::Holds => {
-                    let limit = arm.given(1.0, phase) * (1.0 + AT_LIMIT);
-                    Motor::within(self.flipper_impulse(state, phase, k), limit)
-                }
-                at_limit => {
-                    let past = self.flipper_ahead(state, k) * at_limit.share().unwrap_or_default();
-                    if past > PAST { Motor::Holds } else { at_limit }
-                }
-            };
-            switched |= next != arm.motor;
-            self.flippers[k].motor = next;
-        }
-        switched
-    }
-
-    /// Stores the mean torques of the motors over a step.
-    pub(super) fn collect_flippers(&self, state: &mut State, phase: &Phase) {
-        for k in 0..self.flippers.len() {
-            state.flippers[k].torque = self.flipper_impulse(state, phase, k) / phase.elapsed;
+    /// Gives the next solve the arms as they are now, and what their motors can do in a `time` [s].
+    pub(super) fn hang_flippers(&mut self, time: f64) {
+        let arms = self.flippers.iter().enumerate();
+        self.problem.hung.clear();
+        self.problem
+            .hung
+            .extend(arms.flat_map(|(k, arm)| arm.hung(k)));
+        let motors = &mut self.problem.motors[self.model.drives..];
+        for (motor, arm) in motors.iter_mut().zip(&self.flippers) {
+            (motor.target, motor.most) = (arm.rate, arm.rule.torque_limit * time);
         }
     }
 
     /// [N s] Momentum of the flippers.
     pub(super) fn momentum_of_flippers(&self, state: &State) -> Vector {
-        let of = |(arm, turn): (&Arm, &super::state::Turn)| {
-            arm.velocity(state.twist(), turn.rate) * arm.rule.mass
-        };
+        let of =
+            |(arm, turn): (&Arm, &Turn)| arm.velocity(state.twist(), turn.rate) * arm.rule.mass;
         self.flippers.iter().zip(&state.flippers).map(of).sum()
     }
 }

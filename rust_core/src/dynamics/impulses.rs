@@ -8,20 +8,19 @@ use super::Dynamics;
 use super::LoadedContact;
 use super::chain::{Chain, ChainImpulses};
 use super::identity::Identity;
-use super::motor::Motor;
 use crate::contact::Contact;
 use crate::geometry::plausible;
+use crate::solver::Hold;
 use crate::terrain::Profile;
 
 /// The impulses of one robot; part of a snapshot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Impulses {
     push: Option<f64>,
-    motors: Vec<Motor>,
+    motors: Vec<Hold>,
     pub(super) contacts: Vec<LoadedContact>,
     pub(super) identity: Identity,
     chains: Vec<ChainImpulses>,
-    flippers: Vec<Motor>,
 }
 
 impl Impulses {
@@ -35,12 +34,11 @@ impl Dynamics {
     /// The start values of the next step.
     pub(crate) fn impulses(&self) -> Impulses {
         Impulses {
-            push: self.push.as_ref().map(|push| push.force),
-            motors: self.motors.clone(),
+            push: self.push_force,
+            motors: self.problem.motors.iter().map(|motor| motor.hold).collect(),
             contacts: self.loaded.clone(),
             identity: self.identity.clone(),
             chains: self.chains.iter().map(Chain::impulses).collect(),
-            flippers: self.flippers.iter().map(|arm| arm.motor).collect(),
         }
     }
 
@@ -52,12 +50,10 @@ impl Dynamics {
             contacts,
             identity,
             chains,
-            flippers,
         } = impulses;
-        push.is_some() == self.push.is_some()
+        push.is_some() == self.push_force.is_some()
             && push.is_none_or(|push| plausible(&[push]))
-            && motors.len() == self.motors.len()
-            && flippers.len() == self.flippers.len()
+            && motors.len() == self.problem.motors.len()
             && chains.len() == self.chains.len()
             && chains
                 .iter()
@@ -69,10 +65,10 @@ impl Dynamics {
 
     /// Starts from the impulses that a step left of the same model, or of one that had a belly besides.
     pub(crate) fn start_from(&mut self, impulses: Impulses) {
-        if let (Some(push), Some(force)) = (&mut self.push, impulses.push) {
-            push.force = force;
+        self.push_force = impulses.push;
+        for (motor, hold) in self.problem.motors.iter_mut().zip(impulses.motors) {
+            motor.hold = hold;
         }
-        self.motors = impulses.motors;
         self.loaded = impulses.contacts;
         self.identity = impulses.identity;
         // The belly is the last part.
@@ -81,9 +77,6 @@ impl Dynamics {
         self.identity.keep_parts(parts);
         for (chain, impulses) in self.chains.iter_mut().zip(impulses.chains) {
             chain.start_from(impulses);
-        }
-        for (arm, motor) in self.flippers.iter_mut().zip(impulses.flippers) {
-            arm.motor = motor;
         }
     }
 }

@@ -6,20 +6,7 @@ use super::state::Carrier;
 use crate::contact::Contact;
 use crate::geometry::{Motion, Rotation, Vector, cross, left_of, right_of};
 use crate::robot::Model;
-
-/// A direction at a contact, with the levers by which the velocities of body and drive act along it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Direction {
-    pub unit: Vector,
-    /// [m] Lever of the body's angular velocity, with the drive's spin over ground held constant.
-    pub lever: f64,
-    /// [m] Lever of the spin of the drive or sprocket; at an idler, the share of its slide.
-    pub drive_lever: f64,
-    /// [m] Lever of the reaction on the chassis, if the contact is between two bodies of the robot.
-    pub back: f64,
-    /// [m] Lever of a flipper's rate; `lever` is then that of its pivot about the chassis.
-    pub flipper_lever: f64,
-}
+use crate::solver::Direction;
 
 impl Carried {
     /// Whether its drive moves it at all, other than along the surface.
@@ -49,25 +36,24 @@ impl Carried {
 }
 
 impl Direction {
-    /// `arm` leads from the carrier's centre to the contact; `motion` is the velocity of the surface over
-    /// the carrier for a surface speed of 1.
-    pub(crate) fn new(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
+    /// That of a contact on the robot: `arm` leads from the carrier's centre to the contact; `motion` is the velocity of
+    /// the surface over the carrier for a surface speed of 1.
+    pub(crate) fn on_robot(unit: Vector, arm: Vector, motion: Vector, model: &Model) -> Self {
         // The surface speed is the drive radius times the spin over the chassis, clockwise.
-        let drive_lever = -model.drive_radius * unit.dot(motion);
+        let spin_lever = -model.drive_radius * unit.dot(motion);
         Self {
             unit,
-            lever: cross(arm, unit) - drive_lever,
-            drive_lever,
-            back: 0.0,
-            flipper_lever: 0.0,
+            lever: cross(arm, unit) - spin_lever,
+            spin_lever,
+            ..Self::default()
         }
     }
 
-    /// The direction at a contact of a flipper whose pivot is at `pivot` from the chassis' centre of mass [m].
+    /// That of a contact of a flipper whose pivot is at `pivot` from the chassis' centre of mass [m].
     pub(super) fn on_flipper(self, pivot: Vector) -> Self {
         Self {
             lever: cross(pivot, self.unit),
-            flipper_lever: self.lever,
+            joint_lever: self.lever,
             ..self
         }
     }
@@ -117,8 +103,8 @@ impl Levers {
             Vector::ZERO
         };
         Self {
-            normal: Direction::new(contact.normal, arm, motion, model),
-            tangent: Direction::new(right_of(contact.normal), arm, motion, model),
+            normal: Direction::on_robot(contact.normal, arm, motion, model),
+            tangent: Direction::on_robot(right_of(contact.normal), arm, motion, model),
             arm,
             carried,
         }

@@ -4,10 +4,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Grip;
 use crate::contact::Contact;
 use crate::geometry::{Vector, plausible, right_of};
 use crate::robot::Model;
+use crate::solver::Grip;
 use crate::terrain::Profile;
 
 /// A contact as the solver keeps it from step to step.

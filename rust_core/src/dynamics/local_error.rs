@@ -6,7 +6,8 @@
 //! The equations: docs/physics.md, "Length of a step".
 
 use super::Dynamics;
-use super::state::{State, Twist};
+use super::state::State;
+use crate::solver::Twist;
 
 /// Share of a shoe's error that counts: shoes are light, and swing where the chain is slack.
 const OF_SHOES: f64 = 0.1;
@@ -47,7 +48,8 @@ impl Dynamics {
             let off = off_twist([before.shoes[k].twist, after.shoes[k].twist], shoe.twist);
             most = most.max(OF_SHOES * (off.velocity.length() + half_pitch * off.turn.abs()));
         }
-        let dips = self.rows.iter().map(|row| row.dip().max(row.overrun));
+        let contacts = self.touches.iter().zip(&self.problem.contacts);
+        let dips = contacts.map(|(touch, solved)| touch.dip(solved).max(touch.overrun));
         dips.fold(h * most, f64::max)
     }
 }

@@ -8,68 +8,51 @@
 //!
 //! The equations: docs/physics.md, "A step".
 
-mod action;
 mod approach;
 mod arm;
 mod between;
+mod build;
 mod chain;
 mod chains;
-mod change;
 mod course;
-mod damper;
-mod direct;
-mod effort;
 mod face;
 mod flippers;
-mod grip;
 mod identity;
 mod impulses;
-mod law;
 mod levers;
 mod loaded;
 mod local_error;
-mod lowering;
 mod meeting;
-mod motor;
-mod motors;
-mod newton;
-mod phase;
 mod push;
-mod row;
 mod set_point;
 mod softness;
 mod solve;
 mod state;
 mod strike;
-mod system;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod trend;
-mod way;
 
 use arm::Arm;
+use build::built;
 use chain::Chain;
 use face::Face;
 use identity::{Identity, Numbered};
 use meeting::Meeting;
-use motor::Motor;
-use phase::Phase;
-use push::Push;
-use row::Row;
 use softness::Softness;
-use system::System;
+use touch::{Touch, is_on_ground};
 
 use crate::contact::Contact;
 use crate::geometry::Vector;
 use crate::robot::{Model, Mount};
 use crate::scenario::Solver;
+use crate::solver::{Effort, Problem};
 use crate::terrain::Profile;
 
 pub use chains::ChainReading;
-pub(crate) use effort::Effort;
-pub(crate) use grip::Grip;
 pub(crate) use impulses::Impulses;
-pub(crate) use levers::{Direction, Levers};
+pub(crate) use levers::Levers;
 pub(crate) use loaded::LoadedContact;
 pub(crate) use push::push_axis;
 pub(crate) use set_point::SetPoint;
@@ -90,29 +73,20 @@ pub(crate) struct Dynamics {
     frictions: Vec<f64>,
     gravity: f64,
     solver: Solver,
-    rows: Vec<Row>,
-    /// The push of a track that is modelled as a force only.
-    push: Option<Push>,
-    motors: Vec<Motor>,
-    /// [N m s] Angular impulse of the contacts on each drive in this step.
-    torques: Vec<f64>,
-    /// [kg m^2] Moment of inertia of the chassis with the drives that turn with it.
-    inertia: f64,
-    system: System,
-    /// Conditions of the states on the way down to the ground.
-    conditions: Vec<lowering::Condition>,
+    /// The robot's bodies, motors and contacts as the solver sees them, ...
+    problem: Problem,
+    /// ... and what else a step knows of these contacts.
+    touches: Vec<Touch>,
+    /// [N] The last force of a track that is modelled as a force only.
+    push_force: Option<f64>,
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
-    shoes_a_chain: usize,
     /// Speed of the fastest tip relative to the chassis, in units of the surface speed.
     tip_speed: f64,
-    phase: Phase,
     loaded: Vec<LoadedContact>,
     /// The state of the last step with the velocities of its motion.
     moved: State,
     identity: Identity,
-    /// The solver's work in the last step.
-    effort: Effort,
     /// [N] External force at the centre of mass.
     pub outer_force: Vector,
 }
@@ -120,35 +94,22 @@ pub(crate) struct Dynamics {
 impl Dynamics {
     pub(crate) fn new(model: Model, frictions: Vec<f64>, gravity: f64, solver: Solver) -> Self {
         let moved = State::at_rest(&model, Vector::ZERO, 0.0, 0.0);
-        let has_motor = |k| k < model.motors && model.drive_force > 0.0;
-        let motor = |k| {
-            if has_motor(k) {
-                Motor::Holds
-            } else {
-                Motor::Free
-            }
-        };
+        let arms: Vec<Arm> = model.flippers.iter().cloned().map(Arm::new).collect();
+        let chains: Vec<Chain> = model.chains.iter().cloned().map(Chain::new).collect();
         Self {
-            motors: (0..model.drives).map(motor).collect(),
-            torques: vec![0.0; model.drives],
-            inertia: model.moment_of_inertia,
-            system: System::new(model.drives, model.flippers.len()),
-            conditions: Vec::new(),
+            problem: built(&model, &chains, &arms, &solver),
+            touches: Vec::new(),
+            push_force: model.pushes_chassis.then_some(0.0),
+            flippers: arms,
+            chains,
             tip_speed: model.tip_speed(),
-            shoes_a_chain: model.chains.first().map_or(1, |chain| chain.path.count),
-            flippers: model.flippers.iter().cloned().map(Arm::new).collect(),
-            chains: model.chains.iter().cloned().map(Chain::new).collect(),
-            phase: Phase::default(),
-            push: model.pushes_chassis.then(Push::default),
             model,
             frictions,
             gravity,
             solver,
-            rows: Vec::new(),
             loaded: Vec::new(),
             moved,
             identity: Identity::default(),
-            effort: Effort::default(),
             outer_force: Vector::ZERO,
         }
     }
@@ -160,7 +121,7 @@ impl Dynamics {
 
     /// The solver's work in the last step.
     pub(crate) fn effort(&self) -> Effort {
-        self.effort
+        self.problem.effort
     }
 
     pub(crate) fn model(&self) -> &Model {
@@ -208,56 +169,60 @@ impl Dynamics {
         } else {
             1.0
         };
-        self.rows.clear();
+        self.touches.clear();
+        self.problem.contacts.clear();
         let mut last = Numbered::new(&self.loaded);
         for contact in contacts {
             let last = last.get(contact.number);
-            let mut row = match self.model.parts[contact.part].mount {
-                Mount::Shoe(shoe) => Row::of_shoe(contact, last, state, &self.model, (shoe, half)),
+            let part = &self.model.parts[contact.part];
+            let (mut touch, mut solved) = match part.mount {
+                Mount::Shoe(shoe) => {
+                    Touch::of_shoe(contact, last, state, &self.model, (shoe, half))
+                }
                 Mount::Chassis | Mount::Flipper(_) => {
-                    Row::new(contact, last, state, &self.model, half)
+                    Touch::new(contact, last, state, &self.model, half)
                 }
             };
-            let lane = self.model.parts[contact.part].lane;
-            row.friction = row.friction.min(self.frictions[lane]);
-            row.friction_guess *= fading;
-            self.rows.push(row);
+            solved.friction = solved.friction.min(self.frictions[part.lane]);
+            touch.friction_guess *= fading;
+            self.touches.push(touch);
+            self.problem.contacts.push(solved);
         }
         self.rest_on_guides(state, half);
     }
 
     /// Tells the prepared step where the faces end on which arcs roll.
     pub(crate) fn bound_faces(&mut self, contacts: &[Contact], lanes: &[Profile]) {
-        let on_faces = self.rows.iter_mut().zip(contacts);
-        for (row, contact) in on_faces.filter(|(row, _)| matches!(row.meeting, Meeting::Arc(_))) {
+        let touches = self.touches.iter_mut().zip(contacts);
+        for (touch, contact) in touches.filter(|(t, _)| matches!(t.meeting, Meeting::Arc(_))) {
             let lane = self.model.parts[contact.part].lane;
-            row.face = Face::of(contact, &lanes[lane]);
+            touch.face = Face::of(contact, &lanes[lane]);
         }
     }
 
     /// Advances the state by the prepared step of `h` [s].
     pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
-        self.effort = Effort::default();
+        self.problem.effort = Effort::default();
         let half = 0.5 * h;
         let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
+        let began = state.angular_velocity;
         self.place_flippers(state, half);
-        let mut phase = self.start_phase(state, set_point.middle, half);
+        self.start(state, half);
         self.start_chains(state, h);
         self.close_gaps(h);
         self.guess(half);
-        self.solve(state, &phase);
+        self.solve(state, set_point.middle, half);
         self.moved.copy(state);
         self.move_on(state, h);
         self.move_chains(state, h);
-        phase.velocity += self.kick(half);
-        self.pull_flippers(state, phase.angular_velocity, half);
-        (phase.set_point, phase.elapsed) = (set_point.end, h);
-        self.aim_at_end(state, phase.angular_velocity);
+        self.problem.free.base.velocity += self.kick(half);
+        self.pull_flippers(state, began, half);
+        self.aim_at_end(state, began);
         self.hold_chains(state, h);
         self.guess_more();
         self.keep_closed(h);
-        self.solve(state, &phase);
-        self.end_phase(state, phase);
+        self.solve(state, set_point.end, h);
+        self.collect(state, h);
         if let Some(before) = before {
             self.balance_momentum(state, before, h);
         }
@@ -276,11 +241,11 @@ impl Dynamics {
     /// Sets the contacts up for the solve before a motion of `h` [s], which finds the impulses of half of it.
     fn close_gaps(&mut self, h: f64) {
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
-        for row in &mut self.rows {
+        for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
             if self.chains.is_empty() {
-                row.close(h, soft, most);
+                touch.close(solved, h, soft, most);
             } else {
-                row.close_softly((h, 0.5 * h), soft, most);
+                touch.close_softly(solved, (h, 0.5 * h), soft, most);
             }
         }
     }
@@ -288,11 +253,12 @@ impl Dynamics {
     /// Sets them up for the one after it, which finds the impulses of all of it: only those of chains, on which a
     /// robot stands softly, go on to close.
     fn keep_closed(&mut self, h: f64) {
+        if self.chains.is_empty() {
+            return;
+        }
         let (soft, most) = (self.softness(h), self.solver.max_push_speed);
-        if !self.chains.is_empty() {
-            for row in &mut self.rows {
-                row.close_softly((h, h), soft, most);
-            }
+        for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
+            touch.close_softly(solved, (h, h), soft, most);
         }
     }
 
@@ -318,10 +284,15 @@ impl Dynamics {
 
     /// [N s] Impulse of the ground in this step.
     fn impulse_of_ground(&self) -> Vector {
-        let of_push = |push: &Push| push.action.unit * push.impulse;
-        let on_ground = self.rows.iter().filter(|row| row.is_on_ground());
-        on_ground.map(Row::impulse).sum::<Vector>()
-            + self.push.as_ref().map_or(Vector::ZERO, of_push)
+        let contacts = self.problem.contacts.iter();
+        let on_ground = contacts.filter(|solved| is_on_ground(solved));
+        let pushes = self.problem.bilaterals.iter();
+        on_ground
+            .map(crate::solver::Contact::impulse)
+            .sum::<Vector>()
+            + pushes
+                .map(|push| push.along.unit * push.impulse)
+                .sum::<Vector>()
     }
 
     /// Goes back to before a step that was not kept.
@@ -354,16 +325,15 @@ impl Dynamics {
         (self.outer_force / self.model.mass - Vector::new(0.0, self.gravity)) * time
     }
 
-    /// The start of a solve after a time [s] in which only weight and external force act.
-    fn start_phase(&mut self, state: &State, set_point: f64, time: f64) -> Phase {
-        let mut phase = std::mem::take(&mut self.phase);
-        phase.velocity = state.velocity + self.kick(time);
-        phase.angular_velocity = state.angular_velocity;
-        phase.spins.clear();
-        phase.spins.extend(state.drives.iter().map(|d| d.spin));
-        (phase.set_point, phase.elapsed) = (set_point, time);
+    /// Starts a step with the velocities after a time [s] in which only weight and external force act.
+    fn start(&mut self, state: &State, time: f64) {
+        let free = &mut self.problem.free;
+        free.base = state.twist();
+        for (rate, drive) in free.spins.iter_mut().zip(&state.drives) {
+            *rate = drive.spin;
+        }
+        self.problem.free.base.velocity += self.kick(time);
         self.start_flippers(state, time);
-        phase
     }
 
     /// Moves chassis, drives, flippers and gaps by `h` [s] at their velocities.
@@ -376,34 +346,28 @@ impl Dynamics {
         for flipper in &mut state.flippers {
             flipper.angle += flipper.rate * h;
         }
-        for row in &mut self.rows {
-            row.follow(state, &self.model, h);
+        for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
+            touch.follow(solved, state, &self.model, h);
         }
-    }
-
-    fn end_phase(&mut self, state: &mut State, phase: Phase) {
-        self.collect(state, &phase);
-        self.phase = phase;
     }
 
     fn report(&mut self, state: &State, contacts: &[Contact], h: f64) {
-        let mut loaded = std::mem::take(&mut self.loaded);
-        loaded.clear();
-        for (row, contact) in self.rows.iter().zip(contacts) {
-            loaded.push(LoadedContact {
+        self.loaded.clear();
+        let found = self.touches.iter().zip(&self.problem.contacts);
+        for ((touch, solved), contact) in found.zip(contacts) {
+            self.loaded.push(LoadedContact {
                 contact: Contact {
-                    distance: row.gap,
+                    distance: touch.gap,
                     ..*contact
                 },
-                normal_force: row.normal_impulse / h,
-                friction_force: row.friction_impulse / h,
-                surface_speed: row.slip(state),
-                normal_guess: row.normal_guess,
-                friction_guess: row.friction_guess,
-                grip: row.grip,
+                normal_force: solved.normal_impulse / h,
+                friction_force: solved.friction_impulse / h,
+                surface_speed: solved.slip(state),
+                normal_guess: touch.normal_guess,
+                friction_guess: touch.friction_guess,
+                grip: solved.grip,
             });
         }
-        self.loaded = loaded;
         self.remember_rests(contacts.len());
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Pose, Rotation, Vector, direction, left_of};
 use crate::robot::{ChainOfShoes, Flipper, Model, Mount, Running};
+use crate::solver::{Moves, Twist, Velocities};
 
 /// The state of motion.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -68,50 +69,6 @@ pub(crate) struct Shoe {
     pub angle: f64,
     /// Its velocity.
     pub twist: Twist,
-}
-
-/// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its rotation.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Twist {
-    pub velocity: Vector,
-    pub turn: f64,
-}
-
-impl Twist {
-    /// The components: x, y and rotation.
-    pub(crate) fn entries(self) -> [f64; 3] {
-        [self.velocity.x, self.velocity.y, self.turn]
-    }
-
-    /// [m/s] Velocity of a point at `arm` from the centre [m].
-    pub(crate) fn at(self, arm: Vector) -> Vector {
-        self.velocity + self.turn * left_of(arm)
-    }
-
-    /// The difference from another velocity.
-    pub(crate) fn less(self, other: Self) -> Self {
-        Self {
-            velocity: self.velocity - other.velocity,
-            turn: self.turn - other.turn,
-        }
-    }
-
-    /// The sum with a share of a change.
-    pub(crate) fn plus(self, change: Self, share: f64) -> Self {
-        Self {
-            velocity: self.velocity + change.velocity * share,
-            turn: self.turn + change.turn * share,
-        }
-    }
-}
-
-impl From<[f64; 3]> for Twist {
-    fn from([x, y, turn]: [f64; 3]) -> Self {
-        Self {
-            velocity: Vector::new(x, y),
-            turn,
-        }
-    }
 }
 
 impl Shoe {
@@ -178,6 +135,40 @@ impl State {
         Twist {
             velocity: self.velocity,
             turn: self.angular_velocity,
+        }
+    }
+
+    /// Writes its velocities down for a solve.
+    pub(super) fn write_velocities(&self, into: &mut Velocities) {
+        into.base = self.twist();
+        for (rate, flipper) in into.joints.iter_mut().zip(&self.flippers) {
+            *rate = flipper.rate;
+        }
+        for (rate, drive) in into.spins.iter_mut().zip(&self.drives) {
+            *rate = drive.spin;
+        }
+        for (link, shoe) in into.links.iter_mut().zip(&self.shoes) {
+            *link = shoe.twist;
+        }
+        for (rate, idler) in into.slides.iter_mut().zip(&self.idlers) {
+            *rate = idler.rate;
+        }
+    }
+
+    /// Takes the velocities that a solve has found.
+    pub(super) fn take_velocities(&mut self, found: &Velocities) {
+        (self.velocity, self.angular_velocity) = (found.base.velocity, found.base.turn);
+        for (flipper, rate) in self.flippers.iter_mut().zip(found.joints) {
+            flipper.rate = rate;
+        }
+        for (drive, rate) in self.drives.iter_mut().zip(&found.spins) {
+            drive.spin = *rate;
+        }
+        for (shoe, link) in self.shoes.iter_mut().zip(&found.links) {
+            shoe.twist = *link;
+        }
+        for (idler, rate) in self.idlers.iter_mut().zip(&found.slides) {
+            idler.rate = *rate;
         }
     }
 
@@ -342,6 +333,28 @@ impl State {
                 .flippers
                 .iter()
                 .all(|f| f.angle.is_finite() && f.rate.is_finite())
+    }
+}
+
+impl Moves for State {
+    fn base(&self) -> Twist {
+        self.twist()
+    }
+
+    fn joint(&self, joint: usize) -> f64 {
+        self.flippers[joint].rate
+    }
+
+    fn spin(&self, spin: usize) -> f64 {
+        self.drives[spin].spin
+    }
+
+    fn link(&self, link: usize) -> Twist {
+        self.shoes[link].twist
+    }
+
+    fn slide(&self, ring: usize) -> f64 {
+        self.idlers[ring].rate
     }
 }
 

@@ -3,10 +3,11 @@
 //! The equations: docs/physics.md, "Length of a step".
 
 use super::Dynamics;
-use super::row::Row;
 use super::state::State;
+use super::touch::{Touch, mount};
 use super::trend::Trend;
 use crate::robot::Model;
+use crate::solver::Contact;
 
 /// Where a tip comes nearest to the ground, its course is looked at again over this share of the step to either side:
 /// over a whole step a wheel turns by up to [`crate::run::FARTHEST_TURN`], and a parabola is 10 um off.
@@ -75,18 +76,21 @@ impl Dynamics {
         if !self.chains.is_empty() {
             return f64::INFINITY;
         }
-        let strike = |row: &Row| row.strike(state, &self.model, (h, speed), trend);
-        let times = self.rows.iter().filter_map(strike);
+        let contacts = self.touches.iter().zip(&self.problem.contacts);
+        let times = contacts.filter_map(|(touch, solved)| {
+            touch.strike(solved, state, &self.model, (h, speed), trend)
+        });
         times.fold(f64::INFINITY, f64::min)
     }
 }
 
-impl Row {
+impl Touch {
     /// [s] When the gap closes faster than `speed` [m/s] in a step of `h` [s], if velocities go on to change like this.
     ///
     /// A tip that a drive carries may come down and go up again within a step.
     pub(super) fn strike(
         &self,
+        solved: &Contact,
         state: &State,
         model: &Model,
         (h, speed): (f64, f64),
@@ -97,9 +101,11 @@ impl Row {
             // It is closed already; if it closes further, the error makes the step short.
             return None;
         }
-        let slope = self.opening_speed(state);
-        let gain = trend.map_or(0.0, |t| t.rate(slope, |before| self.opening_speed(before)));
-        let carried = self.mount().filter(|_| self.middle.carried.is_moving());
+        let slope = solved.opening_speed(state);
+        let gain = trend.map_or(0.0, |t| {
+            t.rate(slope, |before| solved.opening_speed(before))
+        });
+        let carried = mount(solved).filter(|_| self.middle.carried.is_moving());
         let Some(mount) = carried else {
             let course = Parabola {
                 at: 0.0,
@@ -110,7 +116,7 @@ impl Row {
             let (time, closing) = course.speeding_up(gain).lands()?;
             return (closing > speed).then_some(time);
         };
-        let gap = |time| self.gap_after(state, model, (mount, time));
+        let gap = |time| self.gap_after(solved, state, model, (mount, time));
         let gaps = [start, self.middle.gap, gap(h)];
         let whole = Parabola::through(gaps, 0.5 * h, 0.5 * h).speeding_up(gain);
         let course = match whole.lowest().filter(|time| (0.0..h).contains(time)) {

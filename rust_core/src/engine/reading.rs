@@ -7,9 +7,10 @@ use rapier2d_f64::prelude::{ContactPair, JointAxis, RigidBodyHandle};
 use super::EngineWorld;
 use super::motion::Motion;
 use crate::contact::Contact;
-use crate::dynamics::{Grip, LoadedContact, State};
+use crate::dynamics::{LoadedContact, State};
 use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
+use crate::solver::Grip;
 use crate::terrain::{Ground, Profile};
 
 /// Normals closer than this are equal, and points closer than this [m].

@@ -36,8 +36,8 @@ mod tests {
 
     use super::*;
     use crate::contact::Contact;
-    use crate::dynamics::Grip;
     use crate::geometry::Vector;
+    use crate::solver::Grip;
 
     /// Parts that bear on facets, each with this force [N].
     fn on_facets(bearing: &[(usize, usize)], force: f64) -> Vec<LoadedContact> {

@@ -8,10 +8,11 @@ use std::sync::Arc;
 use super::seen::{Anchor, LOOK, Seen};
 use super::{Event, Load, Outcome, Reading, Signals, Stance, bearing};
 use crate::contact::TrackEnvelope;
-use crate::dynamics::{ChainReading, DriveState, Effort, LoadedContact};
+use crate::dynamics::{ChainReading, DriveState, LoadedContact};
 use crate::geometry::{Pose, Vector, end_discs};
 use crate::robot::{Model, Part, Running};
 use crate::scenario::{Scenario, SeizureCriteria};
+use crate::solver::Effort;
 use crate::terrain::Ground;
 
 /// The monitor of one run.

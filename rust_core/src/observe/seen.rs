@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use super::{IntrusionWatch, Loads, Outcome, Shaking, Signals};
-use crate::dynamics::Effort;
 use crate::robot::Model;
+use crate::solver::Effort;
 use crate::terrain::Profile;
 
 /// [s] Time between two checks of the progress; far shorter than any stop window.

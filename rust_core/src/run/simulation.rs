@@ -26,7 +26,7 @@ use super::checked::fastest_turn;
 use super::record::Columns;
 use crate::contact::{Contact, ContactFinder, Dents, Intrusion, TrackEnvelope};
 use crate::diagnosis::{self, Balance, Diagnosis, Scene};
-use crate::dynamics::{ChainReading, DriveState, Dynamics, Effort, LoadedContact, Shoe, State};
+use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
 use crate::engine::EngineWorld;
 use crate::error::Error;
 #[cfg(test)]
@@ -35,6 +35,7 @@ use crate::geometry::Vector;
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
 use crate::scenario::{Engine, Scenario};
+use crate::solver::Effort;
 use crate::terrain::{Ground, Side};
 
 /// A simulation: what was built from the scenario, and the current state.

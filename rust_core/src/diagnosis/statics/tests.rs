@@ -7,9 +7,7 @@ fn support(normal: Vector, [lever, of_tangent]: [f64; 2], friction: f64) -> Supp
     let direction = |unit, lever| Direction {
         unit,
         lever,
-        drive_lever: 0.0,
-        back: 0.0,
-        flipper_lever: 0.0,
+        ..Direction::default()
     };
     Support {
         normal: direction(normal, lever),
@@ -45,7 +43,7 @@ fn on_an_arm(torque: f64) -> Statics {
     let on = |lever: f64| support(Vector::Y, [lever, 0.0], 0.0);
     let mut arm = on(1.0);
     arm.hinge = Some(0);
-    arm.normal.flipper_lever = 0.5;
+    arm.normal.joint_lever = 0.5;
     let hinge = Hinge {
         weight: 0.0,
         torque,
@@ -74,7 +72,7 @@ fn of_two_wheels_on_a_slope_one_may_stand_while_the_other_turns() {
     // A wheel on a motor of its own, whose torque acts back on the chassis.
     let wheel = |drive: usize, lever: f64, slides: f64| {
         let mut on = support(Vector::new(-sine, cosine), [lever, -1.0], 0.5);
-        (on.drive, on.tangent.drive_lever, on.slides) = (Some(drive), 1.0, slides);
+        (on.drive, on.tangent.spin_lever, on.slides) = (Some(drive), 1.0, slides);
         on
     };
     let imbalance = |slides: [f64; 2], torque: f64| {

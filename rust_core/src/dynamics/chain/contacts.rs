@@ -4,82 +4,82 @@
 
 use super::RestMemory;
 use super::rest::{Bearing, Rest};
-use crate::contact::Contact;
+use crate::contact;
 use crate::dynamics::LoadedContact;
-use crate::dynamics::grip::Grip;
-use crate::dynamics::levers::Direction;
-use crate::dynamics::row::{Link, Row};
 use crate::dynamics::state::State;
+use crate::dynamics::touch::Touch;
 use crate::geometry::{Vector, cross, right_of};
 use crate::robot::Model;
+use crate::solver::{Acts, Contact, Direction, Link};
 
-impl Direction {
-    /// A direction at a contact of a shoe: `arm` leads from the shoe's centre to the contact, and the track
-    /// moves along `travel`.
-    fn on_shoe(unit: Vector, arm: Vector, travel: Vector, model: &Model) -> Self {
-        Self {
-            unit,
-            lever: cross(arm, unit),
-            drive_lever: -model.drive_radius * unit.dot(travel),
-            back: 0.0,
-            flipper_lever: 0.0,
-        }
-    }
-}
-
-impl Row {
-    /// The row of a shoe's contact with the ground, found half a step (`time` [s]) from now.
+impl Touch {
+    /// A shoe's contact with the ground, found half a step (`time` [s]) from now.
     pub(in crate::dynamics) fn of_shoe(
-        contact: &Contact,
+        contact: &contact::Contact,
         last: Option<LoadedContact>,
         state: &State,
         model: &Model,
         (shoe, time): (usize, f64),
-    ) -> Self {
+    ) -> (Self, Contact) {
         let part = &model.parts[contact.part];
         let then = state.shoes[shoe].after(time);
         let (arm, travel) = (contact.point - then.center, then.along());
-        let [normal, tangent] = [contact.normal, right_of(contact.normal)]
-            .map(|unit| Direction::on_shoe(unit, arm, travel, model));
-        let mut row = Self::between(normal, tangent, Link::Shoe(shoe));
-        row.drive = part.drive;
-        row.friction = part.friction_limit;
-        row.grip = last.map_or(Grip::Open, |l| l.grip);
-        row.normal_guess = last.map_or(0.0, |l| l.normal_guess);
-        row.friction_guess = last.map_or(0.0, |l| l.friction_guess);
-        row.gap = contact.distance - row.opening_speed(state) * time;
-        row
+        let directions = [contact.normal, right_of(contact.normal)].map(|unit: Vector| Direction {
+            unit,
+            lever: cross(arm, unit),
+            spin_lever: -model.drive_radius * unit.dot(travel),
+            ..Direction::default()
+        });
+        let ring = model.chains.iter().position(|c| c.shoes.contains(&shoe));
+        let link = Link {
+            ring: ring.unwrap_or_default(),
+            number: shoe,
+        };
+        let solved = Contact::new(Acts::Link(link), directions);
+        let touch = Self {
+            drive: part.drive,
+            gap: contact.distance - solved.opening_speed(state) * time,
+            ..Self::default()
+        };
+        touch.continued(solved, last, part.friction_limit)
     }
 
-    /// The row of a place where a shoe rests on the guide, a wheel or a tooth, without friction.
+    /// A place where a shoe rests on the guide, a wheel or a tooth, without friction.
     pub(in crate::dynamics) fn at_rest(
         rest: &Rest,
         last: RestMemory,
         state: &State,
         (shoe, chain): (usize, usize),
         time: f64,
-    ) -> Self {
+    ) -> (Self, Contact) {
         let arm = rest.point - state.shoes[shoe].after(time).center;
         let center = state.moved(time).0;
-        let (link, borne_at) = match rest.on {
-            Bearing::Chassis(_) => (Link::Guide { shoe, chain }, rest.point),
-            Bearing::Tooth(axle) => (Link::Tooth { shoe, chain }, axle),
+        let link = Link {
+            ring: chain,
+            number: shoe,
         };
-        let [normal, tangent] = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
+        let (acts, borne_at) = match rest.on {
+            Bearing::Chassis(_) => (Acts::LinkAndSlide(link), rest.point),
+            Bearing::Tooth(axle) => (Acts::LinkAndSpin { link, spin: chain }, axle),
+        };
+        let directions = [rest.normal, right_of(rest.normal)].map(|unit| Direction {
             unit,
             lever: cross(arm, unit),
-            drive_lever: match rest.on {
+            spin_lever: match rest.on {
                 Bearing::Chassis(slides) => -unit.dot(slides),
                 Bearing::Tooth(axle) => -cross(rest.point - axle, unit),
             },
             back: cross(borne_at - center, unit),
-            flipper_lever: 0.0,
+            ..Direction::default()
         });
-        let mut row = Self::between(normal, tangent, link);
-        row.grip = last.grip;
-        row.normal_guess = last.force;
-        row.place = rest.place;
-        row.gap = rest.gap - row.opening_speed(state) * time;
-        row
+        let mut solved = Contact::new(acts, directions);
+        solved.grip = last.grip;
+        let touch = Self {
+            normal_guess: last.force,
+            place: rest.place,
+            gap: rest.gap - solved.opening_speed(state) * time,
+            ..Self::default()
+        };
+        (touch, solved)
     }
 }

@@ -6,16 +6,25 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
+use nalgebra::Vector2;
+
+use super::pull::grasps;
 use super::{Chain, STOP_STIFFNESS};
-use crate::dynamics::damper::Damper;
 use crate::dynamics::state::{Shoe, State};
 use crate::geometry::Pose;
 use crate::robot::Tensioner;
+use crate::solver::{Damper, Hinge, Ring, Twist};
 
 impl Chain {
-    /// Prepares the solve before a motion of `h` [s]: pins are to close their gaps by then. Pins and drive act as in
-    /// its middle, where the chassis has the pose `chassis`.
-    pub(in crate::dynamics) fn follow(&mut self, state: &State, chassis: Pose, h: f64) {
+    /// Prepares the solve before a motion of `h` [s], in whose middle the chassis has the pose `chassis`: pins are to close
+    /// their gaps by its end, and act, like the drive, as in its middle. `free` has the velocities without constraints.
+    pub(in crate::dynamics) fn follow(
+        &mut self,
+        ring: &mut Ring,
+        (state, chassis): (&State, Pose),
+        free: &[Twist],
+        h: f64,
+    ) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         self.measure_gaps(shoes);
         self.middle.clear();
@@ -24,32 +33,47 @@ impl Chain {
         let middle = std::mem::take(&mut self.middle);
         self.turn_pins(&middle);
         self.stiffen(h);
-        self.system
-            .free(self.rule.shoe_mass, &self.inertias, &self.free);
-        self.system.link(&self.pins, h);
-        let (center, _) = state.moved(0.5 * h);
-        self.pull.follow(&self.rule, &middle, (chassis, center));
+        ring.start(&self.inertias, free);
+        for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
+            *hinge = Hinge {
+                rows: pin.rows(),
+                pushes: pin.rows(),
+                speed: Vector2::new(pin.gap.x, pin.gap.y) / -h,
+            };
+        }
+        if self.rule.sprocket.is_none() {
+            let (center, _) = state.moved(0.5 * h);
+            grasps(&mut ring.drive, &self.rule, &middle, (chassis, center));
+        }
         self.middle = middle;
-        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
-        self.free_spin = state.drives[self.rule.number].spin;
+        ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, 0.5 * h);
     }
 
     /// Prepares the solve after it: pins stay together where they are now; their forces over the whole step are
     /// those in its middle.
-    pub(in crate::dynamics) fn hold(&mut self, state: &State, h: f64) {
+    pub(in crate::dynamics) fn hold(
+        &mut self,
+        ring: &mut Ring,
+        state: &State,
+        free: &[Twist],
+        h: f64,
+    ) {
         let shoes = &state.shoes[self.rule.shoes.clone()];
         let mut middle = std::mem::take(&mut self.middle);
         middle.clear();
         middle.extend(shoes.iter().map(|shoe| shoe.after(-0.5 * h)));
         self.turn_pins(&middle);
         self.middle = middle;
-        self.system.push_along(&self.pins);
+        for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
+            hinge.pushes = pin.rows();
+        }
         self.measure_gaps(shoes);
         self.inertias.fill(self.rule.shoe_inertia);
-        self.system
-            .free(self.rule.shoe_mass, &self.inertias, &self.free);
-        self.system.hold(&self.pins);
-        self.idler = self.tensioner(state.idlers[self.rule.number].travel, h, h);
+        ring.start(&self.inertias, free);
+        for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
+            (hinge.rows, hinge.speed) = (pin.rows(), Vector2::zeros());
+        }
+        ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, h);
     }
 
     /// Gives each shoe the inertia with which it turns to the middle of a motion of `h` [s] as if the torques of its

@@ -9,115 +9,41 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use serde::{Deserialize, Serialize};
-
-use crate::dynamics::damper::Damper;
-use crate::dynamics::state::{Shoe, Twist};
-use crate::geometry::{Pose, Vector, cross, plausible, right_of};
+use crate::dynamics::state::Shoe;
+use crate::geometry::{Pose, Vector, cross, right_of};
 use crate::robot::ChainOfShoes;
+use crate::solver::{Drive, Grasp};
 
-/// Compliance of the drive's damper, in units of its admittance.
-const DAMPING: f64 = 1e-8;
-
-/// The drive of one chain.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Pull {
-    /// The shoes on the driving arc of a guide.
-    pub shoes: Vec<Grasp>,
-    /// [m] The radius at which a sprocket pulls, if there is one.
-    pub lever: Option<f64>,
-    pub impulses: PullImpulses,
-    /// [kg] Impulse per speed.
-    stiffness: f64,
-}
-
-/// The part of the drive that is kept from step to step.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(super) struct PullImpulses {
-    /// [N s] Impulse on the chain in this step.
-    pub impulse: f64,
-    /// [N s] Impulse about which a direct solve damps it.
-    pub center: f64,
-    /// [N] Force from which the next step starts.
-    pub force: f64,
-    /// [m] How far the chain lags behind its sprocket.
-    pub behind: f64,
-}
-
-impl PullImpulses {
-    pub(super) fn is_plausible(&self) -> bool {
-        plausible(&[self.impulse, self.center, self.force, self.behind])
-    }
-}
-
-/// How the drive acts on one shoe and on the chassis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Grasp {
-    /// Index in the chain.
-    pub shoe: usize,
-    pub on_shoe: [f64; 3],
-    pub on_chassis: [f64; 3],
-}
-
-impl Pull {
-    /// Finds how the travel of the motor depends on the places of the shoes at the driving end; the chassis has the pose
-    /// `chassis` and its centre of mass at `center`. A chain that has come off may have no shoe there.
-    pub(super) fn follow(
-        &mut self,
-        chain: &ChainOfShoes,
-        shoes: &[Shoe],
-        (chassis, center): (Pose, Vector),
-    ) {
-        self.shoes.clear();
-        if let Some(sprocket) = &chain.sprocket {
-            let lever = sprocket.teeth.drive_radius();
-            self.lever = Some(lever);
-            self.stiffness = sprocket.inertia / (DAMPING * lever * lever);
-            return;
+/// Finds how the travel of the motor depends on the places of the shoes at the driving end; the chassis has the pose
+/// `chassis` and its centre of mass at `center`. A chain that has come off may have no shoe there.
+pub(super) fn grasps(
+    drive: &mut Drive,
+    chain: &ChainOfShoes,
+    shoes: &[Shoe],
+    (chassis, center): (Pose, Vector),
+) {
+    drive.grasps.clear();
+    let end = chain.ends[0];
+    let axle = chassis.transform_point(end.center);
+    let rearwards = chassis.rotation * -Vector::X;
+    let mut squares = 0.0;
+    for (link, shoe) in shoes.iter().enumerate() {
+        let arm = shoe.center - axle;
+        let (squared, behind) = (arm.length_squared(), arm.dot(rearwards));
+        if behind <= 0.0 || squared < 0.25 * end.radius * end.radius {
+            continue;
         }
-        let end = chain.ends[0];
-        let axle = chassis.transform_point(end.center);
-        let rearwards = chassis.rotation * -Vector::X;
-        let mut squares = 0.0;
-        for (i, shoe) in shoes.iter().enumerate() {
-            let arm = shoe.center - axle;
-            let (squared, behind) = (arm.length_squared(), arm.dot(rearwards));
-            if behind <= 0.0 || squared < 0.25 * end.radius * end.radius {
-                continue;
-            }
-            // Squares of cosines: they add up to a pitch over half a turn, and start and end smoothly.
-            let share = FRAC_2_PI * behind * behind / squared;
-            let along = right_of(arm) * (chain.path.pitch * share / squared);
-            squares += along.length_squared();
-            self.shoes.push(Grasp {
-                shoe: i,
-                on_shoe: [along.x, along.y, 0.0],
-                on_chassis: [-along.x, -along.y, -cross(shoe.center - center, along)],
-            });
-        }
-        self.stiffness = chain.shoe_mass / (DAMPING * squares);
+        // Squares of cosines: they add up to a pitch over half a turn, and start and end smoothly.
+        let share = FRAC_2_PI * behind * behind / squared;
+        let along = right_of(arm) * (chain.path.pitch * share / squared);
+        squares += along.length_squared();
+        drive.grasps.push(Grasp {
+            link,
+            on_link: [along.x, along.y, 0.0],
+            on_base: [-along.x, -along.y, -cross(shoe.center - center, along)],
+        });
     }
-
-    /// Whether there is a sprocket or a shoe to pull on.
-    pub(super) fn has_hold(&self) -> bool {
-        self.lever.is_some() || !self.shoes.is_empty()
-    }
-
-    pub(super) fn damper(&self) -> Damper {
-        Damper::new(self.impulses.center, self.stiffness)
-    }
-
-    /// [m/s] Rate of the motor's travel.
-    pub(super) fn speed(&self, chassis: Twist, spin: f64, shoe: impl Fn(usize) -> Twist) -> f64 {
-        if let Some(lever) = self.lever {
-            return lever * (chassis.turn - spin);
-        }
-        let along = |row: &[f64; 3], twist: Twist| -> f64 {
-            row.iter().zip(twist.entries()).map(|(a, v)| a * v).sum()
-        };
-        let of = |g: &Grasp| along(&g.on_shoe, shoe(g.shoe)) + along(&g.on_chassis, chassis);
-        self.shoes.iter().map(of).sum()
-    }
+    drive.admittance = squares / chain.shoe_mass;
 }
 
 #[cfg(test)]
@@ -129,6 +55,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Disc, Envelope, ShoeLoop, direction};
     use crate::robot::Tensioner;
+    use crate::solver::Twist;
 
     const RADIUS: f64 = 0.05;
     const PIECES: u32 = 400;
@@ -169,17 +96,15 @@ mod tests {
 
     /// [m] Travel of the motor while a shoe goes along a path, which it does from 0 to 1.
     fn travel(path: impl Fn(f64) -> Vector) -> f64 {
-        let (chain, mut pull) = (chain(), Pull::default());
+        let (chain, mut drive) = (chain(), Drive::default());
         let mut travel = 0.0;
         for i in 0..PIECES {
             let [from, to] = [i, i + 1].map(|k| path(f64::from(k) / f64::from(PIECES)));
             let still = (Pose::default(), Vector::ZERO);
-            pull.follow(&chain, &[shoe_at((from + to) * 0.5)], still);
-            let moved = Twist {
-                velocity: to - from,
-                turn: 0.0,
-            };
-            travel += pull.speed(Twist::default(), 0.0, |_| moved);
+            grasps(&mut drive, &chain, &[shoe_at((from + to) * 0.5)], still);
+            let moved = to - from;
+            let of = |g: &Grasp| g.on_link[0] * moved.x + g.on_link[1] * moved.y;
+            travel += drive.grasps.iter().map(of).sum::<f64>();
         }
         travel
     }
@@ -209,11 +134,11 @@ mod tests {
 
     #[test]
     fn a_drive_without_a_shoe_behind_its_axle_finds_no_hold() {
-        let (chain, mut pull) = (chain(), Pull::default());
+        let (chain, mut drive) = (chain(), Drive::default());
         let still = (Pose::default(), Vector::ZERO);
         for (x, holds) in [(-RADIUS, true), (RADIUS, false)] {
-            pull.follow(&chain, &[shoe_at(Vector::new(x, 0.0))], still);
-            assert_eq!(pull.has_hold(), holds);
+            grasps(&mut drive, &chain, &[shoe_at(Vector::new(x, 0.0))], still);
+            assert_eq!(!drive.grasps.is_empty(), holds);
         }
     }
 }

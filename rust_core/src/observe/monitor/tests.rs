@@ -10,9 +10,9 @@ use approx::assert_relative_eq;
 
 use super::*;
 use crate::contact::Contact;
-use crate::dynamics::Grip;
 use crate::geometry::Vector;
 use crate::scenario::{Terrain, TrackOutline};
+use crate::solver::Grip;
 
 /// [s] Time between two readings, a tenth of that between two checks.
 const STEP: f64 = 0.001;

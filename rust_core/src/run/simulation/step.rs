@@ -2,9 +2,10 @@
 
 use super::Simulation;
 use super::pace::{Rule, SAME_TIME, arrive};
-use crate::dynamics::{Effort, SetPoint, Trend};
+use crate::dynamics::{SetPoint, Trend};
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
+use crate::solver::Effort;
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
 /// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.

@@ -4,12 +4,11 @@
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
+use super::Contact;
 use super::damper::{DAMPING, Damper};
 use super::grip::Grip;
-use super::row::Row;
-use super::state::State;
 
-impl Row {
+impl Contact {
     /// Makes the current impulses the ones about which the contact is damped.
     pub(super) fn settle(&mut self) {
         self.center.0 = self.normal_impulse;
@@ -37,18 +36,6 @@ impl Row {
                 1.0 / ((self.give + proximal) * self.admittance.tangent),
             ),
         ];
-    }
-
-    /// [m/s] Speeds along normal and tangent.
-    pub(super) fn speeds(&self, state: &State) -> [f64; 2] {
-        let (shoe, spin) = (
-            |i: usize| state.shoes[i].twist,
-            |k: usize| state.drives[k].spin,
-        );
-        let idler = |k: usize| state.idlers[k].rate;
-        let flipper = |k: usize| state.flippers[k].rate;
-        let [n, t] = self.count(state.twist(), shoe, spin, idler, flipper);
-        [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 
     /// Updates impulses and fitting grip for speeds along normal and tangent [m/s]; returns the error of the

@@ -7,7 +7,7 @@ pub(super) const DAMPING: f64 = 1e-6;
 
 /// An impulse that decreases with the speed along its direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Damper {
+pub(crate) struct Damper {
     /// [N s] Impulse at zero speed.
     impulse: f64,
     /// [kg] Impulse per speed.
@@ -15,7 +15,7 @@ pub(super) struct Damper {
 }
 
 impl Damper {
-    pub(super) fn new(impulse: f64, stiffness: f64) -> Self {
+    pub(crate) fn new(impulse: f64, stiffness: f64) -> Self {
         Self { impulse, stiffness }
     }
 
@@ -25,7 +25,7 @@ impl Damper {
     }
 
     /// A constant impulse, whatever the speed.
-    pub(super) fn constant(impulse: f64) -> Self {
+    pub(crate) fn constant(impulse: f64) -> Self {
         Self {
             impulse,
             stiffness: 0.0,
@@ -33,7 +33,7 @@ impl Damper {
     }
 
     /// [N s] Impulse at a speed.
-    pub(super) fn at(self, speed: f64) -> f64 {
+    pub(crate) fn at(self, speed: f64) -> f64 {
         self.impulse - self.stiffness * speed
     }
 

@@ -15,7 +15,7 @@ pub(crate) struct Effort {
     pub solves: u64,
     /// Linear systems solved in them.
     pub rounds: u64,
-    /// How often no guess could be corrected, so that the robot was lowered onto its contacts.
+    /// How often no guess could be corrected, so that all were lowered onto their contacts.
     pub lowerings: u64,
     /// Solves that ended without a solution, with contacts that are lifted a little.
     pub unresolved: u64,

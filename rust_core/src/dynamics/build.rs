@@ -1,0 +1,60 @@
+//! The robot as a problem for the solver: its bodies and motors.
+//!
+//! The equations: docs/physics.md, "The problem".
+
+use super::arm::Arm;
+use super::chain::Chain;
+use super::push::push_axis;
+use crate::robot::Model;
+use crate::scenario::Solver;
+use crate::solver::{Acts, Base, Bilateral, Driven, Motor, Problem, Spin};
+
+/// A robot's bodies and motors: those of its drives, then those of its arms.
+pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solver) -> Problem {
+    let base = Base {
+        mass: model.mass,
+        inertia: model.moment_of_inertia,
+    };
+    let spin = |k: usize| {
+        let sprocket = chains.get(k).and_then(|chain| chain.rule.sprocket.as_ref());
+        Spin::new(match sprocket {
+            Some(sprocket) => sprocket.inertia,
+            // The drive of a chain on a guide has no inertia of its own.
+            None if k < chains.len() => 1.0,
+            None => model.drive_inertia(k),
+        })
+    };
+    let shoe_mass = chains.first().map(|chain| chain.rule.shoe_mass);
+    let mut problem = Problem::new(
+        base,
+        (0..model.drives).map(spin).collect(),
+        arms.iter().map(|arm| arm.joint(shoe_mass)).collect(),
+        chains.iter().map(Chain::ring).collect(),
+    );
+    let of_drive = |k: usize| {
+        let has_motor = k < model.motors && model.drive_force > 0.0;
+        let on = if k < chains.len() {
+            Driven::Ring(k)
+        } else {
+            Driven::Spin(k)
+        };
+        // The surface runs forwards while its drive spins clockwise.
+        Motor::new(on, -model.drive_radius, has_motor)
+    };
+    let of_arm =
+        |(k, arm): (usize, &Arm)| Motor::new(Driven::Joint(k), 1.0, arm.rule.torque_limit > 0.0);
+    let of_arms = arms.iter().enumerate().map(of_arm);
+    problem.motors = (0..model.drives).map(of_drive).chain(of_arms).collect();
+    if model.pushes_chassis {
+        let acts = Acts::Base {
+            joint: None,
+            spin: Some(0),
+        };
+        let push = Bilateral::new(acts, push_axis(model, 0.0));
+        problem.bilaterals.push(push);
+    }
+    // Ground is as stiff below an arm as below the chassis; shoes, which are light, have springs of their own.
+    problem.mass_on_springs = chains.is_empty().then(|| model.total_mass());
+    problem.iterations = solver.iterations;
+    problem
+}

@@ -1,0 +1,82 @@
+//! Velocities from impulses: what balances them exactly.
+//!
+//! The equations: docs/physics.md, "The problem".
+
+use super::Problem;
+use super::bodies::Spin;
+use super::damper::Damper;
+use super::motor::{Driven, Motor};
+use crate::geometry::Vector;
+
+impl Problem {
+    /// Computes the velocities from all impulses so far, for the current state of the motors. With rings the velocities
+    /// that keep links together matter more.
+    pub(super) fn balance(&mut self) {
+        if self.rings.is_empty() {
+            if self.joints.is_empty() {
+                self.balance_base();
+            } else {
+                self.balance_with_joints();
+            }
+        }
+    }
+
+    /// [N m s] Angular momentum of the base and of what turns with it, without contacts.
+    pub(super) fn free_moment(&self) -> f64 {
+        let of_spin = |motor: &Motor| match (motor.on, motor.given()) {
+            (Driven::Spin(_), Some(given)) => -motor.lever * given,
+            (Driven::Spin(k), None) => {
+                let Spin { inertia, .. } = self.spins[k];
+                inertia * (self.free.spins[k] - motor.held_rate().unwrap_or_default())
+            }
+            _ => 0.0,
+        };
+        let of_spins: f64 = self.motors.iter().map(of_spin).sum();
+        self.base.inertia * self.free.base.turn + of_spins
+    }
+
+    fn balance_base(&mut self) {
+        let (mut impulse, mut moment) = (Vector::ZERO, self.free_moment());
+        for contact in &self.contacts {
+            let [n, t] = &contact.actions;
+            impulse += contact.impulse();
+            moment += n.lever * contact.normal_impulse + t.lever * contact.friction_impulse;
+        }
+        for row in &self.bilaterals {
+            impulse += row.action.unit * row.impulse;
+            moment += row.action.lever * row.impulse;
+        }
+        self.velocities.base.velocity = self.free.base.velocity + impulse / self.base.mass;
+        self.velocities.base.turn = moment / self.inertia;
+        self.turn_with_base();
+        for motor in &self.motors {
+            if let (Driven::Spin(k), Some(given)) = (motor.on, motor.given()) {
+                let change = self.torques[k] + motor.lever * given;
+                self.velocities.spins[k] = self.free.spins[k] + change / self.spins[k].inertia;
+            }
+        }
+    }
+
+    /// The same with bodies hinged to the base, whose rates hang together with its velocities.
+    fn balance_with_joints(&mut self) {
+        self.assemble_bodies();
+        for i in 0..self.contacts.len() {
+            let contact = &self.contacts[i];
+            let impulses = [contact.normal_impulse, contact.friction_impulse];
+            let acts = contact.acts;
+            for (action, impulse) in contact.actions.into_iter().zip(impulses) {
+                self.add(acts, [&action; 2], Damper::constant(impulse));
+            }
+        }
+        for i in 0..self.bilaterals.len() {
+            let row = &mut self.bilaterals[i];
+            row.center = row.impulse;
+            let (acts, action, impulse) = (row.acts, row.action, row.impulse);
+            self.add(acts, [&action; 2], Damper::constant(impulse));
+        }
+        if self.solve_for_change().is_some() {
+            self.go(1.0);
+            self.turn_with_base();
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A condition of the state of a contact or a motor, and what follows where it is not met any more.
+//!
+//! A state holds as long as all its conditions are above 0. Beyond one of them another state follows.
+//!
+//! The equations: docs/physics.md, "Lowering".
+
+use super::contact::Contact;
+use super::grip::Grip;
+use super::motor::{Hold, Motor};
+
+/// What the state of a contact or a motor becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Switch {
+    Contact(usize, Grip),
+    Motor(usize, Hold),
+}
+
+/// A condition of the present states: they hold as long as its value is above 0, and the switch is made where it
+/// reaches 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Condition {
+    pub switch: Switch,
+    /// Its value now, and where the present states are a solution on the ground.
+    pub now: f64,
+    pub there: f64,
+}
+
+impl Switch {
+    /// Whether both are switches of one contact or motor.
+    pub(super) fn is_of_the_same(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Contact(i, _), Self::Contact(k, _)) | (Self::Motor(i, _), Self::Motor(k, _)) => {
+                i == k
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Contact {
+    /// The way in which it starts to slide when it touches.
+    pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
+        if self.dampers[1].at(slip) < 0.0 {
+            Grip::Backwards
+        } else {
+            Grip::Forwards
+        }
+    }
+
+    /// Calls `found` with the conditions of its state: the state that follows, and the value.
+    pub(super) fn conditions(&self, speeds: [f64; 2], lift: f64, mut found: impl FnMut(Grip, f64)) {
+        let [approach, slip] = speeds;
+        let (normal, friction) = (
+            self.dampers[0].at(approach + lift),
+            self.dampers[1].at(slip),
+        );
+        let limit = self.friction * normal;
+        if self.grip == Grip::Open {
+            found(Grip::Sticks, -normal);
+            return;
+        }
+        found(Grip::Open, normal);
+        match self.grip {
+            Grip::Sticks => {
+                found(Grip::Forwards, limit - friction);
+                found(Grip::Backwards, limit + friction);
+            }
+            Grip::Forwards if self.friction > 0.0 => found(Grip::Sticks, friction - limit),
+            Grip::Backwards if self.friction > 0.0 => found(Grip::Sticks, -friction - limit),
+            _ => {}
+        }
+    }
+}
+
+impl Motor {
+    /// Calls `found` with the conditions of its state: the state that follows, and the value, from its impulse [N s] and
+    /// from how much too fast it is.
+    pub(super) fn conditions(&self, impulse: f64, ahead: f64, mut found: impl FnMut(Hold, f64)) {
+        match self.hold {
+            Hold::Holds => {
+                found(Hold::Pushes, self.most - impulse);
+                found(Hold::Brakes, self.most + impulse);
+            }
+            Hold::Pushes => found(Hold::Holds, -ahead),
+            Hold::Brakes => found(Hold::Holds, ahead),
+            Hold::Free => {}
+        }
+    }
+}

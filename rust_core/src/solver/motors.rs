@@ -1,0 +1,74 @@
+//! The motors in a solve: their impulses, and which of them hold.
+//!
+//! The equations: docs/physics.md, "Motors".
+
+use super::Problem;
+use super::motor::{Driven, Motor};
+
+impl Problem {
+    /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
+    pub(super) fn switch_motors(&mut self) -> bool {
+        let mut switched = false;
+        for k in 0..self.motors.len() {
+            let motor = &self.motors[k];
+            let next = motor.next(self.motor_impulse(motor), self.ahead(motor));
+            switched |= next != motor.hold;
+            self.motors[k].hold = next;
+        }
+        switched
+    }
+
+    /// [m/s] How much faster than its target a motor is.
+    pub(super) fn ahead(&self, motor: &Motor) -> f64 {
+        let over_base = |rate: f64| motor.lever * (rate - self.velocities.base.turn);
+        let speed = match motor.on {
+            Driven::Spin(k) => over_base(self.velocities.spins[k]),
+            Driven::Joint(k) => over_base(self.velocities.joints[k]),
+            Driven::Ring(k) => self.rings[k].drive_speed(&self.velocities),
+        };
+        speed - motor.target
+    }
+
+    /// [N s] The impulses of all motors.
+    pub(crate) fn motor_impulses(&self) -> impl Iterator<Item = f64> + '_ {
+        self.motors.iter().map(|motor| self.motor_impulse(motor))
+    }
+
+    /// [N s] Impulse of a motor so far.
+    pub(super) fn motor_impulse(&self, motor: &Motor) -> f64 {
+        if let Driven::Ring(k) = motor.on {
+            return self.rings[k].drive.impulse;
+        }
+        if let Some(given) = motor.given() {
+            return given;
+        }
+        // It has made the change of momentum that the contacts have not.
+        let made = match motor.on {
+            Driven::Spin(k) => {
+                let change = self.velocities.spins[k] - self.free.spins[k];
+                self.spins[k].inertia * change - self.torques[k]
+            }
+            Driven::Joint(k) => self.gained_by_joint(k) - self.torque_on_joint(k),
+            Driven::Ring(_) => 0.0,
+        };
+        made / motor.lever
+    }
+
+    /// [N m s] Momentum about its hinge that a body has gained over what it would have without constraints.
+    fn gained_by_joint(&self, joint: usize) -> f64 {
+        let own = self.hung.iter().filter(|hung| hung.joint == joint);
+        let gained = own.map(|hung| {
+            let speed = hung.acts().speed(&hung.along, &self.velocities);
+            -hung.along.joint_lever * hung.inertia.at(speed)
+        });
+        gained.sum()
+    }
+
+    fn torque_on_joint(&self, joint: usize) -> f64 {
+        let on_it = self
+            .contacts
+            .iter()
+            .filter(|c| c.acts.joint() == Some(joint));
+        on_it.map(super::Contact::torque_on_joint).sum()
+    }
+}

@@ -1,0 +1,154 @@
+//! The elimination of a ring, link by link, once round.
+//!
+//! All that hangs on a link from behind has become part of its equations. What is left to it is to turn about its hinge
+//! in front: that turn is eliminated, and what it then takes to move the hinge becomes part of the next link.
+//!
+//! The equations: docs/physics.md, "Chains".
+
+use nalgebra::{Matrix2x3, SVector, Vector3};
+
+use super::system::{BASE, CLOSING, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
+use crate::solver::Twist;
+
+impl RingSystem {
+    /// Reduces the system to the base, adding the ring's part to the rows of that. None if the constraints
+    /// contradict each other.
+    pub(super) fn eliminate(&mut self, hinges: &[Hinge], base: &mut [[f64; 4]; 3]) -> Option<()> {
+        let last = self.links.len() - 1;
+        self.links[0].close(1, &hinges[last]);
+        for (k, hinge) in hinges[..last].iter().enumerate() {
+            let solved = self.links[k].turn_about_hinge(hinge)?;
+            self.hand_on(k, hinge, &solved);
+            self.solved[k] = solved;
+        }
+        self.links[last].close(0, &hinges[last]);
+        self.eliminate_last(&hinges[last])?;
+        self.solve_border()?;
+        for (i, row) in base.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let column = if j < 3 { BASE + j } else { RIGHT };
+                *entry += self.border[(BASE + i, column)];
+            }
+        }
+        Some(())
+    }
+
+    /// Makes what is left of a link part of the next one and of the border.
+    fn hand_on(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
+        let Hinge {
+            rows: [front, back],
+            pushes: [_, push],
+            speed,
+        } = *hinge;
+        let below = self.links[link].below;
+        let of_turn = below * turning_about(&front);
+        let of_pin = below.fixed_columns::<2>(0) + of_turn * solved.turn.0;
+        self.border += of_turn * solved.turn.1.transpose();
+        let mut right = self.border.column_mut(RIGHT);
+        right += of_pin * speed;
+
+        let (own, mut beside) = solved.impulse;
+        let mut right = beside.row_mut(RIGHT);
+        right += (own * speed).transpose();
+        let next = &mut self.links[link + 1];
+        next.own += push.transpose() * own * back;
+        next.beside += beside * push;
+        next.below += of_pin * back;
+    }
+
+    /// Expresses the velocity of the last link in terms of the border.
+    fn eliminate_last(&mut self, hinge: &Hinge) -> Option<()> {
+        let last = self.links.len() - 1;
+        let Entry { own, beside, below } = &self.links[last];
+        self.last = -beside * own.try_inverse()?.transpose();
+        self.border += below * self.last.transpose();
+        let closes = hinge.speed;
+        let mut right = self.border.fixed_view_mut::<2, 1>(CLOSING, RIGHT);
+        right += closes;
+        Some(())
+    }
+
+    /// Expresses the closing hinge, the drive and the slide in terms of the base.
+    fn solve_border(&mut self) -> Option<()> {
+        for pivot in [CLOSING, CLOSING + 1, SLIDE, DRIVE] {
+            let by = self.border[(pivot, pivot)];
+            if by == 0.0 || !by.is_finite() {
+                return None;
+            }
+            let row = self.border.row(pivot) / by;
+            let mut column = self.border.column(pivot).into_owned();
+            column[pivot] = 0.0;
+            self.border -= column * row;
+            self.border.set_row(pivot, &row);
+        }
+        Some(())
+    }
+
+    /// Computes the velocities of the links and the impulses of the hinges from the velocity of the base; returns
+    /// the velocities of slide and spin.
+    pub(super) fn follow(
+        &mut self,
+        hinges: &[Hinge],
+        base: [f64; 3],
+        links: &mut [Twist],
+    ) -> [f64; 2] {
+        let mut known = SVector::<f64, WIDTH>::zeros();
+        known.fixed_rows_mut::<3>(BASE).copy_from_slice(&base);
+        known[RIGHT] = -1.0;
+        let of_border = -(self.border * known);
+        for i in [CLOSING, CLOSING + 1, DRIVE, SLIDE] {
+            known[i] = of_border[i];
+        }
+        let last = links.len() - 1;
+        self.impulses[last] = known.fixed_rows::<2>(CLOSING).into_owned();
+        let mut velocity = self.last.tr_mul(&known);
+        links[last] = Twist::from(<[f64; 3]>::from(velocity));
+        for k in (0..last).rev() {
+            let Hinge { rows, speed, .. } = &hinges[k];
+            let Solved { turn, impulse } = &self.solved[k];
+            let end = rows[1] * velocity - speed;
+            let turn = (turn.0 * end).x + turn.1.dot(&known);
+            velocity = turning_about(&rows[0]) * turn + Vector3::new(end.x, end.y, 0.0);
+            self.impulses[k] = -(impulse.0 * end + impulse.1.tr_mul(&known));
+            links[k] = Twist::from(<[f64; 3]>::from(velocity));
+        }
+        [known[SLIDE], known[DRIVE]]
+    }
+}
+
+impl Entry {
+    /// Adds the hinge that closes the ring, of which it is the link before or after.
+    fn close(&mut self, end: usize, hinge: &Hinge) {
+        let mut below = self.below.fixed_rows_mut::<2>(CLOSING);
+        below += hinge.rows[end];
+        let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING);
+        beside -= hinge.pushes[end];
+    }
+
+    /// Solves for its turn about its hinge in front.
+    fn turn_about_hinge(&self, hinge: &Hinge) -> Option<Solved> {
+        let turning = turning_about(&hinge.rows[0]);
+        // The moment about the hinge, of which the hinge has no part.
+        let moment = turning_about(&hinge.pushes[0]);
+        let (of_turn, resists) = (self.own * turning, moment.transpose() * self.own);
+        let pivot = moment.dot(&of_turn);
+        if pivot == 0.0 || !pivot.is_finite() {
+            return None;
+        }
+        let of_pin = resists.fixed_columns::<2>(0) / -pivot;
+        let of_border = self.beside * moment / -pivot;
+        let of_turn = of_turn.fixed_rows::<2>(0);
+        Some(Solved {
+            turn: (of_pin, of_border),
+            impulse: (
+                self.own.fixed_view::<2, 2>(0, 0) + of_turn * of_pin,
+                self.beside.fixed_columns::<2>(0) + of_border * of_turn.transpose(),
+            ),
+        })
+    }
+}
+
+/// The velocity of a link that turns at rate 1 about its hinge in front, which has these rows.
+fn turning_about(rows: &Matrix2x3<f64>) -> Vector3<f64> {
+    Vector3::new(rows.m13, rows.m23, 1.0)
+}

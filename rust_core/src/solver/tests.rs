@@ -1,0 +1,200 @@
+//! Problems with known solutions, and random ones beside another method.
+
+mod interior_point;
+mod lowering;
+mod random;
+mod rings;
+
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::geometry::{Vector, cross, right_of};
+
+/// [m/s^2], and [s] the time of a solve here.
+const GRAVITY: f64 = 9.81;
+const TIME: f64 = 0.01;
+
+/// A body of 2 kg and 0.1 kg m^2 on which nothing acts, that would have a velocity without constraints.
+fn body(velocity: Vector, turn: f64) -> Problem {
+    let base = Base {
+        mass: 2.0,
+        inertia: 0.1,
+    };
+    let mut problem = Problem::new(base, Vec::new(), Vec::new(), Vec::new());
+    problem.free.base = Twist { velocity, turn };
+    problem.mass_on_springs = Some(2.0);
+    problem
+}
+
+/// A contact of the body at `arm` from its centre, which bears.
+fn contact(arm: Vector, normal: Vector, friction: f64) -> Contact {
+    let directions = [normal, right_of(normal)].map(|unit| Direction {
+        unit,
+        lever: cross(arm, unit),
+        ..Direction::default()
+    });
+    let acts = Acts::Base {
+        joint: None,
+        spin: None,
+    };
+    let mut contact = Contact::new(acts, directions);
+    (contact.friction, contact.bears) = (friction, true);
+    contact
+}
+
+/// The velocity that the weight gives to a body on a slope [rad], with x along it and y off it.
+fn on_slope(angle: f64) -> Vector {
+    Vector::new(angle.sin(), -angle.cos()) * (GRAVITY * TIME)
+}
+
+#[test]
+fn a_box_on_a_slope_starts_to_slide_at_the_friction_angle() {
+    let friction: f64 = 0.5;
+    for (angle, slides) in [(0.4, false), (0.46, false), (0.47, true), (0.8, true)] {
+        assert_eq!(slides, angle > friction.atan());
+        let mut problem = body(on_slope(angle), 0.0);
+        for x in [-0.3, 0.3] {
+            let corner = Vector::new(x, -0.1);
+            problem.contacts.push(contact(corner, Vector::Y, friction));
+        }
+        problem.solve();
+        assert_eq!(problem.effort.unresolved, 0);
+        let free = on_slope(angle);
+        let expected = (free.x + friction * free.y).max(0.0);
+        let Twist { velocity, turn } = problem.velocities.base;
+        assert_relative_eq!(velocity.x, expected, epsilon = 1e-9);
+        assert_relative_eq!(velocity.y, 0.0, epsilon = 1e-9);
+        assert_relative_eq!(turn, 0.0, epsilon = 1e-9);
+        // The lower corner, ahead, takes what friction would otherwise turn the box by.
+        let [rear, front] = [0, 1].map(|i| problem.contacts[i].normal_impulse);
+        let of_friction: f64 = problem.contacts.iter().map(|c| c.friction_impulse).sum();
+        assert_relative_eq!(rear + front, -2.0 * free.y, max_relative = 1e-9);
+        assert_relative_eq!(
+            0.3 * (front - rear),
+            -0.1 * of_friction,
+            max_relative = 1e-6
+        );
+    }
+}
+
+/// Painleve's rod: it slides on one end, and friction would press that end into the ground faster than the push of the
+/// ground lifts it. No force lets it go on; a blow stops it.
+#[test]
+fn a_rod_that_jams_stops_at_once() {
+    let arm = Vector::new(0.15, -0.6); // from the centre to the end on the ground
+    let (mass, inertia, friction) = (2.0, 0.1, 2.0);
+    // Acceleration of the end along the normal by a push with the friction of sliding in the direction of x.
+    let lifts = 1.0 / mass + arm.x * (arm.x - friction * arm.y.abs()) / inertia;
+    assert!(lifts < 0.0, "it is no such rod: {lifts}");
+    let mut problem = body(Vector::new(1.0, -GRAVITY * TIME), 0.0);
+    problem.contacts.push(contact(arm, Vector::Y, friction));
+    problem.contacts[0].grip = Grip::Backwards;
+    problem.solve();
+    assert_eq!(problem.effort.unresolved, 0);
+    let end = problem.velocities.base.at(arm);
+    assert!(end.length() < 1e-7, "the end moves at {end} m/s");
+    let contact = &problem.contacts[0];
+    assert!(contact.normal_impulse > 0.0);
+    assert!(contact.friction_impulse.abs() <= friction * contact.normal_impulse);
+}
+
+#[test]
+fn of_redundant_supports_the_nearest_forces_to_the_guess_are_taken() {
+    let places = [-0.4, -0.1, 0.0, 0.2, 0.3];
+    let guesses = [0.0, 0.0, 0.05, 0.01, 0.0];
+    let mut problem = body(Vector::new(0.0, -GRAVITY * TIME), 0.0);
+    for (x, guess) in places.into_iter().zip(guesses) {
+        let mut support = contact(Vector::new(x, -0.1), Vector::Y, 0.0);
+        support.normal_impulse = guess;
+        support.grip = Grip::Forwards; // without friction that is: it bears
+        problem.contacts.push(support);
+    }
+    problem.solve();
+    let found: Vec<f64> = problem.contacts.iter().map(|c| c.normal_impulse).collect();
+    let weight = 2.0 * GRAVITY * TIME;
+    let sum: f64 = found.iter().sum();
+    assert_relative_eq!(sum, weight, epsilon = 2.0 * AGREEMENT);
+    let moment: f64 = places.iter().zip(&found).map(|(x, n)| x * n).sum();
+    assert!(moment.abs() < 0.1 * AGREEMENT);
+    // So changes are a line over x.
+    let change = |i: usize| found[i] - guesses[i];
+    let slope = (change(4) - change(0)) / (places[4] - places[0]);
+    for i in 1..4 {
+        let on_line = change(0) + slope * (places[i] - places[0]);
+        assert_relative_eq!(change(i), on_line, epsilon = 1e-6);
+    }
+}
+
+/// A body pushed into a wedge between two walls: it springs back out of a wide one without a sound; in a narrow one
+/// friction alone holds it, at any load between the walls that was there before.
+#[test]
+fn a_narrow_wedge_holds_what_a_wide_one_lets_go() {
+    let friction: f64 = 0.5;
+    for (half_angle, holds) in [(0.3, true), (0.6, false)] {
+        assert_eq!(holds, half_angle < friction.atan());
+        // It opens upwards; something pulls the body out, after it was pressed in.
+        let mut problem = body(Vector::new(0.0, 0.02), 0.0);
+        for side in [-1.0, 1.0] {
+            let (sin, cos) = f64::sin_cos(half_angle);
+            let arm = Vector::new(0.1 * side, 0.0);
+            let mut wall = contact(arm, Vector::new(-side * cos, sin), friction);
+            (wall.normal_impulse, wall.grip) = (1.0, Grip::Sticks);
+            problem.contacts.push(wall);
+        }
+        problem.solve();
+        assert_eq!(problem.effort.unresolved, 0);
+        let left = problem.velocities.base.velocity.y;
+        let loads = problem.contacts.iter().map(|c| c.normal_impulse);
+        if holds {
+            assert!(left.abs() < 1e-7, "{left} m/s");
+            assert!(loads.sum::<f64>() > 1.0);
+        } else {
+            assert_relative_eq!(left, 0.02, max_relative = 1e-9);
+            assert!(loads.sum::<f64>() < 1e-9);
+        }
+    }
+}
+
+/// A belt, without torque, between floor and ceiling that pull it opposite ways: its drive takes the difference only.
+#[test]
+fn opposed_contacts_on_one_belt_share_its_motor() {
+    let (radius, friction) = (0.1, 0.5);
+    for most in [0.0, 0.02, 1.0] {
+        let base = Base {
+            mass: 2.0,
+            inertia: 0.1,
+        };
+        let mut problem = Problem::new(base, vec![Spin::new(0.01)], Vec::new(), Vec::new());
+        problem.mass_on_springs = Some(2.0);
+        problem.free.base.velocity = Vector::new(1.0, 0.0);
+        let mut motor = Motor::new(Driven::Spin(0), -radius, most > 0.0);
+        (motor.target, motor.most) = (0.0, most);
+        problem.motors.push(motor);
+        for (up, load) in [(1.0, 0.3), (-1.0, 0.2)] {
+            let mut on_belt = contact(Vector::new(0.0, -0.1 * up), Vector::Y * up, friction);
+            on_belt.acts = Acts::Base {
+                joint: None,
+                spin: Some(0),
+            };
+            // The belt's surface moves with the body, and along by what the drive spins: forwards below, back above.
+            on_belt.tangent.spin_lever = radius;
+            on_belt.tangent.lever = 0.0;
+            // Soft, so that the loads stay as they are.
+            (on_belt.compliance, on_belt.bias) = (1e9, -load * 1e9 / 2.0);
+            problem.contacts.push(on_belt);
+        }
+        problem.solve();
+        assert_eq!(problem.effort.unresolved, 0);
+        let [below, above] = [0, 1].map(|i| &problem.contacts[i]);
+        assert_relative_eq!(below.normal_impulse, 0.3, max_relative = 1e-6);
+        assert_relative_eq!(above.normal_impulse, 0.2, max_relative = 1e-6);
+        let on_belt = below.torque() + above.torque();
+        let motor = problem.motor_impulses().next().expect("there is one");
+        let gained = 0.01 * (problem.velocities.spins[0] - problem.free.spins[0]);
+        assert_relative_eq!(on_belt - radius * motor, gained, epsilon = 1e-9);
+        assert!(motor.abs() <= most * (1.0 + 1e-9));
+        for c in [below, above] {
+            assert!(c.friction_impulse.abs() <= friction * c.normal_impulse * (1.0 + 1e-9));
+        }
+    }
+}

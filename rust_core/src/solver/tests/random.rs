@@ -1,0 +1,139 @@
+//! Random problems, each solved again by a method that has nothing in common with the solver.
+//!
+//! If the solver's forces are a solution of Coulomb's law, its velocities are those of the convex program in which
+//! friction is limited by what the normal forces of the solution allow; and that program has one solution.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::interior_point::minimised;
+use super::*;
+use crate::draw::Draw;
+use crate::geometry::direction;
+
+/// A random problem: a body, up to two others that spin on it with a motor each, and contacts from all sides.
+pub(super) fn drawn(draw: &mut Draw) -> Problem {
+    let base = Base {
+        mass: draw.size(0.5, 50.0),
+        inertia: draw.size(0.01, 5.0),
+    };
+    let spins: Vec<Spin> = (0..draw.below(3))
+        .map(|_| Spin::new(draw.size(1e-4, 0.1)))
+        .collect();
+    let mut problem = Problem::new(base, spins, Vec::new(), Vec::new());
+    problem.mass_on_springs = Some(base.mass);
+    let mut speed = |most: f64| draw.between(-most, most);
+    problem.free.base = Twist {
+        velocity: Vector::new(speed(1.0), speed(1.0)),
+        turn: speed(3.0),
+    };
+    for rate in &mut problem.free.spins {
+        *rate = speed(10.0);
+    }
+    for k in 0..problem.spins.len() {
+        let mut motor = Motor::new(Driven::Spin(k), -0.1, draw.chance(0.8));
+        motor.target = draw.between(-1.0, 1.0);
+        motor.most = draw.size(1e-3, 10.0);
+        problem.motors.push(motor);
+    }
+    let friction = if draw.chance(0.1) {
+        0.0
+    } else {
+        draw.between(0.05, 1.2)
+    };
+    for _ in 0..=draw.below(8) {
+        let (arm, normal) = (
+            0.3 * direction(draw.between(0.0, 6.3)),
+            direction(draw.between(0.0, 6.3)),
+        );
+        let mut next = contact(arm, normal, friction);
+        if !problem.spins.is_empty() && draw.chance(0.7) {
+            let spin = Some(draw.below(problem.spins.len()));
+            next.acts = Acts::Base { joint: None, spin };
+            next.tangent.spin_lever = 0.1;
+            next.tangent.lever -= 0.1;
+        }
+        if draw.chance(0.3) {
+            (next.bias, next.compliance) = (draw.between(-0.1, 0.1), draw.size(1e-3, 1.0));
+        }
+        problem.contacts.push(next);
+    }
+    problem
+}
+
+/// A row: its entries, target, compliance and the bounds of its impulse.
+type Row = (DVector<f64>, f64, f64, (f64, f64));
+
+/// Where the other method gets, from the limits of friction that the solver has found: velocities of body and spins.
+pub(super) fn by_interior_point(problem: &Problem) -> DVector<f64> {
+    let dofs = 3 + problem.spins.len();
+    let mut inertias = vec![problem.base.mass, problem.base.mass, problem.base.inertia];
+    inertias.extend(problem.spins.iter().map(|spin| spin.inertia));
+    let mut free = problem.free.base.entries().to_vec();
+    free.extend(&problem.free.spins);
+    let free = DVector::from_vec(free);
+    let mut rows: Vec<Row> = Vec::new();
+    for c in &problem.contacts {
+        let row = |along: &Direction| {
+            let mut row = DVector::zeros(dofs);
+            row.as_mut_slice()[..3].copy_from_slice(&along.body());
+            if let Some(k) = c.acts.spin() {
+                row[3 + k] = along.spin_lever;
+            }
+            row
+        };
+        let spring = problem.mass_on_springs.expect("a mass").recip();
+        let soft = c.compliance * spring;
+        rows.push((row(&c.normal), -c.bias, soft, (0.0, f64::INFINITY)));
+        let most = c.friction * c.normal_impulse;
+        rows.push((row(&c.tangent), 0.0, 0.0, (-most, most)));
+    }
+    for motor in &problem.motors {
+        if let Driven::Spin(k) = motor.on
+            && motor.hold != Hold::Free
+        {
+            let mut row = DVector::zeros(dofs);
+            (row[2], row[3 + k]) = (-motor.lever, motor.lever);
+            rows.push((row, motor.target, 0.0, (-motor.most, motor.most)));
+        }
+    }
+    // What can give no impulse gives none.
+    rows.retain(|(.., (low, high))| high - low > 1e-12);
+    if rows.is_empty() {
+        return free;
+    }
+    let jacobian = DMatrix::from_rows(&rows.iter().map(|r| r.0.transpose()).collect::<Vec<_>>());
+    let by_inertia = DMatrix::from_fn(dofs, rows.len(), |i, k| jacobian[(k, i)] / inertias[i]);
+    let mut quadratic = &jacobian * &by_inertia;
+    let mut linear = &jacobian * &free;
+    for (k, (_, target, soft, _)) in rows.iter().enumerate() {
+        quadratic[(k, k)] += soft;
+        linear[k] -= target;
+    }
+    let bounds: Vec<(f64, f64)> = rows.iter().map(|r| r.3).collect();
+    free + by_inertia * minimised(&quadratic, &linear, &bounds)
+}
+
+#[test]
+fn ten_thousand_random_problems_are_solved_as_by_an_interior_point_method() {
+    let mut draw = Draw(7);
+    let (mut off, mut unresolved) = (Vec::new(), 0);
+    for _ in 0..10_000 {
+        let mut problem = drawn(&mut draw);
+        problem.solve();
+        if problem.effort.unresolved > 0 {
+            unresolved += 1;
+            continue;
+        }
+        let mut found = problem.velocities.base.entries().to_vec();
+        found.extend(&problem.velocities.spins);
+        off.push((DVector::from_vec(found) - by_interior_point(&problem)).amax());
+    }
+    // Rounding leaves some of the jams open.
+    assert!(unresolved <= 4, "{unresolved} unresolved");
+    off.sort_by(f64::total_cmp);
+    // A solve ends when no contact's speed changes by more than 1e-7 m/s. Close to a jam the last of the way is long:
+    // the farthest of all is 1.7 mm/s away, and comes nearer if it is solved again. Of some the other method is the
+    // one that is off.
+    assert!(off[9_950] < 1e-5, "{:e}", off[9_950]);
+    assert!(off[off.len() - 1] < 2e-3, "{:e}", off[off.len() - 1]);
+}

@@ -1,0 +1,108 @@
+//! Rings of links.
+
+use nalgebra::{Matrix2x3, Vector2};
+
+use super::*;
+use crate::geometry::{direction, left_of};
+
+/// [kg], [kg m^2] and [m] A link: its mass, inertia, and the way from its centre to either hinge.
+const MASS: f64 = 0.3;
+const INERTIA: f64 = 0.002;
+const HALF: f64 = 0.1;
+
+/// Entries of two links' velocities in that of the next one's end relative to this one's.
+fn rows(arms: [Vector; 2]) -> [Matrix2x3<f64>; 2] {
+    let [a, b] = arms.map(left_of);
+    [
+        Matrix2x3::new(-1.0, 0.0, -a.x, 0.0, -1.0, -a.y),
+        Matrix2x3::new(1.0, 0.0, b.x, 0.0, 1.0, b.y),
+    ]
+}
+
+/// A ring whose links are the sides of a polygon that stands still, with the places of their centres.
+fn polygon(count: usize) -> (Problem, Vec<Vector>) {
+    let base = Base {
+        mass: 5.0,
+        inertia: 0.3,
+    };
+    let mut ring = Ring::new(0..count, [MASS, INERTIA], None, Drive::default());
+    ring.slide = Damper::new(0.0, 1.0);
+    let turn = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
+    let inner = HALF / (0.5 * turn(1)).tan();
+    let along = |k: usize| direction(turn(k));
+    for (k, hinge) in ring.hinges.iter_mut().enumerate() {
+        let arms = [along(k) * HALF, along((k + 1) % count) * -HALF];
+        (hinge.rows, hinge.pushes) = (rows(arms), rows(arms));
+        hinge.speed = Vector2::zeros();
+    }
+    let centers = (0..count).map(|k| -left_of(along(k)) * inner).collect();
+    let mut problem = Problem::new(base, Vec::new(), Vec::new(), vec![ring]);
+    problem.motors.push(Motor::new(Driven::Ring(0), 1.0, false));
+    (problem, centers)
+}
+
+/// Links of a triangle hold each other: they move on as one body, with the momentum that they have.
+#[test]
+fn a_closed_chain_of_three_links_is_a_rigid_body() {
+    let (mut problem, centers) = polygon(3);
+    let free = [
+        Twist::from([1.0, -0.5, 4.0]),
+        Twist::from([0.0, 2.0, -1.0]),
+        Twist::from([-0.7, 0.1, 0.5]),
+    ];
+    problem.free.links.copy_from_slice(&free);
+    problem.rings[0].start(&[INERTIA; 3], &problem.free.links);
+    problem.solve();
+    assert_eq!(problem.effort.unresolved, 0);
+    let momentum: Vector = free.iter().map(|link| link.velocity * MASS).sum();
+    let of_link = |(link, center): (&Twist, &Vector)| {
+        cross(*center, link.velocity) * MASS + INERTIA * link.turn
+    };
+    let moment: f64 = free.iter().zip(&centers).map(of_link).sum();
+    let inertia: f64 = centers
+        .iter()
+        .map(|c| c.length_squared() * MASS + INERTIA)
+        .sum();
+    let whole = Twist {
+        velocity: momentum / (3.0 * MASS),
+        turn: moment / inertia,
+    };
+    for (link, center) in problem.velocities.links.iter().zip(&centers) {
+        let off = link.velocity - whole.at(*center);
+        assert!(off.length() < 1e-12, "{off}");
+        assert_relative_eq!(link.turn, whole.turn, max_relative = 1e-12);
+    }
+}
+
+/// A ring that lies on the ground with one link and is thrown onto it: contacts bear, hinges stay closed, and all
+/// momentum is that of the ground.
+#[test]
+fn a_ring_that_falls_keeps_its_hinges_closed() {
+    let count = 12;
+    let (mut problem, _) = polygon(count);
+    problem.free.links.fill(Twist::from([0.3, -1.0, 0.0]));
+    problem.rings[0].start(&[INERTIA; 12], &problem.free.links);
+    for end in [-1.0, 1.0] {
+        let link = Link { ring: 0, number: 0 };
+        let arm = Vector::new(end * HALF, -0.01);
+        let mut below = contact(arm, Vector::Y, 0.4);
+        below.acts = Acts::Link(link);
+        problem.contacts.push(below);
+    }
+    problem.solve();
+    assert_eq!(problem.effort.unresolved, 0);
+    let links = &problem.velocities.links;
+    for (k, hinge) in problem.rings[0].hinges.iter().enumerate() {
+        let of =
+            |side: usize, link: &Twist| hinge.rows[side] * nalgebra::Vector3::from(link.entries());
+        let opens = of(0, &links[k]) + of(1, &links[(k + 1) % count]);
+        assert!(opens.norm() < 1e-12, "{opens}");
+    }
+    let gained: Vector = links
+        .iter()
+        .map(|link| (link.velocity - Vector::new(0.3, -1.0)) * MASS)
+        .sum();
+    let of_ground: Vector = problem.contacts.iter().map(Contact::impulse).sum();
+    assert!((gained - of_ground).length() < 1e-10 * of_ground.length());
+    assert!(of_ground.y > 0.0);
+}

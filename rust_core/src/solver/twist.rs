@@ -1,0 +1,51 @@
+//! The velocity of a body.
+//!
+//! The equations: docs/physics.md, "State".
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::{Vector, left_of};
+
+/// Velocity of a body: [m/s] of its centre of mass, [rad/s] of its rotation.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Twist {
+    pub velocity: Vector,
+    pub turn: f64,
+}
+
+impl Twist {
+    /// The components: x, y and rotation.
+    pub(crate) fn entries(self) -> [f64; 3] {
+        [self.velocity.x, self.velocity.y, self.turn]
+    }
+
+    /// [m/s] Velocity of a point at `arm` from the centre [m].
+    pub(crate) fn at(self, arm: Vector) -> Vector {
+        self.velocity + self.turn * left_of(arm)
+    }
+
+    /// The difference from another velocity.
+    pub(crate) fn less(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity - other.velocity,
+            turn: self.turn - other.turn,
+        }
+    }
+
+    /// The sum with a share of a change.
+    pub(crate) fn plus(self, change: Self, share: f64) -> Self {
+        Self {
+            velocity: self.velocity + change.velocity * share,
+            turn: self.turn + change.turn * share,
+        }
+    }
+}
+
+impl From<[f64; 3]> for Twist {
+    fn from([x, y, turn]: [f64; 3]) -> Self {
+        Self {
+            velocity: Vector::new(x, y),
+            turn,
+        }
+    }
+}
