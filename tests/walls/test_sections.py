@@ -9,9 +9,8 @@ from tests.walls.rooms import ROOT, House
 
 TEXT = (ROOT / "docs/physics.md").read_text(encoding="utf-8")
 SECTIONS = re.findall(r"^#+ (.+)$", TEXT, re.MULTILINE)
-FILES = [
-    file for file in files_of(House.read("core")) if file.startswith(("contact/", "solver/", "dynamics/"))
-]
+ROOMS = ("contact/", "solver/", "dynamics/")
+FILES = [file for file in files_of(House.read("core")) if file.startswith(ROOMS)]
 
 
 @pytest.mark.parametrize("file", FILES)

@@ -30,8 +30,8 @@ _FIELDS_BY_UNIT = {
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
-        " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts seed"
-        " return_roller_count road_wheel_count shoe_count skid_friction"
+        " imbalance intrusion_load iterations levels mean_imbalance phase_fraction posts"
+        " restitution return_roller_count road_wheel_count seed shoe_count skid_friction"
         " sliding_speed stationary_windows stop_pitches stop_progress torque_limit"
         " wheel_count"
     ),

@@ -107,6 +107,12 @@ class Solver(Parameters):
     prediction_distance : float
         [m] Gap up to which contacts are searched for, at least; in a fast or long step, as far as
         the robot moves in it.
+    restitution : float
+        [-] Share of the impulses of a blow that contacts give back, 0 to 1 (Poisson's hypothesis,
+        for normal and friction impulses alike). With 0, the default, a blow against edges that
+        jam each other stops the robot at once; with 1 it gives back all that springs would hold.
+        Where an outcome differs between the two, it hangs on what blows give back, which rigid
+        bodies leave open. Not for chains, nor in rapier.
 
     Examples
     --------
@@ -116,7 +122,7 @@ class Solver(Parameters):
 
     place: ClassVar[str] = "solver"
     either: ClassVar[tuple[str, ...]] = ("accuracy", "time_step")
-    unsaid: ClassVar[tuple[str, ...]] = ("engine",)
+    unsaid: ClassVar[tuple[str, ...]] = ("engine", "restitution")
 
     engine: Literal["own", "rapier"] = "own"
     contact: Literal["own", "reference"] = "own"
@@ -127,6 +133,7 @@ class Solver(Parameters):
     contact_damping_ratio: float = 5.0
     max_push_speed: float = 0.5
     prediction_distance: float = 0.0002
+    restitution: float = 0.0
 
     def __post_init__(self) -> None:
         """Take the default accuracy, or step in rapier, if nothing says how long steps are."""

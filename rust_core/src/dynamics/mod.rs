@@ -200,8 +200,13 @@ impl Dynamics {
         }
     }
 
-    /// Advances the state by the prepared step of `h` [s].
-    pub(crate) fn advance(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
+    /// Advances the state by the prepared step of `h` [s], in which something may strike the ground.
+    pub(crate) fn advance(
+        &mut self,
+        state: &mut State,
+        set_point: SetPoint,
+        (h, strikes): (f64, bool),
+    ) {
         self.problem.effort = Effort::default();
         let half = 0.5 * h;
         let before = (!self.model.is_one_body()).then(|| self.momentum_at(state));
@@ -222,7 +227,11 @@ impl Dynamics {
         self.guess_more();
         self.keep_closed(h);
         self.solve(state, set_point.end, h);
-        self.collect(state, h);
+        self.collect_motors(state, h);
+        if strikes && self.solver.restitution > 0.0 {
+            self.rebound(state);
+        }
+        self.collect_tractions(state, h);
         if let Some(before) = before {
             self.balance_momentum(state, before, h);
         }

@@ -22,6 +22,12 @@ impl Dynamics {
         self.spin_with_chains(state);
     }
 
+    /// Ends a step that was a blow: contacts give back some of its impulses.
+    pub(super) fn rebound(&mut self, state: &mut State) {
+        self.problem.rebound(self.solver.restitution);
+        state.take_velocities(&self.problem.velocities);
+    }
+
     /// Starts a step from the forces of the last one, for half its time.
     pub(super) fn guess(&mut self, half: f64) {
         for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
@@ -61,15 +67,21 @@ impl Dynamics {
         }
     }
 
-    /// Stores the mean forces of the motors, and of the ground along the surfaces, over a step of `h` [s].
-    pub(super) fn collect(&mut self, state: &mut State, h: f64) {
+    /// Stores the mean forces of the motors over a step of `h` [s].
+    pub(super) fn collect_motors(&mut self, state: &mut State, h: f64) {
         let mut impulses = self.problem.motor_impulses();
         for drive in &mut state.drives {
             drive.force = impulses.next().unwrap_or_default() / h;
-            drive.traction = 0.0;
         }
         for flipper in &mut state.flippers {
             flipper.torque = impulses.next().unwrap_or_default() / h;
+        }
+    }
+
+    /// Stores the mean forces of the ground along the surfaces over a step of `h` [s].
+    pub(super) fn collect_tractions(&self, state: &mut State, h: f64) {
+        for drive in &mut state.drives {
+            drive.traction = 0.0;
         }
         let per_torque = (self.model.drive_radius * h).recip();
         for (touch, solved) in self.touches.iter().zip(&self.problem.contacts) {

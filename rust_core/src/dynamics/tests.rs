@@ -32,7 +32,7 @@ impl Dynamics {
         let mut contacts = contacts.to_vec();
         self.recognise(&mut contacts, 0.0);
         self.prepare(state, &contacts, h);
-        self.advance(state, SetPoint::constant(set_point), h);
+        self.advance(state, SetPoint::constant(set_point), (h, false));
         self.keep(state, &contacts, h, false);
     }
 }

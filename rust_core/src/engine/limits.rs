@@ -3,7 +3,7 @@
 use crate::scenario::{ContactMethod, Engine, ForceSupport, Scenario, ScenarioError, Track};
 
 /// Defaults of the settings of our own contacts, in the order in which they are checked.
-const OF_OUR_OWN: [f64; 4] = [1000.0, 5.0, 0.5, 2e-4];
+const OF_OUR_OWN: [f64; 5] = [1000.0, 5.0, 0.5, 2e-4, 0.0];
 
 /// Checks that the engine of a scenario can hold its robot and its settings; our own can hold all.
 ///
@@ -54,6 +54,7 @@ fn check_settings(scenario: &Scenario) -> Result<(), ScenarioError> {
         ("contact_damping_ratio", solver.contact_damping_ratio),
         ("max_push_speed", solver.max_push_speed),
         ("prediction_distance", solver.prediction_distance),
+        ("restitution", solver.restitution),
     ];
     for ((name, value), default) in own.iter().zip(OF_OUR_OWN) {
         if value.to_bits() != default.to_bits() {

@@ -10,7 +10,7 @@ use crate::engine;
 use crate::error::Error;
 use crate::geometry::{Vector, end_discs};
 use crate::robot::{Model, Part, start_position};
-use crate::scenario::{Doubt, Scenario, ScenarioError, parse};
+use crate::scenario::{Doubt, Scenario, ScenarioError, Track, parse};
 use crate::terrain::Ground;
 
 /// Longest text that is read, in bytes; three lanes with the largest number of points take half of it.
@@ -134,6 +134,7 @@ impl Checked {
         let lumped = built.as_ref().or(twin.map(|twin| &*twin.model));
         let parts = lumped.map_or(&[][..], |model| &model.parts);
         check_sizes(&scenario, parts)?;
+        check_blows(&scenario)?;
         engine::check(&scenario)?;
         let ground = if let Some(other) = other.filter(|other| other.has_ground_of(&scenario)) {
             Arc::clone(&other.ground)
@@ -189,6 +190,17 @@ impl Scenario {
     pub fn from_json(text: &str) -> Result<Self, Error> {
         Checked::from_json(text).map(|checked| checked.scenario)
     }
+}
+
+/// Checks that what is to bounce can: contacts of chains are springs that give nothing back.
+fn check_blows(scenario: &Scenario) -> Result<(), ScenarioError> {
+    let share = scenario.solver.restitution;
+    if share > 0.0 && matches!(scenario.robot.track, Track::Segmental(_)) {
+        let rule =
+            "must be 0 where robot.track.kind is segmental: contacts of shoes are damped springs";
+        return Err(ScenarioError::new("solver.restitution", share, rule));
+    }
+    Ok(())
 }
 
 /// Rules that relate the sizes of a track model's parts to speeds, time step and criteria.

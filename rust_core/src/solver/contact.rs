@@ -116,6 +116,11 @@ impl Contact {
         self.center.1 + (self.friction_impulse - self.center.1) * self.springs
     }
 
+    /// [N s] Its impulses along normal and tangent.
+    pub(super) fn impulses(&self) -> [f64; 2] {
+        [self.normal_impulse, self.friction_impulse]
+    }
+
     /// [N s] Impulse on the body that it touches.
     pub(crate) fn impulse(&self) -> Vector {
         self.normal.unit * self.normal_impulse + self.tangent.unit * self.friction_impulse

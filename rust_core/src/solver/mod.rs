@@ -22,6 +22,7 @@ mod law;
 mod lowering;
 mod motor;
 mod motors;
+mod rebound;
 mod ring;
 mod steps;
 mod system;

@@ -3,6 +3,7 @@
 mod interior_point;
 mod lowering;
 mod random;
+mod rebound;
 mod rings;
 
 use approx::assert_relative_eq;

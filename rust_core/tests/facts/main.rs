@@ -12,6 +12,7 @@ mod accuracy;
 mod another_engine;
 mod basics;
 mod belt;
+mod blows;
 mod candidates;
 mod climbing;
 mod detracking;

@@ -157,7 +157,8 @@ impl Simulation {
         let trend = Trend::since(&self.earlier, self.free);
         self.dynamics
             .command_flippers(&self.state, angles, keep_level, h, trend);
-        self.dynamics.advance(&mut self.state, set_point, h);
+        self.dynamics
+            .advance(&mut self.state, set_point, (h, strikes));
         Taken {
             h,
             strikes,

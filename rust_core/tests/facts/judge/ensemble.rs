@@ -160,3 +160,10 @@ impl Tally {
         )
     }
 }
+
+/// How many of these runs of a scene pass in the core.
+pub(crate) fn core_passes(scene: &Scene, runs: u32) -> u32 {
+    (0..runs)
+        .map(|i| u32::from(by_core(&scene.run(i)).passed))
+        .sum()
+}

@@ -16,7 +16,7 @@ mod scenes;
 mod statistics;
 mod wheel;
 
-pub(crate) use ensemble::{Tally, standstills};
+pub(crate) use ensemble::{Tally, core_passes, standstills};
 pub(crate) use motion::Settings;
 pub(crate) use scenes::{Scene, drawn_scene, fixed_scenes};
 

@@ -14,6 +14,12 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
+    /// The same with contacts that give back a share of the impulses of blows.
+    pub(crate) fn giving_back(mut self, share: f64) -> Self {
+        self.scenario.solver.restitution = share;
+        self
+    }
+
     /// Run number `i`: speed by 10 % either way, any phase of the grousers, any approach of 0.1 m.
     pub(super) fn run(&self, i: u32) -> Scenario {
         let mut draw = Draw(self.seed.wrapping_mul(1_000_003).wrapping_add(u64::from(i)));

@@ -1,0 +1,88 @@
+//! What blows give back.
+
+use super::*;
+use crate::draw::Draw;
+
+/// [J] Kinetic energy of the base and what spins on it.
+fn energy(problem: &Problem) -> f64 {
+    let v = &problem.velocities;
+    let spins = problem.spins.iter().zip(&v.spins);
+    let of_spins: f64 = spins.map(|(spin, rate)| spin.inertia * rate * rate).sum();
+    let Base { mass, inertia } = problem.base;
+    0.5 * (mass * v.base.velocity.length_squared() + inertia * v.base.turn * v.base.turn + of_spins)
+}
+
+#[test]
+fn a_ball_that_falls_goes_up_with_its_share_of_the_speed() {
+    for share in [0.0, 0.3, 1.0] {
+        let mut ball = body(Vector::new(0.0, -2.0), 0.0);
+        ball.contacts
+            .push(contact(Vector::new(0.0, -0.1), Vector::Y, 0.5));
+        ball.solve();
+        ball.rebound(share);
+        assert_relative_eq!(
+            ball.velocities.base.velocity.y,
+            2.0 * share,
+            epsilon = AGREEMENT
+        );
+        let impulse = ball.contacts[0].normal_impulse;
+        assert_relative_eq!(impulse, 2.0 * 2.0 * (1.0 + share), max_relative = 1e-6);
+    }
+}
+
+/// Two contacts hold a body that turns between them by impulses that balance each other. Springs there give it back its
+/// turn, the other way round.
+#[test]
+fn a_body_that_jams_between_two_edges_turns_back() {
+    let jammed = |share: f64| {
+        let mut problem = body(Vector::ZERO, 1.0);
+        for side in [-1.0, 1.0] {
+            let arm = Vector::new(0.1 * side, -0.02 * side);
+            problem
+                .contacts
+                .push(contact(arm, Vector::new(-side, 0.0), 0.8));
+        }
+        problem.solve();
+        let blow = problem.contacts[0].normal_impulse;
+        problem.rebound(share);
+        (problem.velocities.base.turn, blow)
+    };
+    let (turn, blow) = jammed(0.0);
+    assert!(blow > 0.1 && turn.abs() < 1e-6, "{turn} rad/s, {blow} N s");
+    assert_relative_eq!(jammed(1.0).0, -1.0, max_relative = 1e-5);
+    assert_relative_eq!(jammed(0.4).0, -0.4, max_relative = 1e-5);
+}
+
+/// In Poisson's hypothesis with friction given back as well, no blow can gain energy.
+#[test]
+fn no_blow_gives_back_more_energy_than_it_took() {
+    let (mut draw, mut solved) = (Draw(11), 0);
+    for case in 0..4000 {
+        let mut problem = random::drawn(&mut draw);
+        for contact in &mut problem.contacts {
+            (contact.bias, contact.compliance) = (0.0, 0.0);
+        }
+        for motor in &mut problem.motors {
+            (motor.most, motor.target) = (0.0, 0.0);
+        }
+        problem.velocities = problem.free.clone();
+        let before = energy(&problem);
+        let share = draw.between(0.0, 1.0);
+        problem.solve();
+        problem.rebound(share);
+        if problem.effort.unresolved > 0 {
+            continue;
+        }
+        solved += 1;
+        let after = energy(&problem);
+        assert!(
+            after < before * (1.0 + 1e-5),
+            "case {case}: {after} J of {before} J, share {share}"
+        );
+        for c in &problem.contacts {
+            let most = c.friction * c.normal_impulse;
+            assert!(c.normal_impulse >= 0.0 && c.friction_impulse.abs() <= most * (1.0 + 1e-9));
+        }
+    }
+    assert!(solved > 3900, "{solved} of 4000");
+}
