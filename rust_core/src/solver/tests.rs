@@ -5,6 +5,7 @@ mod lowering;
 mod random;
 mod rebound;
 mod rings;
+mod worst;
 
 use approx::assert_relative_eq;
 
