@@ -118,7 +118,7 @@ fn breach(contact: &Contact, problem: &Problem) -> f64 {
 
 #[test]
 fn the_worst_hundred_problems_of_studies_obey_coulombs_law() {
-    let (mut solved, mut worst): (_, f64) = (0, 0.0);
+    let mut solved = 0;
     for (number, line) in PROBLEMS.lines().enumerate() {
         let mut problem = problem_of(line);
         problem.solve();
@@ -131,10 +131,10 @@ fn the_worst_hundred_problems_of_studies_obey_coulombs_law() {
             assert!(contact.normal_impulse >= 0.0);
             assert!(contact.friction_impulse.abs() <= most * (1.0 + 1e-9));
             let breach = breach(contact, &problem);
-            assert!(breach < 1e-5, "problem {number}: {breach} m/s");
-            worst = worst.max(breach);
+            // A solve ends when no contact's speed changes by more than this; 9e-8 m/s was seen.
+            assert!(breach < AGREEMENT, "problem {number}: {breach} m/s");
         }
     }
-    println!("{solved} solved, the worst breach is {worst:e} m/s");
+    // Three, of 24 gear wheels with servos, are there because they are not.
     assert!(solved >= 97, "{solved} of 100");
 }
