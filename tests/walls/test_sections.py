@@ -26,3 +26,17 @@ def test_every_section_of_the_physics_has_files() -> None:
     texts = [(ROOT / "rust_core/src" / file).read_text(encoding="utf-8") for file in FILES]
     assert len(FILES) > 30
     assert sum(f'"{section}"' in text for text in texts for section in SECTIONS) >= len(FILES)
+
+
+def test_every_section_names_its_files() -> None:
+    parts = re.split(r"^## (.+)$", TEXT, flags=re.MULTILINE)
+    named = {}
+    for section, text in zip(parts[1::2], parts[2::2], strict=True):
+        code = re.search(r"^\*Code\*: ([^.]*(?:\.rs[^.]*)+)\.$", text, re.MULTILINE)
+        named[section] = re.findall(r"`([^`]+)`", code[1]) if code else []
+    texts = {file: (ROOT / "rust_core/src" / file).read_text(encoding="utf-8") for file in FILES}
+    expected = {
+        section: [file for file, text in texts.items() if f'docs/physics.md, "{section}"' in text]
+        for section in named
+    }
+    assert named == expected

@@ -60,19 +60,15 @@ impl Problem {
     /// The same with bodies hinged to the base, whose rates hang together with its velocities.
     fn balance_with_joints(&mut self) {
         self.assemble_bodies();
-        for i in 0..self.contacts.len() {
-            let contact = &self.contacts[i];
-            let impulses = [contact.normal_impulse, contact.friction_impulse];
-            let acts = contact.acts;
-            for (action, impulse) in contact.actions.into_iter().zip(impulses) {
-                self.add(acts, [&action; 2], Damper::constant(impulse));
+        for contact in &self.contacts {
+            for (action, impulse) in contact.actions.iter().zip(contact.impulses()) {
+                let impulse = Damper::constant(impulse);
+                self.system.add(contact.acts, [action; 2], impulse);
             }
         }
-        for i in 0..self.bilaterals.len() {
-            let row = &mut self.bilaterals[i];
-            row.center = row.impulse;
-            let (acts, action, impulse) = (row.acts, row.action, row.impulse);
-            self.add(acts, [&action; 2], Damper::constant(impulse));
+        for row in &self.bilaterals {
+            let impulse = Damper::constant(row.impulse);
+            self.system.add(row.acts, [&row.action; 2], impulse);
         }
         if self.solve_for_change().is_some() {
             self.go(1.0);

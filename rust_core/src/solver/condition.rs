@@ -4,7 +4,6 @@
 //!
 //! The equations: docs/physics.md, "Lowering".
 
-use super::contact::Contact;
 use super::grip::Grip;
 use super::motor::{Hold, Motor};
 
@@ -33,41 +32,6 @@ impl Switch {
                 i == k
             }
             _ => false,
-        }
-    }
-}
-
-impl Contact {
-    /// The way in which it starts to slide when it touches.
-    pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
-        if self.dampers[1].at(slip) < 0.0 {
-            Grip::Backwards
-        } else {
-            Grip::Forwards
-        }
-    }
-
-    /// Calls `found` with the conditions of its state: the state that follows, and the value.
-    pub(super) fn conditions(&self, speeds: [f64; 2], lift: f64, mut found: impl FnMut(Grip, f64)) {
-        let [approach, slip] = speeds;
-        let (normal, friction) = (
-            self.dampers[0].at(approach + lift),
-            self.dampers[1].at(slip),
-        );
-        let limit = self.friction * normal;
-        if self.grip == Grip::Open {
-            found(Grip::Sticks, -normal);
-            return;
-        }
-        found(Grip::Open, normal);
-        match self.grip {
-            Grip::Sticks => {
-                found(Grip::Forwards, limit - friction);
-                found(Grip::Backwards, limit + friction);
-            }
-            Grip::Forwards if self.friction > 0.0 => found(Grip::Sticks, friction - limit),
-            Grip::Backwards if self.friction > 0.0 => found(Grip::Sticks, -friction - limit),
-            _ => {}
         }
     }
 }

@@ -10,9 +10,9 @@
 
 use super::damper::Damper;
 use super::direction::Direction;
-use super::grip::Grip;
 use super::motor::Driven;
-use super::ring::Beside;
+use super::ring::{Beside, Ring};
+use super::system::System;
 use super::velocities::Acts;
 use super::{AGREEMENT, Contact, Hung, Problem, bodies};
 
@@ -145,49 +145,32 @@ impl Problem {
     /// Assembles the system with the constraints as guessed.
     pub(super) fn assemble(&mut self) {
         self.assemble_bodies();
-        for i in 0..self.contacts.len() {
-            let contact = &self.contacts[i];
-            if !contact.bears {
-                continue;
-            }
-            let acts = contact.acts;
-            let [normal, tangent] = contact.actions;
-            let [n, t] = contact.dampers;
-            let friction = contact.friction;
-            match contact.grip {
-                Grip::Open => {}
-                Grip::Sticks => {
-                    self.add(acts, [&normal; 2], n);
-                    self.add(acts, [&tangent; 2], t);
-                }
-                Grip::Forwards => {
-                    let force = normal.plus(&tangent, friction);
-                    self.add(acts, [&force, &normal], n);
-                }
-                Grip::Backwards => {
-                    let force = normal.plus(&tangent, -friction);
-                    self.add(acts, [&force, &normal], n);
-                }
-            }
+        let (system, rings) = (&mut self.system, &mut self.rings);
+        for contact in self.contacts.iter().filter(|c| c.bears) {
+            contact.constraints(|along, damper| add(system, rings, contact.acts, along, damper));
         }
-        for i in 0..self.bilaterals.len() {
-            let row = &self.bilaterals[i];
-            let (acts, action, damper) = (row.acts, row.action, row.damper());
-            self.add(acts, [&action; 2], damper);
+        for row in &self.bilaterals {
+            add(system, rings, row.acts, [&row.action; 2], row.damper());
         }
     }
+}
 
-    /// Adds a constraint: its impulse acts along the first of two directions, with a damper along the second.
-    pub(super) fn add(&mut self, acts: Acts, along: [&Direction; 2], damper: Damper) {
-        match acts {
-            Acts::Base { .. } => self.system.add(acts, along, damper),
-            Acts::Link(link) => self.rings[link.ring].add(link, along, damper),
-            Acts::LinkAndSlide(link) => {
-                self.rings[link.ring].add_between(link, Beside::Slide, along, damper);
-            }
-            Acts::LinkAndSpin { link, .. } => {
-                self.rings[link.ring].add_between(link, Beside::Spin, along, damper);
-            }
+/// Adds a constraint: its impulse acts along the first of two directions, with a damper along the second.
+pub(super) fn add(
+    system: &mut System,
+    rings: &mut [Ring],
+    acts: Acts,
+    along: [&Direction; 2],
+    damper: Damper,
+) {
+    match acts {
+        Acts::Base { .. } => system.add(acts, along, damper),
+        Acts::Link(link) => rings[link.ring].add(link, along, damper),
+        Acts::LinkAndSlide(link) => {
+            rings[link.ring].add_between(link, Beside::Slide, along, damper);
+        }
+        Acts::LinkAndSpin { link, .. } => {
+            rings[link.ring].add_between(link, Beside::Spin, along, damper);
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Coulomb's law with softness: the grip and the impulses of a contact at given velocities.
-//!
-//! The searches write the same limit of friction into the equations of what slides.
+//! Coulomb's law with softness: the grip and the impulses of a contact at given velocities, the constraints of a grip, and
+//! the conditions under which it holds. Nothing outside of this file knows the limit of friction.
 //!
 //! The equations: docs/physics.md, "Coulomb's law".
 
 use super::Contact;
 use super::damper::{DAMPING, Damper};
+use super::direction::Direction;
 use super::grip::Grip;
 
 impl Contact {
@@ -87,6 +87,55 @@ impl Contact {
             Grip::Sticks => [normal, t.at(slip)],
             Grip::Forwards => [normal, self.friction * normal],
             Grip::Backwards => [normal, -self.friction * normal],
+        }
+    }
+
+    /// Calls `found` with the constraints of the guessed state: the impulse of each acts along the first of two directions,
+    /// with a damper along the second.
+    #[inline]
+    pub(super) fn constraints(&self, mut found: impl FnMut([&Direction; 2], Damper)) {
+        let ([normal, tangent], [n, t]) = (&self.actions, self.dampers);
+        match self.grip {
+            Grip::Open => {}
+            Grip::Sticks => {
+                found([normal; 2], n);
+                found([tangent; 2], t);
+            }
+            Grip::Forwards => found([&normal.plus(tangent, self.friction), normal], n),
+            Grip::Backwards => found([&normal.plus(tangent, -self.friction), normal], n),
+        }
+    }
+
+    /// The way in which it starts to slide when it touches.
+    pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
+        if self.dampers[1].at(slip) < 0.0 {
+            Grip::Backwards
+        } else {
+            Grip::Forwards
+        }
+    }
+
+    /// Calls `found` with the conditions of its state: the state that follows, and the value.
+    pub(super) fn conditions(&self, speeds: [f64; 2], lift: f64, mut found: impl FnMut(Grip, f64)) {
+        let [approach, slip] = speeds;
+        let (normal, friction) = (
+            self.dampers[0].at(approach + lift),
+            self.dampers[1].at(slip),
+        );
+        let limit = self.friction * normal;
+        if self.grip == Grip::Open {
+            found(Grip::Sticks, -normal);
+            return;
+        }
+        found(Grip::Open, normal);
+        match self.grip {
+            Grip::Sticks => {
+                found(Grip::Forwards, limit - friction);
+                found(Grip::Backwards, limit + friction);
+            }
+            Grip::Forwards if self.friction > 0.0 => found(Grip::Sticks, friction - limit),
+            Grip::Backwards if self.friction > 0.0 => found(Grip::Sticks, -friction - limit),
+            _ => {}
         }
     }
 }
