@@ -1,4 +1,4 @@
-"""24 wheels all round on a knife edge that gets between two of them, solved in four ways."""
+"""24 wheels all round on a knife edge that gets between two of them, solved in six ways."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ PINCHED = Path(__file__).with_name("pinched.json")
 _SOLVERS = {
     "own": Solver(),
     "own, fixed steps": Solver(time_step=5e-5),
+    "own, restitution 0.5": Solver(restitution=0.5),
+    "own, restitution 1": Solver(restitution=1.0),
     "rapier": Solver(engine="rapier"),
 }
 _HEIGHTS = (0.02, 0.04, 0.06)  # [m]

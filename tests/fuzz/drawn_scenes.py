@@ -175,6 +175,7 @@ def drawn_solver(draw: Draw, longest: float, track: Track) -> tuple[c2d.Solver, 
         contact_damping_ratio=draw.size(TINY, 100.0, (1.0, 10.0)),
         max_push_speed=draw.size(TINY, 100.0, (0.1, 1.0)),
         prediction_distance=draw.size(1e-5, 0.1, (1e-4, 1e-3)),
+        restitution=0.0 if is_chain or draw.random() < 0.7 else draw.random(),
     )
     return solver, step
 

@@ -28,6 +28,7 @@ mod steps;
 mod system;
 #[cfg(test)]
 mod tests;
+mod tie;
 mod twist;
 mod velocities;
 mod way;

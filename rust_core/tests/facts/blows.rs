@@ -9,17 +9,8 @@ use crate::judge::{core_passes, drawn_scene};
 /// A robot that stands on its rear wheel while its front wheel comes down, without friction: turn after the blow over turn
 /// before.
 fn turn_kept(restitution: f64) -> (f64, f64) {
-    let mut scenario = engineer_on(line(2));
-    scenario.robot.belly = None;
-    scenario.robot.center_of_mass = [0.0, 0.0];
-    scenario.robot.moment_of_inertia = 2.5;
-    scenario.terrain = slope(0.0, 0.0);
-    scenario.drive.speed = 0.0;
-    scenario.start.angle = 0.1;
+    let (mut scenario, plastic) = falling_on_its_front_wheel();
     scenario.solver.restitution = restitution;
-    let (robot, inertia) = (&scenario.robot, scenario.robot.moment_of_inertia);
-    let of_mass = robot.mass * (0.5 * robot.outline.axle_distance()).powi(2);
-    let plastic = (inertia - of_mass) / (inertia + of_mass);
     let mut simulation = Simulation::new(&checked(&scenario));
     let (mut before, mut turn) = (0.0, 0.0);
     while turn <= before {

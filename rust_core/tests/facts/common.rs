@@ -369,3 +369,19 @@ pub(crate) fn equal_lanes(terrain: &Terrain) -> Ground {
     let tracks = [lane.clone(), lane.clone()];
     Ground::apart(tracks, Some(lane), goal).expect("they overlap")
 }
+
+/// A robot on its rear wheel, without friction, whose front wheel comes down, and what a plastic impact leaves of its turn:
+/// (I - m a^2) / (I + m a^2), with the wheels at the distance a from the centre of mass.
+pub(crate) fn falling_on_its_front_wheel() -> (Scenario, f64) {
+    let mut scenario = engineer_on(line(2));
+    scenario.robot.belly = None;
+    scenario.robot.center_of_mass = [0.0, 0.0];
+    scenario.robot.moment_of_inertia = 2.5;
+    scenario.terrain = slope(0.0, 0.0);
+    scenario.drive.speed = 0.0;
+    scenario.start.angle = 0.1;
+    let (robot, inertia) = (&scenario.robot, scenario.robot.moment_of_inertia);
+    let of_mass = robot.mass * (0.5 * robot.outline.axle_distance()).powi(2);
+    let kept = (inertia - of_mass) / (inertia + of_mass);
+    (scenario, kept)
+}

@@ -248,16 +248,7 @@ fn a_row_of_wheels_stops_where_statics_says_in_rapier() {
 /// A blow takes from a robot what its plastic impact takes: its front wheel comes down, the rear one may lift.
 #[test]
 fn a_blow_leaves_the_momentum_of_a_plastic_impact_in_rapier() {
-    let mut scenario = engineer_on(line(2));
-    scenario.robot.belly = None;
-    scenario.robot.center_of_mass = [0.0, 0.0];
-    scenario.robot.moment_of_inertia = 2.5;
-    scenario.terrain = slope(0.0, 0.0);
-    scenario.drive.speed = 0.0;
-    scenario.start.angle = 0.1;
-    let (robot, inertia) = (&scenario.robot, scenario.robot.moment_of_inertia);
-    let of_mass = robot.mass * (0.5 * robot.outline.axle_distance()).powi(2);
-    let expected = (inertia - of_mass) / (inertia + of_mass);
+    let (scenario, expected) = falling_on_its_front_wheel();
     // Within the millisecond after it gravity takes 2 % of what is left.
     agree("turn kept", &scenario, (expected, 0.03), |scenario| {
         let mut simulation = Simulation::new(&checked(scenario));

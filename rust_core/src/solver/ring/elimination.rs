@@ -8,7 +8,7 @@
 use nalgebra::{Matrix2x3, SVector, Vector3};
 
 use super::system::{BASE, CLOSING, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
-use crate::solver::Twist;
+use crate::solver::twist::Twist;
 
 impl RingSystem {
     /// Reduces the system to the base, adding the ring's part to the rows of that. None if the constraints

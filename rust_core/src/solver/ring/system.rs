@@ -12,7 +12,9 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, RowVector2, SMatrix, SVector, Vector
 
 use super::drive::Grasp;
 use crate::geometry::Vector;
-use crate::solver::{Damper, Direction, Twist};
+use crate::solver::damper::Damper;
+use crate::solver::direction::Direction;
+use crate::solver::twist::Twist;
 
 /// Rows and columns of the border: three for the base, ...
 pub(super) const BASE: usize = 0;
