@@ -58,7 +58,7 @@ bench: | tools ## benchmarks
 bench-accuracy: $(VENV)/.built ## how exact rates are and what that costs, hours; Ctrl-C loses nothing
 	$(BIN)/python -m benches.accuracy $(ARGS)
 
-bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots and the study's cells, an hour or two; Ctrl-C loses little
+bench-agreement: $(VENV)/.built $(VENV)/.peers ## both engines on 300 random robots and the study's cells, hours; Ctrl-C loses little
 	$(BIN)/python -m benches.agreement run
 	$(BIN)/python -m benches.agreement third
 	$(BIN)/python -m benches.agreement study

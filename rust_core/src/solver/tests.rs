@@ -127,8 +127,7 @@ fn of_redundant_supports_the_nearest_forces_to_the_guess_are_taken() {
     }
 }
 
-/// A body pushed into a wedge between two walls: it springs back out of a wide one without a sound; in a narrow one
-/// friction alone holds it, at any load between the walls that was there before.
+/// A body that was pressed into a wedge between two walls, and is pulled out: friction alone holds it in a narrow one.
 #[test]
 fn a_narrow_wedge_holds_what_a_wide_one_lets_go() {
     let friction: f64 = 0.5;
