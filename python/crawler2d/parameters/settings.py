@@ -110,9 +110,9 @@ class Solver(Parameters):
     restitution : float
         [-] Share of the impulses of a blow that contacts give back, 0 to 1 (Poisson's hypothesis,
         for normal and friction impulses alike). With 0, the default, a blow against edges that
-        jam each other stops the robot at once; with 1 it gives back all, as springs without dampers would.
-        Where an outcome differs between the two, it hangs on what blows give back, which rigid
-        bodies leave open. Not for chains, nor in rapier.
+        jam each other stops the robot at once; with 1 contacts give all of it back, as springs
+        without dampers would. Where an outcome differs between the two, it hangs on what blows
+        give back, which rigid bodies leave open. Not for chains, nor in rapier.
 
     Examples
     --------
