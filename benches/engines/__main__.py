@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 from benches.engines import costs
@@ -17,7 +18,7 @@ from benches.engines.engines import ENGINES, FINE
 from benches.engines.momentum import speed_up
 from benches.engines.predict import PREDICTIONS, predict, unlike
 from benches.engines.refining import refine
-from benches.engines.running import RESULTS, run
+from benches.engines.running import RESULTS, processes, run
 from benches.engines.scan import scanned
 from benches.engines.table import parts
 from benches.engines.telling import tell
@@ -39,7 +40,9 @@ def main() -> None:
     runs = verbs.add_parser("run", help="run the engines, where they stopped the last time")
     engines = ", ".join(ENGINES)
     runs.add_argument("--engines", nargs="+", choices=ENGINES, metavar="ENGINE", help=engines)
-    runs.add_argument("--starts", type=int, default=STARTS, help="runs of each cell")
+    runs.add_argument(
+        "--starts", type=int, choices=range(1, STARTS + 1), metavar="N", help="runs of each cell"
+    )
     runs.add_argument("--only", default="", metavar="TEXT", help="cells with this in their label")
     finer = verbs.add_parser("converge", help="make some runs at finer and finer settings")
     finer.add_argument("engine", choices=LADDERS)
@@ -95,14 +98,17 @@ def _run(given: argparse.Namespace) -> None:
     cells = [cell for cell in read() if given.only in cell.label]
     engines, starts = given.engines or list(ENGINES), given.starts
     if given.quick:
-        cells, starts = cells[::_EVERY], _FEW
+        cells, starts = cells[::_EVERY], starts or _FEW
         engines = given.engines or [name for name in ENGINES if name != _SLOW]
     folder = given.output or (_QUICK if given.quick else RESULTS)
-    for name in engines:
-        try:
-            run(name, cells, starts, folder)
-        except ValueError as error:
-            sys.exit(f"{name}: {error}")
+    try:
+        with processes() as executor:
+            for name in engines:
+                run(name, cells, starts or ENGINES[name].starts, executor, folder)
+    except ValueError as error:
+        sys.exit(f"{name}: {error}")
+    except (KeyboardInterrupt, BrokenProcessPool):  # one of them comes first after Ctrl-C
+        sys.exit(f"interrupted: {folder} has the runs so far, and the same command goes on")
 
 
 def _converge(given: argparse.Namespace) -> None:

@@ -23,22 +23,25 @@ class Entry:
         Whether the setting is as fine as it was found to converge.
     in_space : bool
         Whether it has three dimensions.
+    starts : int
+        Runs of a cell that are made unless another number is asked for: what it costs decides.
     """
 
     what: str
     is_fine: bool
     in_space: bool
+    starts: int
 
 
 ENGINES: dict[str, Entry] = {
-    "pymunk": Entry("Chipmunk, finely", True, False),
-    "rapier": Entry("crawler2d's own door to rapier", True, False),
-    "ode": Entry("ODE as Gazebo classic sets it", False, True),
-    "ode-fine": Entry("ODE, finely", True, True),
-    "bullet": Entry("Bullet as PyBullet sets it", False, True),
-    "bullet-fine": Entry("Bullet, finely", True, True),
-    "dart": Entry("DART as gz-sim sets it", False, True),
-    "dart-fine": Entry("DART with Coulomb's law", True, True),
+    "pymunk": Entry("Chipmunk, finely", True, False, 8),
+    "rapier": Entry("crawler2d's own door to rapier", True, False, 3),
+    "ode": Entry("ODE as Gazebo classic sets it", False, True, 8),
+    "ode-fine": Entry("ODE, finely", True, True, 3),
+    "bullet": Entry("Bullet as PyBullet sets it", False, True, 6),
+    "bullet-fine": Entry("Bullet, finely", True, True, 3),
+    "dart": Entry("DART as gz-sim sets it", False, True, 3),
+    "dart-fine": Entry("DART with Coulomb's law", True, True, 1),
 }
 """The columns, in the order in which they run."""
 

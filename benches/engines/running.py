@@ -1,11 +1,16 @@
-"""Runs of cells in one engine, kept in a file as they end."""
+"""Runs of cells in one engine, on several processes, kept in a file as they end."""
 
 from __future__ import annotations
 
 import json
 import os
+import signal
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from itertools import repeat
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +22,7 @@ from benches.engines.predict import check
 from benches.engines.telling import tell
 from crawler2d.parameters.scenario import Scenario
 
-__all__ = ["RESULTS", "results_of", "run"]
+__all__ = ["RESULTS", "processes", "results_of", "run"]
 
 RESULTS = Path(__file__).with_name("results")
 _KEEP = 20.0  # [s] between two writings of the file
@@ -32,7 +37,20 @@ def results_of(name: str, folder: Path) -> dict[str, Any] | None:
     return found
 
 
-def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -> None:
+@contextmanager
+def processes(count: int | None = None) -> Iterator[Executor]:
+    """Open processes, as many as there are cores unless said; Ctrl-C ends them at once."""
+    context = get_context("spawn")  # no engine is forked with its state
+    pool = ProcessPoolExecutor(count, context, signal.signal, (signal.SIGINT, signal.SIG_DFL))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def run(
+    name: str, cells: Sequence[Cell], starts: int, executor: Executor, folder: Path = RESULTS
+) -> None:
     """Add runs of cells to the results of an engine, the first start of all cells first.
 
     Runs that the file already has are not made again, so that an interrupted comparison goes on.
@@ -50,20 +68,37 @@ def run(name: str, cells: Sequence[Cell], starts: int, folder: Path = RESULTS) -
         tell(f"{name} is left out: {version}")
         return
     results = results or {"predictions": now, "engine": version, "runs": {}}
-    held = [cell for cell in cells if holds(name, cell)]
+    runs = {cell.label: results["runs"].setdefault(cell.label, []) for cell in _held(name, cells)}
+    missing = [
+        (cell.label, cell.scenarios(start + 1)[start])
+        for start in range(starts)
+        for cell in _held(name, cells)
+        if len(runs[cell.label]) <= start
+    ]
     folder.mkdir(parents=True, exist_ok=True)
     kept = time.monotonic()
-    for start in range(starts):
-        for number, cell in enumerate(held, 1):
-            runs = results["runs"].setdefault(cell.label, [])
-            if len(runs) > start:
-                continue
-            runs.append(drive(cell.scenarios(start + 1)[start]))
+    made = executor.map(_made, repeat(name), [scenario for _, scenario in missing])
+    try:
+        for number, ((label, _), found) in enumerate(zip(missing, made, strict=True), 1):
+            runs[label].append(found)
             if time.monotonic() - kept > _KEEP:
                 _keep(path, results)
                 kept = time.monotonic()
-                tell(f"{name}: start {start + 1} of {starts}, cell {number} of {len(held)}")
+                tell(f"{name}: {number} of {len(missing)} runs")
+    finally:
         _keep(path, results)
+
+
+def _held(name: str, cells: Sequence[Cell]) -> list[Cell]:
+    return [cell for cell in cells if holds(name, cell)]
+
+
+def _made(name: str, scenario: Scenario) -> dict[str, Any]:
+    """Make a run, in whichever process."""
+    drive, missing = _driver(name)
+    if drive is None:
+        raise ImportError(missing)
+    return drive(scenario)
 
 
 def _driver(name: str) -> tuple[Callable[[Scenario], dict[str, Any]] | None, str]:

@@ -7,6 +7,7 @@ library under it, so the library's own are here (`ode/common.h`, `ode/contact.h`
 
 import json
 import math
+import signal
 import sys
 from typing import Any
 
@@ -148,6 +149,7 @@ def _turned(point: list[float], axle: list[float], angle: float) -> list[float]:
 
 def main() -> None:
     """Answer every line until there are no more."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever asks says what Ctrl-C means
     world: World | None = None
     for line in sys.stdin:
         message = json.loads(line)

@@ -1,6 +1,7 @@
 """benches/engines: cells are well formed, all engines get one robot, nothing runs unpredicted."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -253,8 +254,9 @@ def test_a_run_that_is_there_is_not_made_again(
 
     monkeypatch.setattr(running, "_driver", lambda _: (drive, "an engine"))
     cells = [cell for cell in read() if holds("ode", cell)][:3]
-    running.run("ode", cells, 1, tmp_path)
-    running.run("ode", cells, 2, tmp_path)
+    with ThreadPoolExecutor() as threads:
+        running.run("ode", cells, 1, threads, tmp_path)
+        running.run("ode", cells, 2, threads, tmp_path)
     assert len(made) == 6
     results = json.loads((tmp_path / "ode.json").read_text(encoding="utf-8"))
     assert {len(runs) for runs in results["runs"].values()} == {2}
