@@ -169,8 +169,9 @@ fn restlessness(simulation: &mut Simulation) -> f64 {
     (squares / f64::from(looks)).sqrt()
 }
 
-/// A motor that gives a constant force at no mean speed gives no energy, so what swings comes to rest. With forces along
-/// the shoes that are no function of where these are, one of four went on at 3.7 mm/s.
+/// A motor that gives a constant force at no mean speed gives no energy, so what swings comes to rest; where all
+/// contacts stick, nothing but the solver's own damping takes energy, and that is slow. With forces along the shoes that
+/// are no function of where these are, one of four went on at 3.7 mm/s.
 #[test]
 fn a_stalled_chain_comes_to_rest() {
     let mut swings: Vec<f64> = Vec::new();
@@ -183,7 +184,18 @@ fn a_stalled_chain_comes_to_rest() {
             scenario.start.track_phase = 0.006 * f64::from(phase);
             let mut simulation = after(&scenario, 8.0);
             assert!(simulation.drive_force() > 200.0, "the motors push");
-            swings.push(restlessness(&mut simulation));
+            let swing = restlessness(&mut simulation);
+            if swing > 2e-4 {
+                advance(&mut simulation, 5.0);
+                let later = restlessness(&mut simulation);
+                println!(
+                    "{:.3} mm/s, {:.3} five seconds later",
+                    1e3 * swing,
+                    1e3 * later
+                );
+                assert!(later < 0.97 * swing, "it dies out");
+            }
+            swings.push(swing);
         }
     }
     swings.sort_by(f64::total_cmp);
@@ -192,7 +204,8 @@ fn a_stalled_chain_comes_to_rest() {
         swings.iter().map(|v| 1e3 * v).collect::<Vec<_>>()
     );
     // Such runs are compared as ensembles. Of 128 starts, half of them with sums in another order, 14 were above
-    // 0.2 mm/s; one of these stood higher on the step, and swung there by half a millimetre without end.
+    // 0.2 mm/s. One of these stands higher on the step, on three contacts that stick all the while, and swings there by
+    // half a millimetre; it loses 10, 8 and 5 % in five seconds at accuracies of 3e-7, 3e-8 and 3e-9 m.
     assert!(swings[8] < 5e-5 && swings[14] < 2e-4);
 }
 
