@@ -50,6 +50,7 @@ impl Tip {
 /// Whether a tip inside a face of the ground has a shorter way out than that face.
 pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
     outer_ends(lane, touch).any(|(corner, beside)| {
+        let is_gap = |way: f64| is_gap(way, (tip.place - corner.center).length());
         let below = (corner.center - tip.place).dot(beside) + corner.radius;
         let leaves_face = || tip.faces(-beside);
         let leaves_run = |m: &Vector| {
@@ -57,10 +58,10 @@ pub(super) fn tip_yields(lane: &Lane, tip: &Tip, touch: &Touch) -> bool {
             let beyond = spoke.dot(*m);
             let leaves = || corner.faces(-*m);
             let holds_corner = || tip.normals.iter().all(|m| spoke.dot(*m) > 0.0);
-            (beyond < 0.0 && leaves()) || (shorter(touch, -*m, beyond, leaves) && holds_corner())
+            (is_gap(beyond) && leaves()) || (shorter(touch, -*m, beyond, leaves) && holds_corner())
         };
         // If there is a gap to a face or run that could meet them, they have not met at all.
-        (below < 0.0 && leaves_face())
+        (is_gap(below) && leaves_face())
             || shorter(touch, beside, below, leaves_face)
             || tip.normals.iter().any(leaves_run)
     })
@@ -93,7 +94,8 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
     let [before, behind] = tip.normals;
     let beside = if outward == before { behind } else { before };
     let below = (tip.place - corner.center).dot(beside) + corner.radius;
-    if below < 0.0 && corner.faces(-beside) {
+    let is_apart = is_gap(below, (tip.place - corner.center).length());
+    if is_apart && corner.faces(-beside) {
         return true;
     }
     let beyond = |normal: Vector| (corner.center - tip.place).dot(normal) + corner.radius;
@@ -102,6 +104,12 @@ pub(super) fn run_yields(lane: &Lane, outward: Vector, tip: &Tip, touch: &Touch)
             .normals
             .iter()
             .any(|n| shorter(touch, *n, beyond(*n), || tip.faces(-*n)))
+}
+
+/// Whether a way out [m] of two corners so far from each other [m] is none, so that they have not met: what faces may be
+/// out of a corner's cone by rounding, which is a gap over some distance.
+fn is_gap(way: f64, apart: f64) -> bool {
+    way < -ROUNDING * apart
 }
 
 /// Whether a way out of length `depth` along `normal` is shorter than that of `touch`, and open.

@@ -24,7 +24,9 @@ impl Problem {
     /// Finds the impulses that satisfy all constraints, if corrected guesses lead there.
     pub(super) fn solve_at_once(&mut self) -> bool {
         self.settle();
+        let mut last = None;
         for _ in 0..AT_ONCE {
+            let before = last.take();
             self.effort.rounds += 1;
             self.assemble();
             if self.solve_for_change().is_none() {
@@ -43,7 +45,7 @@ impl Problem {
                 if off < AGREEMENT {
                     return true;
                 }
-                self.settle();
+                last = self.settle_after(before, off);
             }
         }
         self.contacts.iter_mut().for_each(Contact::unsettle);
@@ -84,17 +86,6 @@ impl Problem {
             contact.grip = next;
         }
         fits
-    }
-
-    /// Makes the current impulses the ones about which constraints are damped.
-    pub(super) fn settle(&mut self) {
-        self.contacts.iter_mut().for_each(Contact::settle);
-        for ring in &mut self.rings {
-            ring.drive.center = ring.drive.impulse;
-        }
-        for row in &mut self.bilaterals {
-            row.center = row.impulse;
-        }
     }
 
     /// Assembles the system without constraints.

@@ -7,6 +7,7 @@ use super::Contact;
 use super::damper::{DAMPING, Damper};
 use super::direction::Direction;
 use super::grip::Grip;
+use super::settling::beyond;
 
 impl Contact {
     /// Makes the current impulses the ones about which the contact is damped.
@@ -16,6 +17,14 @@ impl Contact {
             self.center.1 = self.friction_impulse;
         }
         self.place_dampers();
+    }
+
+    /// Takes the impulses ahead by so many times their change, as far as Coulomb's law lets them.
+    pub(super) fn lead(&mut self, times: f64) {
+        let (normal, friction) = self.center;
+        self.normal_impulse = beyond(normal, self.normal_impulse, times).max(0.0);
+        let limit = self.friction * self.normal_impulse;
+        self.friction_impulse = beyond(friction, self.friction_impulse, times).clamp(-limit, limit);
     }
 
     /// Goes back to the impulses about which the contact is damped.
@@ -88,6 +97,16 @@ impl Contact {
             Grip::Forwards => [normal, self.friction * normal],
             Grip::Backwards => [normal, -self.friction * normal],
         }
+    }
+
+    /// [m/s] How far apart the law and the guessed grip are at these speeds, by what their impulses do to the speeds.
+    pub(super) fn misfit(&self, speeds: [f64; 2]) -> f64 {
+        if self.fitting == self.grip {
+            return 0.0;
+        }
+        let (held, [n, t]) = (self.guessed(speeds), self.impulses());
+        let of_normal = (n - held[0]).abs() * self.admittance.normal;
+        of_normal.max((t - held[1]).abs() * self.admittance.tangent)
     }
 
     /// Calls `found` with the constraints of the guessed state: the impulse of each acts along the first of two directions,

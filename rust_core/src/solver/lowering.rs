@@ -17,6 +17,8 @@ use super::{Contact, Problem};
 const TURNS: usize = 16;
 /// Conditions within this share of the way are met together: one by one, both sides of what is symmetric would part.
 const TOGETHER: f64 = 1e-9;
+/// That share where only the first is met.
+const ALONE: f64 = 0.0;
 /// Rounds in which all motors switch at once; from then on the first that has to, which cannot go on for ever (Murty
 /// 1974).
 const AT_ONCE: usize = 4;
@@ -36,15 +38,22 @@ pub(super) struct Lowest {
 }
 
 impl Problem {
-    /// Goes down to a solution on the ground; returns the largest error of a velocity there [m/s], if it gets there. If
-    /// not, contacts stay lifted as little as they have been on the way: they obey Coulomb's law, and take energy.
-    pub(super) fn lower(&mut self) -> Option<f64> {
+    /// Goes down to a solution on the ground; returns whether it gets there. If not, contacts stay lifted as little as they
+    /// have been on the way: they obey Coulomb's law, and take energy.
+    pub(super) fn lower(&mut self) -> bool {
         self.effort.lowerings += 1;
         self.settle();
         let turns = TURNS * (self.contacts.len() + self.motors.len());
-        let lowest = self.go_down(turns)?;
+        // What is met together can lead past a solution that one after the other leads to.
+        let lowest = match self.go_down(turns, TOGETHER) {
+            Some(lowest) if lowest.lift > 0.0 => self.go_down(turns, ALONE),
+            lowest => lowest,
+        };
+        let Some(lowest) = lowest else {
+            return false;
+        };
         if lowest.lift > 0.0 {
-            self.go_down(lowest.turns);
+            self.go_down(lowest.turns, ALONE);
             for contact in self.contacts.iter_mut().filter(|c| c.bears) {
                 let [approach, slip] = contact.speeds(&self.velocities);
                 (
@@ -52,14 +61,15 @@ impl Problem {
                     [contact.normal_impulse, contact.friction_impulse],
                 ) = contact.law([approach + lowest.lift, slip]);
             }
-            return None;
+            return false;
         }
-        Some(self.follow_velocities())
+        self.follow_velocities();
+        true
     }
 
-    /// Goes down from where all contacts are lifted off, by so many turns at most; returns the lowest point of the way,
-    /// or nothing if the constraints contradict each other there.
-    pub(super) fn go_down(&mut self, turns: usize) -> Option<Lowest> {
+    /// Goes down from where all contacts are lifted off, by so many turns at most; conditions within a share of the way are
+    /// met together. Returns the lowest point of the way, or nothing if the constraints contradict each other there.
+    pub(super) fn go_down(&mut self, turns: usize, together: f64) -> Option<Lowest> {
         self.lift_off()?;
         let bearing = self.contacts.iter().filter(|c| c.bears);
         let velocities = &self.velocities;
@@ -81,9 +91,10 @@ impl Problem {
                     self.bear(lift);
                     let is_met = |c: &&Condition| {
                         let met = c.met(way, back);
-                        met.is_some_and(|met| met <= share + TOGETHER)
+                        met.is_some_and(|met| met <= share + together)
                     };
-                    let met = conditions.iter().filter(is_met);
+                    let most = if together > 0.0 { usize::MAX } else { 1 };
+                    let met = conditions.iter().filter(is_met).take(most);
                     back = self.make_all(met.map(|c| c.switch));
                 }
                 Met::Nothing => {

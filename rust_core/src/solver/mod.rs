@@ -24,6 +24,7 @@ mod motor;
 mod motors;
 mod rebound;
 mod ring;
+mod settling;
 mod steps;
 mod system;
 #[cfg(test)]
@@ -51,7 +52,7 @@ use system::System;
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
 /// corresponds to a force of 1e-5 of the weight, far below anything that decides an outcome.
 const AGREEMENT: f64 = 1e-7;
-/// Rounds of a search at most, unless told otherwise; most take one.
+/// Rounds of a search at most, unless told otherwise; most need none.
 const ITERATIONS: u32 = 8;
 
 /// Bodies, what constrains them, and the velocities that a solve finds.
@@ -130,22 +131,29 @@ impl Problem {
     /// Searches for them; returns whether they agree.
     fn search(&mut self) -> bool {
         self.tie();
-        let guess = if self.rings.is_empty() {
-            Self::solve_at_once
-        } else {
-            Self::solve_in_steps
-        };
+        if self.guess() {
+            return true;
+        }
+        // What no guess finds can be close to a jam, where constraints agree before the bodies stand.
         for _ in 0..self.iterations.unwrap_or(ITERATIONS) {
-            if guess(self) {
+            if !self.lower() {
+                return false;
+            }
+            if self.close_in() || (self.guess() && self.close_in()) {
                 return true;
             }
-            match self.lower() {
-                Some(off) if off < AGREEMENT => return true,
-                Some(_) => {}
-                None => return false,
-            }
         }
+        self.lower();
         false
+    }
+
+    /// Finds them from those of the last solve, if corrected guesses lead there.
+    fn guess(&mut self) -> bool {
+        if self.rings.is_empty() {
+            self.solve_at_once()
+        } else {
+            self.solve_in_steps()
+        }
     }
 
     /// Lets all contacts move along their directions as these are: contacts that jam cannot all open or slide on their

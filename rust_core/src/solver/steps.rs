@@ -23,7 +23,9 @@ impl Problem {
     pub(super) fn solve_in_steps(&mut self) -> bool {
         self.settle();
         self.set_out();
+        let mut last = None;
         for step in 0..STEPS {
+            let before = last.take();
             self.effort.rounds += 1;
             self.assemble();
             if self.solve_for_change().is_none() {
@@ -49,7 +51,7 @@ impl Problem {
                 if off < AGREEMENT {
                     return true;
                 }
-                self.settle();
+                last = self.settle_after(before, off);
             }
         }
         false

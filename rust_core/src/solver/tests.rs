@@ -157,6 +157,24 @@ fn a_narrow_wedge_holds_what_a_wide_one_lets_go() {
 }
 
 /// A belt, without torque, between floor and ceiling that pull it opposite ways: its drive takes the difference only.
+/// Two walls that are almost parallel hold what falls between them. Each solution comes nearer to rest by a ratio of
+/// 1 / (1 + 2 a^2 / 1e-6) for walls at an angle a from vertical.
+#[test]
+fn what_falls_into_a_narrow_gap_stands_there() {
+    for angle in [1e-2, 1e-3, 3e-4, 1e-4_f64] {
+        let mut problem = body(Vector::new(0.0, -1.0), 0.0);
+        for side in [-1.0, 1.0] {
+            let normal = Vector::new(-side * angle.cos(), angle.sin());
+            let arm = Vector::new(0.1 * side, 0.0);
+            problem.contacts.push(contact(arm, normal, 0.0));
+        }
+        problem.solve();
+        assert_eq!(problem.effort.unresolved, 0);
+        let speed = problem.velocities.base.velocity.length();
+        assert!(speed < 1e-6, "{speed} m/s at {angle}");
+    }
+}
+
 #[test]
 fn opposed_contacts_on_one_belt_share_its_motor() {
     let (radius, friction) = (0.1, 0.5);

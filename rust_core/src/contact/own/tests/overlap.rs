@@ -7,7 +7,7 @@ use super::judge::Judge;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
 use crate::draw::Draw;
-use crate::geometry::{Pose, Vector, cross, left_of};
+use crate::geometry::{Pose, Rotation, Vector, cross, left_of};
 use crate::robot::{BodyKind, Mount, Part, Running, Shape};
 
 /// [m] Tolerance of the comparison.
@@ -265,6 +265,39 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
         for (normal, depth) in [(Vector::Y, below), (-Vector::X, behind)] {
             let is_it = |c: &Contact| c.normal == normal && (c.distance + depth).abs() < 1e-15;
             assert!(contacts.iter().any(is_it), "{behind} {below} {contacts:?}");
+        }
+    }
+}
+
+/// However flat it lies: the corner of the step is then out of its underside by no more than rounding.
+#[test]
+fn a_block_that_lies_on_a_step_bears_with_both_ends() {
+    let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
+    let ground = Ground::new(&corners, 0.0).unwrap();
+    let block = [[-0.01, 0.0], [0.01, 0.0], [0.01, 0.02], [-0.01, 0.02]];
+    let part = Part {
+        kind: BodyKind::Belly,
+        shape: Shape::Polygon {
+            corners: block.map(|[x, y]| Vector::new(x, y)).to_vec(),
+        },
+        drive: None,
+        friction_limit: f64::INFINITY,
+        lane: 0,
+        mount: Mount::Chassis,
+    };
+    let contact = OwnContact::new(&[part], &[ground.profile]);
+    let mut contacts = Vec::new();
+    for exponent in 4..16 {
+        let small = 10.0_f64.powi(-exponent);
+        for (angle, depth) in [
+            (0.0, small),
+            (1e-11, small),
+            (-1e-11, small),
+            (small, 1e-12),
+        ] {
+            let pose = Pose::from_parts(Vector::new(0.5, 0.1 - depth), Rotation::new(angle));
+            contact.find(pose, &Running::default(), 1e-3, &mut contacts);
+            assert_eq!(contacts.len(), 2, "{angle} {depth} {contacts:?}");
         }
     }
 }
