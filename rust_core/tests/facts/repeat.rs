@@ -131,28 +131,28 @@ fn recording_does_not_change_the_run() {
 #[test]
 fn every_build_finds_the_same_values() {
     let robots = [
-        ("line of 5", engineer_on(line(5)), 0xb5fb_fa7f_7d5a_1093),
+        ("line of 5", engineer_on(line(5)), 0x7ad0_55de_a240_063a),
         (
             "line of 3 gear wheels",
             engineer_on(line_of(3, paper_gear())),
-            0x001b_547b_a72b_17ae,
+            0xc72b_889e_5fff_6af8,
         ),
         (
             "belt with grousers",
             engineer_on(grouser_belt()),
-            0xa599_3b9a_24a6_a356,
+            0xb074_b579_a260_3e1b,
         ),
-        ("chain", engineer_on(segmental(None)), 0x59fd_d681_d756_5628),
+        ("chain", engineer_on(segmental(None)), 0x8289_734a_d4a3_65fa),
         (
             "chain on a sprocket",
             engineer_on(sprocketed(None)),
-            0xcbe5_38ac_9f83_6757,
+            0x86f9_f2b3_2bee_217e,
         ),
-        ("belt, arms", on_arms(0.5, belt()), 0x7886_bdc4_370c_95bc),
+        ("belt, arms", on_arms(0.5, belt()), 0x42df_ee24_5af1_cdde),
         (
             "chain, arms",
             on_arms(0.5, segmental(None)),
-            0x7455_28e7_37e4_89a6,
+            0x964a_6489_509d_d1d3,
         ),
     ];
     let other = robots.into_iter().filter_map(|(name, robot, expected)| {
