@@ -143,8 +143,8 @@ impl Problem {
                 return true;
             }
         }
-        self.lower();
-        false
+        // Contacts that share a load may pass it round, and agree all the same.
+        self.lower() && self.follow_velocities() < AGREEMENT
     }
 
     /// Finds them from those of the last solve, if corrected guesses lead there.
