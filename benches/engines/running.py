@@ -68,11 +68,12 @@ def run(
         tell(f"{name} is left out: {version}")
         return
     results = results or {"predictions": now, "engine": version, "runs": {}}
-    runs = {cell.label: results["runs"].setdefault(cell.label, []) for cell in _held(name, cells)}
+    held = [cell for cell in cells if holds(name, cell)]
+    runs = {cell.label: results["runs"].setdefault(cell.label, []) for cell in held}
     missing = [
         (cell.label, cell.scenarios(start + 1)[start])
         for start in range(starts)
-        for cell in _held(name, cells)
+        for cell in held
         if len(runs[cell.label]) <= start
     ]
     folder.mkdir(parents=True, exist_ok=True)
@@ -87,10 +88,6 @@ def run(
                 tell(f"{name}: {number} of {len(missing)} runs")
     finally:
         _keep(path, results)
-
-
-def _held(name: str, cells: Sequence[Cell]) -> list[Cell]:
-    return [cell for cell in cells if holds(name, cell)]
 
 
 def _made(name: str, scenario: Scenario) -> dict[str, Any]:
