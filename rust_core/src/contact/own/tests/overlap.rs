@@ -242,22 +242,25 @@ fn a_part_leaves_the_ground_along_its_contacts() {
     assert!(moved > count / 2);
 }
 
-#[test]
-fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
-    let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
-    let ground = Ground::new(&corners, 0.0).unwrap();
-    let triangle = [[0.0, 0.0], [-0.05, 0.05], [-0.05, 0.01]].map(|[x, y]| Vector::new(x, y));
+/// The contact of a polygon with a step of 0.1 m, whose foot is the origin.
+fn polygon_at_step(corners: &[[f64; 2]]) -> OwnContact {
+    let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
     let part = Part {
         kind: BodyKind::Belly,
         shape: Shape::Polygon {
-            corners: triangle.to_vec(),
+            corners: corners.iter().map(|[x, y]| Vector::new(*x, *y)).collect(),
         },
         drive: None,
         friction_limit: f64::INFINITY,
         lane: 0,
         mount: Mount::Chassis,
     };
-    let contact = OwnContact::new(&[part], &[ground.profile]);
+    OwnContact::new(&[part], &[Ground::new(&step, 0.0).unwrap().profile])
+}
+
+#[test]
+fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
+    let contact = polygon_at_step(&[[0.0, 0.0], [-0.05, 0.05], [-0.05, 0.01]]);
     let mut contacts = Vec::new();
     for (behind, below) in [(1e-9, 1e-9), (1e-6, 1e-4), (1e-4, 1e-6), (5e-4, 5e-4)] {
         let pose = Pose::from_translation(Vector::new(behind, -below));
@@ -272,20 +275,7 @@ fn a_tip_wedged_into_an_inner_corner_bears_on_both_faces() {
 /// However flat it lies: the corner of the step is then out of its underside by no more than rounding.
 #[test]
 fn a_block_that_lies_on_a_step_bears_with_both_ends() {
-    let corners = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
-    let ground = Ground::new(&corners, 0.0).unwrap();
-    let block = [[-0.01, 0.0], [0.01, 0.0], [0.01, 0.02], [-0.01, 0.02]];
-    let part = Part {
-        kind: BodyKind::Belly,
-        shape: Shape::Polygon {
-            corners: block.map(|[x, y]| Vector::new(x, y)).to_vec(),
-        },
-        drive: None,
-        friction_limit: f64::INFINITY,
-        lane: 0,
-        mount: Mount::Chassis,
-    };
-    let contact = OwnContact::new(&[part], &[ground.profile]);
+    let contact = polygon_at_step(&[[-0.01, 0.0], [0.01, 0.0], [0.01, 0.02], [-0.01, 0.02]]);
     let mut contacts = Vec::new();
     for exponent in 4..16 {
         let small = 10.0_f64.powi(-exponent);
