@@ -160,9 +160,9 @@ impl Dynamics {
         self.loaded = found;
     }
 
-    /// Prepares a step of `h` [s]. The contacts are those in its middle ([`State::pose_after`] half of it), numbered
+    /// Prepares a step of `h` [s] in which nothing moves farther than `travel` [m]. The contacts are those in its middle ([`State::pose_after`] half of it), numbered
     /// by [`Dynamics::recognise`].
-    pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], h: f64) {
+    pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], (h, travel): (f64, f64)) {
         let half = 0.5 * h;
         let fading = if self.chains.is_empty() {
             libm::exp(-h / SELF_STRESS_TIME)
@@ -188,7 +188,7 @@ impl Dynamics {
             self.touches.push(touch);
             self.problem.contacts.push(solved);
         }
-        self.rest_on_guides(state, half);
+        self.rest_on_guides(state, half, travel);
     }
 
     /// Tells the prepared step where the faces end on which arcs roll.

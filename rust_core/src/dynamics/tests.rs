@@ -25,13 +25,15 @@ pub(super) fn setup(change: impl Fn(&mut Scenario)) -> (Dynamics, State) {
 
 /// [s] Length of the steps here.
 pub(super) const STEP: f64 = 1e-3;
+/// [m] How far anything may move in one.
+const TRAVEL: f64 = 5e-3;
 
 impl Dynamics {
     /// Takes one step of `h` [s] with these contacts.
     pub(super) fn take(&mut self, state: &mut State, contacts: &[Contact], set_point: f64, h: f64) {
         let mut contacts = contacts.to_vec();
         self.recognise(&mut contacts, 0.0);
-        self.prepare(state, &contacts, h);
+        self.prepare(state, &contacts, (h, TRAVEL));
         self.advance(state, SetPoint::constant(set_point), (h, false));
         self.keep(state, &contacts, h, false);
     }

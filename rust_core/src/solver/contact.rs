@@ -96,10 +96,16 @@ impl Contact {
         [n + self.actions[0].offset, t + self.actions[1].offset]
     }
 
-    /// [m/s] Changes of these speeds with changes of the velocities.
+    /// [m/s] Changes of these speeds with changes of the velocities; without friction that of slip makes no difference, and
+    /// is left out.
     pub(super) fn changes(&self, changes: &Velocities) -> [f64; 2] {
         let [n, t] = &self.actions;
-        [self.acts.speed(n, changes), self.acts.speed(t, changes)]
+        let slip = if self.friction > 0.0 {
+            self.acts.speed(t, changes)
+        } else {
+            0.0
+        };
+        [self.acts.speed(n, changes), slip]
     }
 
     /// Softens its grip by a compliance, about the friction [N s] of the last step; its spring keeps a share of a change.

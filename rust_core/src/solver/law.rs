@@ -127,7 +127,7 @@ impl Contact {
 
     /// The way in which it starts to slide when it touches.
     pub(super) fn slides(&self, [_, slip]: [f64; 2]) -> Grip {
-        if self.dampers[1].at(slip) < 0.0 {
+        if self.friction > 0.0 && self.dampers[1].at(slip) < 0.0 {
             Grip::Backwards
         } else {
             Grip::Forwards

@@ -6,12 +6,10 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::Vector2;
-
 use super::pull::grasps;
 use super::{Chain, STOP_STIFFNESS};
 use crate::dynamics::state::{Shoe, State};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Vector};
 use crate::robot::Tensioner;
 use crate::solver::{Damper, Hinge, Ring, Twist};
 
@@ -36,9 +34,9 @@ impl Chain {
         ring.start(&self.inertias, free);
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
             *hinge = Hinge {
-                rows: pin.rows(),
-                pushes: pin.rows(),
-                speed: Vector2::new(pin.gap.x, pin.gap.y) / -h,
+                ends: pin.arms(),
+                pushed_at: pin.arms(),
+                velocity: pin.gap / -h,
             };
         }
         if self.rule.sprocket.is_none() {
@@ -65,13 +63,13 @@ impl Chain {
         self.turn_pins(&middle);
         self.middle = middle;
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
-            hinge.pushes = pin.rows();
+            hinge.pushed_at = pin.arms();
         }
         self.measure_gaps(shoes);
         self.inertias.fill(self.rule.shoe_inertia);
         ring.start(&self.inertias, free);
         for (hinge, pin) in ring.hinges.iter_mut().zip(&self.pins) {
-            (hinge.rows, hinge.speed) = (pin.rows(), Vector2::zeros());
+            (hinge.ends, hinge.velocity) = (pin.arms(), Vector::ZERO);
         }
         ring.slide = self.tensioner(state.idlers[self.rule.number].travel, h, h);
     }

@@ -2,10 +2,9 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::Matrix2x3;
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Vector, left_of, plausible_vectors};
+use crate::geometry::{Vector, plausible_vectors};
 
 /// The pin at the front of a shoe.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -39,12 +38,8 @@ impl Pin {
         [-self.arms[0].dot(self.force), self.arms[1].dot(self.force)]
     }
 
-    /// Entries of the two shoes' velocities in that of the next shoe's end relative to this one's, along x and y.
-    pub(super) fn rows(&self) -> [Matrix2x3<f64>; 2] {
-        let [a, b] = self.arms.map(left_of);
-        [
-            Matrix2x3::new(-1.0, 0.0, -a.x, 0.0, -1.0, -a.y),
-            Matrix2x3::new(1.0, 0.0, b.x, 0.0, 1.0, b.y),
-        ]
+    /// [m] From the centre of the shoe, and from that of the next shoe, to the pin.
+    pub(super) fn arms(&self) -> [Vector; 2] {
+        self.arms
     }
 }

@@ -209,7 +209,8 @@ impl Simulation {
         let last = self.dynamics.loaded().iter().map(|l| &l.contact);
         self.dents_now.forgive(&mut self.contacts, &last);
         self.dynamics.outer_force = Vector::new(self.push.at(self.time + half), 0.0);
-        self.dynamics.prepare(&self.state, &self.contacts, h);
+        self.dynamics
+            .prepare(&self.state, &self.contacts, (h, travel));
         self.dynamics
             .bound_faces(&self.contacts, &self.ground.lanes);
         travel

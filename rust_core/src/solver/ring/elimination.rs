@@ -5,9 +5,11 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2x3, SVector, Vector3};
+use nalgebra::{Matrix2x3, SMatrix, SVector, Vector2, Vector3};
 
-use super::system::{BASE, CLOSING, DRIVE, Entry, Hinge, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
+use super::hinge::Hinge;
+use super::system::{BASE, CLOSING, DRIVE, Entry, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
+use crate::geometry::{Vector, left_of};
 use crate::solver::twist::Twist;
 
 impl RingSystem {
@@ -35,25 +37,23 @@ impl RingSystem {
 
     /// Makes what is left of a link part of the next one and of the border.
     fn hand_on(&mut self, link: usize, hinge: &Hinge, solved: &Solved) {
-        let Hinge {
-            rows: [front, back],
-            pushes: [_, push],
-            speed,
-        } = *hinge;
-        let below = self.links[link].below;
-        let of_turn = below * turning_about(&front);
+        let velocity = Vector2::new(hinge.velocity.x, hinge.velocity.y);
+        let below = &self.links[link].below;
+        let of_turn = below * turning_about(hinge.ends[0]);
         let of_pin = below.fixed_columns::<2>(0) + of_turn * solved.turn.0;
         self.border += of_turn * solved.turn.1.transpose();
         let mut right = self.border.column_mut(RIGHT);
-        right += of_pin * speed;
+        right += of_pin * velocity;
 
         let (own, mut beside) = solved.impulse;
         let mut right = beside.row_mut(RIGHT);
-        right += (own * speed).transpose();
+        right += (own * velocity).transpose();
+        let (end, pushed_at) = (hinge.ends[1], hinge.pushed_at[1]);
+        let own = on_link(own, end).transpose();
         let next = &mut self.links[link + 1];
-        next.own += push.transpose() * own * back;
-        next.beside += beside * push;
-        next.below += of_pin * back;
+        next.own += on_link(own, pushed_at).transpose();
+        next.beside += on_link(beside, pushed_at);
+        next.below += on_link(of_pin, end);
     }
 
     /// Expresses the velocity of the last link in terms of the border.
@@ -62,9 +62,8 @@ impl RingSystem {
         let Entry { own, beside, below } = &self.links[last];
         self.last = -beside * own.try_inverse()?.transpose();
         self.border += below * self.last.transpose();
-        let closes = hinge.speed;
-        let mut right = self.border.fixed_view_mut::<2, 1>(CLOSING, RIGHT);
-        right += closes;
+        self.border[(CLOSING, RIGHT)] += hinge.velocity.x;
+        self.border[(CLOSING + 1, RIGHT)] += hinge.velocity.y;
         Some(())
     }
 
@@ -101,16 +100,20 @@ impl RingSystem {
         }
         let last = links.len() - 1;
         self.impulses[last] = known.fixed_rows::<2>(CLOSING).into_owned();
-        let mut velocity = self.last.tr_mul(&known);
-        links[last] = Twist::from(<[f64; 3]>::from(velocity));
+        let mut next = Twist::from(<[f64; 3]>::from(self.last.tr_mul(&known)));
+        links[last] = next;
         for k in (0..last).rev() {
-            let Hinge { rows, speed, .. } = &hinges[k];
+            let hinge = &hinges[k];
             let Solved { turn, impulse } = &self.solved[k];
-            let end = rows[1] * velocity - speed;
-            let turn = (turn.0 * end).x + turn.1.dot(&known);
-            velocity = turning_about(&rows[0]) * turn + Vector3::new(end.x, end.y, 0.0);
-            self.impulses[k] = -(impulse.0 * end + impulse.1.tr_mul(&known));
-            links[k] = Twist::from(<[f64; 3]>::from(velocity));
+            let end = next.at(hinge.ends[1]) - hinge.velocity;
+            let pin = Vector2::new(end.x, end.y);
+            let turn = (turn.0 * pin).x + turn.1.dot(&known);
+            next = Twist {
+                velocity: end - turn * left_of(hinge.ends[0]),
+                turn,
+            };
+            self.impulses[k] = -(impulse.0 * pin + impulse.1.tr_mul(&known));
+            links[k] = next;
         }
         [known[SLIDE], known[DRIVE]]
     }
@@ -118,18 +121,23 @@ impl RingSystem {
 
 impl Entry {
     /// Adds the hinge that closes the ring, of which it is the link before or after.
-    fn close(&mut self, end: usize, hinge: &Hinge) {
+    fn close(&mut self, side: usize, hinge: &Hinge) {
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let acts = |at: Vector| {
+            let lever = left_of(at);
+            Matrix2x3::new(1.0, 0.0, lever.x, 0.0, 1.0, lever.y) * sign
+        };
         let mut below = self.below.fixed_rows_mut::<2>(CLOSING);
-        below += hinge.rows[end];
+        below += acts(hinge.ends[side]);
         let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING);
-        beside -= hinge.pushes[end];
+        beside -= acts(hinge.pushed_at[side]);
     }
 
     /// Solves for its turn about its hinge in front.
     fn turn_about_hinge(&self, hinge: &Hinge) -> Option<Solved> {
-        let turning = turning_about(&hinge.rows[0]);
+        let turning = turning_about(hinge.ends[0]);
         // The moment about the hinge, of which the hinge has no part.
-        let moment = turning_about(&hinge.pushes[0]);
+        let moment = turning_about(hinge.pushed_at[0]);
         let (of_turn, resists) = (self.own * turning, moment.transpose() * self.own);
         let pivot = moment.dot(&of_turn);
         if pivot == 0.0 || !pivot.is_finite() {
@@ -148,7 +156,18 @@ impl Entry {
     }
 }
 
-/// The velocity of a link that turns at rate 1 about its hinge in front, which has these rows.
-fn turning_about(rows: &Matrix2x3<f64>) -> Vector3<f64> {
-    Vector3::new(rows.m13, rows.m23, 1.0)
+/// The velocity of a link that turns at rate 1 about a point, which is at `arm` [m] from its centre.
+fn turning_about(arm: Vector) -> Vector3<f64> {
+    let lever = left_of(arm);
+    Vector3::new(-lever.x, -lever.y, 1.0)
+}
+
+/// What acts on a point, or follows from its velocity, as it acts on the link that the point is on, at `arm` [m] from its
+/// centre.
+fn on_link<const ROWS: usize>(
+    at_point: SMatrix<f64, ROWS, 2>,
+    arm: Vector,
+) -> SMatrix<f64, ROWS, 3> {
+    let (x, y, lever) = (at_point.column(0), at_point.column(1), left_of(arm));
+    SMatrix::from_columns(&[x.into_owned(), y.into_owned(), x * lever.x + y * lever.y])
 }

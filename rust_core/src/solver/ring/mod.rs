@@ -4,11 +4,12 @@
 
 mod drive;
 mod elimination;
+mod hinge;
 mod system;
 
 pub(crate) use drive::{Drive, Grasp};
+pub(crate) use hinge::Hinge;
 pub(super) use system::Beside;
-pub(crate) use system::Hinge;
 
 use std::ops::Range;
 

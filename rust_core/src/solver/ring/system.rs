@@ -8,7 +8,7 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2, Matrix2x3, Matrix3, RowVector2, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, RowVector2, SMatrix, SVector, Vector2, Vector3};
 
 use super::drive::Grasp;
 use crate::geometry::Vector;
@@ -53,16 +53,6 @@ pub(super) struct Entry {
     pub(super) beside: SMatrix<f64, WIDTH, 3>,
     /// Rows of the border in its columns.
     pub(super) below: SMatrix<f64, WIDTH, 3>,
-}
-
-/// How a hinge holds its two links.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Hinge {
-    /// Entries of both links' velocities in its speed, and of its impulse on them.
-    pub rows: [Matrix2x3<f64>; 2],
-    pub pushes: [Matrix2x3<f64>; 2],
-    /// [m/s] The speed at which it closes.
-    pub speed: Vector2<f64>,
 }
 
 /// What follows for a link, once eliminated, from the velocity of its hinge in front and from the border.

@@ -1,7 +1,5 @@
 //! Rings of links.
 
-use nalgebra::{Matrix2x3, Vector2};
-
 use super::*;
 use crate::geometry::{direction, left_of};
 
@@ -9,15 +7,6 @@ use crate::geometry::{direction, left_of};
 const MASS: f64 = 0.3;
 const INERTIA: f64 = 0.002;
 const HALF: f64 = 0.1;
-
-/// Entries of two links' velocities in that of the next one's end relative to this one's.
-fn rows(arms: [Vector; 2]) -> [Matrix2x3<f64>; 2] {
-    let [a, b] = arms.map(left_of);
-    [
-        Matrix2x3::new(-1.0, 0.0, -a.x, 0.0, -1.0, -a.y),
-        Matrix2x3::new(1.0, 0.0, b.x, 0.0, 1.0, b.y),
-    ]
-}
 
 /// A ring whose links are the sides of a polygon that stands still, with the places of their centres.
 fn polygon(count: usize) -> (Problem, Vec<Vector>) {
@@ -32,8 +21,7 @@ fn polygon(count: usize) -> (Problem, Vec<Vector>) {
     let along = |k: usize| direction(turn(k));
     for (k, hinge) in ring.hinges.iter_mut().enumerate() {
         let arms = [along(k) * HALF, along((k + 1) % count) * -HALF];
-        (hinge.rows, hinge.pushes) = (rows(arms), rows(arms));
-        hinge.speed = Vector2::zeros();
+        (hinge.ends, hinge.pushed_at) = (arms, arms);
     }
     let centers = (0..count).map(|k| -left_of(along(k)) * inner).collect();
     let mut problem = Problem::new(base, Vec::new(), Vec::new(), vec![ring]);
@@ -93,10 +81,9 @@ fn a_ring_that_falls_keeps_its_hinges_closed() {
     assert_eq!(problem.effort.unresolved, 0);
     let links = &problem.velocities.links;
     for (k, hinge) in problem.rings[0].hinges.iter().enumerate() {
-        let of =
-            |side: usize, link: &Twist| hinge.rows[side] * nalgebra::Vector3::from(link.entries());
-        let opens = of(0, &links[k]) + of(1, &links[(k + 1) % count]);
-        assert!(opens.norm() < 1e-12, "{opens}");
+        let [own, next] = hinge.ends;
+        let opens = links[(k + 1) % count].at(next) - links[k].at(own);
+        assert!(opens.length() < 1e-12, "{opens}");
     }
     let gained: Vector = links
         .iter()
