@@ -1,6 +1,8 @@
-//! Which outcome counts if several apply, and what counts as ground inside the track.
+//! Which outcome counts if several apply, what counts as ground inside the track, and what holds in every step.
 
 use super::*;
+use crate::dynamics::LoadedContact;
+use crate::geometry::direction;
 use crate::observe::Outcome;
 use crate::scenario::{
     ChainMechanism, Engine, ForceSupport, ForceTrack, GearWheel, LineOfWheels, SegmentalTrack,
@@ -55,14 +57,20 @@ fn gears(count: u32, height: f64, center: f64) -> Scenario {
     scenario
 }
 
-/// Skids without motor force, far before a step.
-fn skids() -> Scenario {
+/// A track that is a force only, in front of a step.
+fn pushed(support: ForceSupport) -> Scenario {
     let mut scenario = engineer();
     scenario.robot.track = Track::Force(ForceTrack {
-        support: ForceSupport::Skids,
+        support,
         skid_friction: 0.3,
         wheel_count: 5,
     });
+    scenario
+}
+
+/// Skids without motor force, far before a step.
+fn skids() -> Scenario {
+    let mut scenario = pushed(ForceSupport::Skids);
     scenario.robot.drivetrain.max_torque = 0.0;
     scenario
 }
@@ -172,5 +180,32 @@ fn a_copy_in_the_middle_of_a_run_goes_on_with_the_same_bits_in_either_engine() {
             undisturbed.reading().position.x > 0.0,
             "it has reached the step"
         );
+    }
+}
+
+/// Contacts and the push, which is no contact force, against weight and inertia: over a second against a step, as a share
+/// of the weight and the forces in each step.
+#[test]
+fn a_robot_that_is_pushed_by_a_force_keeps_the_balance_in_every_step() {
+    for support in [ForceSupport::Skids, ForceSupport::Wheels] {
+        let scenario = pushed(support);
+        let weight = scenario.robot.mass * scenario.gravity;
+        let checked = Checked::new(&scenario).expect("the scenario is valid");
+        let mut simulation = Simulation::new(&checked);
+        let (mut worst, mut pushed) = (0.0_f64, 0.0_f64);
+        while simulation.time() < 1.0 {
+            let before = simulation.momentum();
+            simulation.step().expect("the state stays finite");
+            let loaded = simulation.dynamics.loaded().iter();
+            let push = simulation.state.drives[0].traction;
+            let along = direction(simulation.state.angle);
+            let forces = loaded.map(LoadedContact::force).sum::<Vector>() + along * push;
+            let gained = (simulation.momentum() - before) / simulation.last_step();
+            let off = forces - Vector::new(0.0, weight) - gained;
+            worst = worst.max(off.length() / (weight + forces.length()));
+            pushed = pushed.max(push);
+        }
+        assert!(worst < 1e-10, "{support:?}: {worst}");
+        assert!(pushed > 0.1 * weight, "{support:?}: {pushed} N");
     }
 }
