@@ -178,10 +178,8 @@ fn contact_forces_bear_weight_and_inertia_while_arms_move() {
             mean / weight
         );
         assert!(raised > 0.1, "{name} was raised to {raised} m");
-        if !name.starts_with("chain") {
-            assert!(worst < 1e-10 * hardest, "{name}: {worst} N in a step");
-        }
-        assert!(mean < 1e-3 * weight, "{name}: {mean} N in the mean");
+        assert!(worst < 1e-10 * hardest, "{name}: {worst} N in a step");
+        assert!(mean < 1e-11 * weight, "{name}: {mean} N in the mean");
     }
 }
 
