@@ -13,8 +13,8 @@ use crate::geometry::Vector;
 use crate::solver::{Acts, Twist};
 
 /// A shoe that is closer to the guide than so many times the way of the fastest part may come to rest on it within a step.
-/// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that way at the speed after the step, and a
-/// shoe that snaps round may be twice as fast then as before.
+/// Of 5,200 that did so from more than 50 um, the farthest came from 1.6 times that way at the speed after the step; the
+/// rest is for shoes that gain speed within it.
 const NEAR_GUIDE: f64 = 4.0;
 
 /// State of the chains in the last step; the worst value of all chains.

@@ -160,8 +160,8 @@ impl Dynamics {
         self.loaded = found;
     }
 
-    /// Prepares a step of `h` [s] in which nothing moves farther than `travel` [m]. The contacts are those in its middle ([`State::pose_after`] half of it), numbered
-    /// by [`Dynamics::recognise`].
+    /// Prepares a step of `h` [s] in which nothing moves farther than `travel` [m]. The contacts are those in its middle
+    /// ([`State::pose_after`] half of it), numbered by [`Dynamics::recognise`].
     pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], (h, travel): (f64, f64)) {
         let half = 0.5 * h;
         let fading = if self.chains.is_empty() {

@@ -5,7 +5,7 @@
 //!
 //! The equations: docs/physics.md, "Chains".
 
-use nalgebra::{Matrix2x3, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use super::hinge::Hinge;
 use super::system::{BASE, CLOSING, DRIVE, Entry, RIGHT, RingSystem, SLIDE, Solved, WIDTH};
@@ -123,14 +123,11 @@ impl Entry {
     /// Adds the hinge that closes the ring, of which it is the link before or after.
     fn close(&mut self, side: usize, hinge: &Hinge) {
         let sign = if side == 0 { -1.0 } else { 1.0 };
-        let acts = |at: Vector| {
-            let lever = left_of(at);
-            Matrix2x3::new(1.0, 0.0, lever.x, 0.0, 1.0, lever.y) * sign
-        };
+        let at_hinge = Matrix2::identity() * sign;
         let mut below = self.below.fixed_rows_mut::<2>(CLOSING);
-        below += acts(hinge.ends[side]);
+        below += on_link(at_hinge, hinge.ends[side]);
         let mut beside = self.beside.fixed_rows_mut::<2>(CLOSING);
-        beside -= acts(hinge.pushed_at[side]);
+        beside -= on_link(at_hinge, hinge.pushed_at[side]);
     }
 
     /// Solves for its turn about its hinge in front.
