@@ -46,6 +46,8 @@ pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, 
     result.set_item("time", trial.time)?;
     result.set_item("outcome", trial.outcome.name())?;
     result.set_item("jammed", trial.jammed)?;
+    let place = trial.intrusion.as_ref();
+    result.set_item("intrusion", place.map(|i| intrusion(py, i)).transpose()?)?;
     result.set_item("duration", trial.duration)?;
     let [x, y, angle] = trial.pose;
     result.set_item("position", PyTuple::new(py, [x, y])?)?;

@@ -35,12 +35,12 @@ STOPS: dict[str, tuple[c2d.Robot, Any]] = {
     "straddled": (ROBOT.with_track(c2d.LineOfWheels(4)), c2d.terrains.step(0.10)),
     # The belly hangs 50 mm above the ground: at that very height rounding says what bears.
     "undercut": (ROBOT.with_track(PUBLIC_WHEELS), c2d.terrains.barrier(0.0495, 0.02)),
-    "bellied": (ROBOT.with_track(c2d.LineOfWheels(2)), c2d.terrains.barrier(0.065, 0.05)),
+    "on its belly": (ROBOT.with_track(c2d.LineOfWheels(2)), c2d.terrains.barrier(0.065, 0.05)),
     "interlocked": (
         with_torque(3.0).with_track(c2d.LineOfWheels(3, wheel=c2d.GearWheel())),
         c2d.terrains.step(0.068),
     ),
-    "slipping": (ROBOT.with_track(c2d.LineOfWheels(5)), c2d.terrains.step(0.3, friction=0.5)),
+    "slipping": (ROBOT.with_track(c2d.LineOfWheels(5)), c2d.terrains.step(0.06, friction=0.5)),
     "stalled": (with_torque(0.8), c2d.terrains.step(0.06)),
     "hung up": (LOW_BELLY, c2d.terrains.ridge(0.06, 1.5, friction=0.6)),
     "cycling": (ROLLING, c2d.terrains.ramp(0.304, friction=0.7)),
@@ -48,11 +48,11 @@ STOPS: dict[str, tuple[c2d.Robot, Any]] = {
 SAID = {
     "straddled": "seized between wheels 1 and 2: the ground at x = 0.000 m, y = 0.100 m stands",
     "undercut": "seized between wheels 1 and 2: the ground at x =",
-    "bellied": "seized between wheels 0 and 1: the ground at x =",
+    "on its belly": "hung up: the belly carries 59 % of the supporting force. Tried:",
     "interlocked": "stalled: the ground at x = 0.000 m, y = 0.067 m stands",
     "slipping": "slipping: the track slips at 0.40 m/s. Tried:",
     "stalled": "stalled: the motors are at their torque limit. Tried:",
-    "hung up": "hung up: the belly carries 100 % of the load. Tried:",
+    "hung up": "hung up: the belly carries 100 % of the supporting force. Tried:",
     "cycling": "cycling",
 }
 
@@ -144,7 +144,7 @@ def test_names_come_back_as_members_of_their_enumerations(stops: dict[str, c2d.R
     [
         ("straddled", {"closed track"}),
         ("undercut", {"closed track"}),
-        ("bellied", {"closed track", "no belly"}),
+        ("on its belly", {"no belly"}),
         ("slipping", {"friction x 2"}),
         ("stalled", {"torque x 10"}),
         ("hung up", {"no belly"}),
@@ -158,13 +158,13 @@ def test_a_stop_is_freed_by_what_holds_it(
     assert not {"unchanged", "rebuilt"} & set(d.freed_by)
     assert not d.passing
     for tried in d.trials:
-        assert tried.freed == math.isfinite(tried.time) == (tried.distance > 0.05)
-        assert tried.duration == pytest.approx(5.0 + 0.05 / 0.4)
+        is_lost = tried.outcome in ("tipped_over", "left_terrain", "detracked")
+        assert tried.freed == math.isfinite(tried.time)
+        assert tried.freed == (tried.distance > 0.05 and not is_lost)
+        if not tried.is_from_the_start:
+            assert tried.duration == pytest.approx(5.0 + 0.05 / 0.4)
         assert 1 <= tried.starts <= 5
         assert tried.freeing <= tried.starts
-        assert (
-            d.jammed or not tried.name.startswith("closed") or name in ("slipping", "interlocked")
-        )
 
 
 def test_what_did_not_stop_has_no_diagnosis(run: c2d.Run) -> None:
@@ -236,7 +236,11 @@ def test_a_simulation_under_way_says_why_it_has_stopped(stops: dict[str, c2d.Run
     assert set(found.freed_by) <= set(why(run).freed_by)
 
 
-NEEDED = ["unchanged", "rebuilt", "closed track", "closed track, clear of the ground"]
+NEEDED = [
+    *("unchanged", "rebuilt", "closed track", "closed track, clear of the ground"),
+    # The belt tips over at this step, so that another is tried.
+    *("belt", "belt, from the start", "closed track, from the start"),
+]
 
 
 @pytest.mark.parametrize(

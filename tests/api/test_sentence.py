@@ -50,12 +50,18 @@ def tried(name: str, time: float = math.inf, **fields: Any) -> Tried:
         "time": time,
         "outcome": OUT.CLEARED if freed else OUT.SLIPPING,
         "jammed": False,
+        "intrusion": PIECE if fields.get("jammed") else None,
         "duration": 5.125,
         "position": (0.8, 0.1),
         "chassis_angle": 0.0,
         "flipper_angles": (),
     }
     return Tried(**(plain | fields))
+
+
+def piece(**fields: Any) -> Intrusion:
+    """Make ground inside the track like that of the stop, elsewhere."""
+    return dataclasses.replace(PIECE, **fields)
 
 
 BELT = tried("closed track", 0.34)
@@ -122,9 +128,10 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
             tried("friction x 2", 0.4, outcome=OUT.TIMED_OUT),
             "twice the friction: free after 0.4 s",
         ),
+        # A robot that tips over or is lost has not got free, however far it came.
         (
-            tried("no belly", 2.0, outcome=OUT.TIPPED_OVER),
-            "without its belly: free after 2.0 s, then tips over",
+            tried("no belly", outcome=OUT.TIPPED_OVER, distance=0.12),
+            "without its belly: tips over 120 mm further on",
         ),
         (tried("no belly", outcome=OUT.TIPPED_OVER), "without its belly: tips over"),
         (tried("torque x 10", outcome=OUT.LEFT_TERRAIN), "ten times the torque: leaves the ground"),
@@ -133,7 +140,26 @@ def test_a_sentence_says_what_is_inside_what_bears_and_what_was_tried() -> None:
             tried("torque x 2", distance=0.0034, jammed=True),
             "twice the torque: is jammed again 3 mm further on",
         ),
+        (
+            tried("torque x 2", jammed=True, intrusion=piece(bodies=(2, 1))),
+            "twice the torque: is jammed again, between wheels 1 and 2",
+        ),
+        (
+            tried("torque x 2", distance=0.3, jammed=True, intrusion=piece(edge=5, x=0.7)),
+            "twice the torque: is jammed between wheels 3 and 4, in the track at x = 0.700 m, "
+            "y = 0.100 m",
+        ),
+        (
+            tried("torque x 2", jammed=True, intrusion=piece(carrier="front flipper")),
+            "twice the torque: is jammed between wheels 3 and 4, in the track of the front flipper "
+            "at x = 0.600 m, y = 0.100 m",
+        ),
         (tried("torque x 2", distance=0.0034), "twice the torque: slips 3 mm further on"),
+        (tried("belt", 0.3), "belt along its outline: free after 0.3 s, then clears"),
+        (
+            tried("belt, from the start", 3.26),
+            "belt from the start: past here after 3.3 s, then clears",
+        ),
         (tried("torque x 2", outcome=OUT.STALLED), "twice the torque: is stalled"),
         (tried("one motor", outcome=OUT.CYCLING), "one motor for all wheels: goes to and fro"),
         (tried("flippers level", outcome=OUT.HUNG_UP), "flippers level: hangs on its belly"),
@@ -155,7 +181,29 @@ def test_what_came_of_a_trial_is_said_in_a_few_words(trial: Tried, said: str) ->
 def test_only_a_robot_that_was_jammed_is_jammed_again() -> None:
     trial = tried("torque x 2", 0.6, outcome=OUT.STALLED, jammed=True)
     free = made(trials=(trial,), jammed=False, outcome=OUT.STALLED, symptom=OUT.STALLED)
-    assert str(free).endswith("Tried: twice the torque: free after 0.6 s, then is jammed")
+    assert "then is jammed between wheels 3 and 4, in the track at x = 0.600 m" in str(free)
+
+
+@pytest.mark.parametrize(
+    ("belt", "closed", "said"),
+    [
+        (0.02, -0.093, "belt from the start: slips 20 mm further on; closed track from the start: "
+        "slips 93 mm short of here. No belt got past here from the start"),
+        (-0.02, -0.0931, "slips 93 mm short of here. No belt came this far from the start"),
+        (0.0001, -0.0931, "belt from the start: slips here; closed"),
+    ],
+)  # fmt: skip
+def test_a_stop_that_no_belt_gets_past_says_so(belt: float, closed: float, said: str) -> None:
+    trials = (
+        tried("belt, from the start", distance=belt),
+        tried("closed track, from the start", distance=closed),
+    )
+    found = made(trials=trials)
+    assert said in str(found)
+    assert found.reached_by_belt is (belt >= 0.0)
+    assert made().reached_by_belt is None
+    past = made(trials=(tried("belt, from the start", 3.0),))
+    assert "No belt" not in str(past)
 
 
 @pytest.mark.parametrize(
@@ -191,11 +239,6 @@ def test_of_a_passing_stop_no_more_is_said_than_that_it_passed(control: str, sai
         ),
         # Two contacts of one wheel are one wheel.
         ({"body": [2, 2, 0]}, "undercut", "wheel 2 slides on it under a load of 190 N"),
-        (
-            {"body_kind": [3, 0, 0]},
-            "bellied",
-            "the belly slides on it under a load of 150 N, wheel 1 under",
-        ),
         (
             {"slides": [False] * 3},
             "interlocked",
@@ -280,7 +323,7 @@ def test_where_ground_inside_is_not_what_stops_the_robot_it_is_told_beside() -> 
         ({"outcome": "slipping"}, "slipping: the track slips at 0.40 m/s"),
         (
             {"outcome": "hung_up", "belly_share": 0.995},
-            "hung up: the belly carries 100 % of the load",
+            "hung up: the belly carries 100 % of the supporting force",
         ),
         (
             {"outcome": "cycling", "progress": 0.031},
@@ -309,21 +352,26 @@ def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
 @pytest.mark.parametrize(
     ("angle", "normal", "side", "said"),
     [
-        (0.1, (0.0, 1.0), "underside", "hung up: the belly carries 40 % of the load"),
+        (0.1, (0.0, 1.0), "underside", "hung up: the belly carries 40 % of the supporting force"),
         (
             1.05,
             (0.0, 1.0),
             "tail",
-            "hung up on the tail of its hull: the tail carries 40 % of the load",
+            "hung up on the tail of its hull: the tail carries 40 % of the supporting force",
         ),
         (
             -1.05,
             (0.0, 1.0),
             "nose",
-            "hung up on the nose of its hull: the nose carries 40 % of the load",
+            "hung up on the nose of its hull: the nose carries 40 % of the supporting force",
         ),
         # On an edge, a steep robot lies on its underside all the same.
-        (1.05, (-0.87, 0.5), "underside", "hung up: the belly carries 40 % of the load"),
+        (
+            1.05,
+            (-0.87, 0.5),
+            "underside",
+            "hung up: the belly carries 40 % of the supporting force",
+        ),
     ],
 )
 def test_a_robot_that_stands_on_its_tail_is_told_from_one_that_lies_on_its_belly(

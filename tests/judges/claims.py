@@ -20,14 +20,12 @@ from crawler2d.parameters.terrain import Lanes
 from tests.judges.judge import Judge
 
 STOPS = {
-    "is jammed": None,
-    "is jammed again": None,
     "goes to and fro": "cycling",
     "hangs on its belly": "hung_up",
     "is stalled": "stalled",
     "slips": "slipping",
 }
-"""How a trial ends that ends in a stop: the symptom, unless the robot is jammed."""
+"""How a trial ends that ends in a stop without a jam: the symptom."""
 ENDS = {
     "clears": "cleared",
     "tips over": "tipped_over",
@@ -39,6 +37,13 @@ PLACE = re.compile(
     r" the (?P<of>track(?: of the (?P<arm>[a-z ]+flipper))?|(?:left|right) track)"
     r"(?: \((?:(\d+) mm past|not as far as) the grouser roots\))?(?P<where>.*)"
 )
+JAM = re.compile(
+    r"is jammed(?P<again> again)?(?:,?(?P<where> (?:between|under|at) .+?))?"
+    r"(?:, in the (?:(?:left|right) )?track(?: of the (?P<arm>[a-z ]+flipper))?"
+    r" at x = (?P<x>-?[\d.]+) m, y = (?P<y>-?[\d.]+) m)?$"
+)
+FROM_THE_START = re.compile(r" from the start$")
+AWAY = re.compile(r" (?:(?P<mm>\d+) mm (?:further on|short of here)|here)$")
 BETWEEN = re.compile(r" between wheels (\d+) and (\d+)")
 LOAD = re.compile(r"(under a load of|under|with) (\d+) N")
 
@@ -50,7 +55,8 @@ class Claims:
         assert run.diagnosis is not None
         self.run, self.time = run, run.diagnosis.time
         said = str(run.diagnosis)
-        facts, _, self.tried = said.partition(". Tried: ")
+        facts, _, tried = said.partition(". Tried: ")
+        self.tried, _, self.beyond = tried.partition(". No belt ")
         self.facts, _, self.left = facts.partition(". It goes on by itself: ")
         self.head, _, clauses = self.facts.partition(": ")
         self.clauses = [each for each in clauses.split("; ") if each]
@@ -155,14 +161,27 @@ class Claims:
         for clause in self.tried.split("; ") if self.tried else ():
             change, _, came = clause.partition(": ")
             yield clause, self.went(change, came)
+        if self.beyond:
+            yield self.beyond, self.is_beyond_belts()
+
+    def is_beyond_belts(self) -> bool:
+        """Whether no belt from the start gets past the stop, or even comes to it, as is said."""
+        starts = ("belt from the start", "closed track from the start")
+        runs = [c2d.simulate(self.variant(change)) for change in starts]
+        farthest = max(self.ahead(run) for run in runs)
+        reached = farthest >= 0.0 if self.beyond.startswith("got past") else farthest < 0.0
+        return reached and not any(map(self.gets_away, runs))
 
     def went(self, change: str, came: str) -> bool | None:
         counted = re.search(r" \((\d) of (\d) times free\)$", came)
         said = came[: counted.start()] if counted else came
-        freed = said.startswith("free after")
+        freed = said.startswith(("free after", "past here after"))
         if change.endswith("set down clear of the ground"):
             return self.went_from_clear(said, freed) if counted is None else None
         variant = self.variant(change)
+        if FROM_THE_START.search(change):
+            run = c2d.simulate(variant)
+            return self.gets_away(run) == freed and self.ended(run, said)
         starts = 5 if counted and change != "unchanged" else 1
         runs = [self.continued(variant, k) for k in range(starts)]
         away = [self.gets_away(run) for run in runs]
@@ -186,9 +205,16 @@ class Claims:
         slippery = track
         if isinstance(track, c2d.ForceTrack):
             slippery = dataclasses.replace(track, skid_friction=2.0 * track.skid_friction)
+        belt: dict[str, Any] = {
+            "robot.track": c2d.BeltTrack(),
+            "robot.drivetrain.torque_sharing": "track",
+        }
+        if own.robot.flippers is not None:
+            belt["robot.flippers.track"] = None
         changes: dict[str, Callable[[], dict[str, Any]]] = {
             "unchanged": dict,
             "closed track": lambda: {"robot.track": c2d.ClosedTrack(track)},
+            "belt along its outline": lambda: belt,
             "smooth closed track": lambda: {
                 "robot.track": c2d.ClosedTrack(track, surface="smooth")
             },
@@ -202,6 +228,7 @@ class Claims:
             "without its belly": lambda: {"robot.belly": None},
             "flippers level": lambda: {"drive.gait": c2d.Hold(0.0)},
         }
+        change = FROM_THE_START.sub("", change.replace("belt from", "belt along its outline from"))
         return own.replace(changes[change]())
 
     def continued(self, variant: Scenario, start: int) -> c2d.Run:
@@ -215,28 +242,56 @@ class Claims:
         result = _core.branch(text, at, changed, (0.0, 0.0), 0.01, "full")
         return c2d.Run(variant, result, trunk=(self.run.scenario, at))
 
+    def ahead(self, run: c2d.Run) -> float:
+        """[m] How far a run gets beyond where the robot had come before it stopped."""
+        return float((self.direction * run.position[:, 0]).max()) - self.greatest
+
     def gets_away(self, run: c2d.Run) -> bool:
-        """Whether it clears, or gets ahead of all before while it is upright."""
+        """Whether it clears, or gets ahead of all before and is not lost afterwards."""
         if run.outcome is c2d.Outcome.CLEARED:
             return True
-        ahead = self.direction * run.position[:, 0] - self.greatest
-        far = np.flatnonzero(ahead > run.scenario.criteria.escape_distance)
-        # What ends a run early ends it at its last sample.
-        ended = run.outcome in ("tipped_over", "left_terrain", "detracked")
-        return bool(far.size) and not (ended and far[0] >= len(run.time) - 1)
+        is_lost = run.outcome in ("tipped_over", "left_terrain", "detracked")
+        return not is_lost and self.ahead(run) > run.scenario.criteria.escape_distance
 
     def ended(self, run: c2d.Run, said: str) -> bool:
-        """Whether a run ended as it is said to have."""
-        end = re.sub(r" \d+ mm further on$", "", said.rsplit(", then ", maxsplit=1)[-1])
+        """Whether a run ended as it is said to have, and where."""
+        end = said.rsplit(", then ", maxsplit=1)[-1]
+        if away := AWAY.search(end):
+            end = end[: away.start()]
+            if abs(abs(1e3 * self.ahead(run)) - float(away["mm"] or 0.0)) > 1.0:
+                return False
         if end in ENDS:
             return str(run.outcome) == ENDS[end]
+        if end.startswith("is jammed"):
+            return run.diagnosis is not None and self.is_jammed(Judge(run), end)
         if end in STOPS:
-            if run.diagnosis is None:
-                return False
-            opinion = Judge(run).opinion()
-            return opinion.jammed if STOPS[end] is None else opinion.symptom == STOPS[end]
+            return run.diagnosis is not None and Judge(run).opinion().symptom == STOPS[end]
         # Free, or moving on, and no more is said.
-        return said.startswith(("free after", "still moving")) and run.diagnosis is None
+        moves = ("free after", "past here after", "still moving", "is still moving")
+        return said.startswith(moves) and run.diagnosis is None
+
+    def is_jammed(self, judge: Judge, end: str) -> bool:
+        """Whether a trial ended in a jam, and where that is said to be."""
+        found = JAM.match(end)
+        if found is None or not judge.opinion().jammed or judge.most_loaded is None:
+            return False
+        piece, loop = judge.pieces[judge.most_loaded], judge.loops[judge.most_loaded]
+        named = BETWEEN.search(found["where"] or "")
+        if named and piece.root_normal is not None:
+            beside = sorted(judge.beside(judge.most_loaded))
+            if sorted(map(int, named.groups())) != beside:
+                return False
+        if found["again"]:
+            was = self.judge.most_loaded
+            if was is None:
+                return False
+            before, around = self.judge.pieces[was], self.judge.loops[was]
+            same_track = (loop.lane, loop.carrier) == (around.lane, around.carrier)
+            return same_track and bool(np.allclose(piece.edge, before.edge, atol=1e-9))
+        place = np.array([float(found["x"]), float(found["y"])])
+        way = judge.grounds[loop.lane].along(place[None])[0]
+        near = any(first - 0.01 <= way <= last + 0.01 for first, last in piece.spans)
+        return near and (loop.carrier > 0) == (found["arm"] is not None)
 
 
 def with_twice_the_friction(terrain: Any) -> Any:

@@ -123,8 +123,6 @@ class Judge(Stop):
         by_body: dict[int, float] = {}
         for c in on_it:
             by_body[c.body] = by_body.get(c.body, 0.0) + c.normal_force
-        if by_body.get(self.bodies, 0.0) > least:
-            return "bellied"
         inside = {c.body for c in on_it if c.kind in INSIDE_A_CHAIN}
         if any(by_body[body] > 0.5 * least for body in inside):
             return "fouled"
@@ -137,7 +135,7 @@ class Judge(Stop):
         if self.stalled_share() >= 0.5:
             return "interlocked" if self.into_ground() > FLANK else "blocked"
         least = 0.5 * self.criteria.intrusion_load * self.weight
-        if sum(force > least for body, force in by_body.items() if body < self.bodies) >= 2:
+        if sum(force > least for force in by_body.values()) >= 2:
             return "straddled"
         return "undercut" if any(c.slides for c in on_it) else None
 

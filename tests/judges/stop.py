@@ -146,7 +146,8 @@ class Stop:
                 normal=normal / np.hypot(*normal),
                 motion=w @ motions[group],
                 friction=self.friction_of(body, lane),
-                pieces=self.pieces_at(point, lane, carrier),
+                # What the belly rests on is not between bodies of a track.
+                pieces=self.pieces_at(point, lane, carrier) if body < self.bodies else (),
                 normal_force=total,
                 friction_force=float(table["friction_force"][group] @ self.share[group]),
                 surface_speed=w @ table["surface_speed"][group],

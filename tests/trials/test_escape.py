@@ -1,4 +1,4 @@
-"""Escape forces: what is said to be held is held, and what is said to move the robot moves it.
+"""Escape forces: below the lower level a robot stays, above the upper one it gets on.
 
 The push is applied in another way than it was measured: it rises evenly, in five seconds.
 """
@@ -7,7 +7,6 @@ import collections
 import math
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 
 import crawler2d as c2d
@@ -19,14 +18,15 @@ pytestmark = pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 
 SEED = 77
 RISE, HOLD = 5.0, 4.0  # [s]
-MOVES = 5e-3  # [m]
 
 
-def way(run: c2d.Run, force: float) -> float:
-    """[m] How far a robot goes under a push that rises evenly and stays."""
+def gets_on(run: c2d.Run, force: float) -> bool:
+    """Whether a robot gets ahead of where it had come under a push that rises evenly and stays."""
     direction = math.copysign(1.0, run.scenario.drive.speed)
     pushed = run.branch(push=(direction * force, RISE), duration=RISE + HOLD)
-    return float(np.hypot(*(pushed.position - pushed.position[0]).T).max())
+    ahead = (direction * pushed.position[:, 0]).max() - (direction * run.position[:, 0]).max()
+    is_over = pushed.outcome in ("cleared", "tipped_over", "left_terrain")
+    return is_over or bool(ahead > run.scenario.criteria.escape_distance)
 
 
 @pytest.mark.parametrize(
@@ -44,9 +44,8 @@ def test_both_ends_of_an_escape_force_are_so(count: int, say: Callable[[str], No
         on_lanes = isinstance(run.scenario.terrain, (Lanes, RandomStepfield))
         pools = ["all", str(run.outcome), "two lanes" if on_lanes else "one lane"]
         pools.append("at rest" if why.stationary else "rattling")
-        by_itself = way(run, 0.0)
-        holds = way(run, low) <= by_itself + MOVES
-        gives = math.isinf(high) or way(run, high) > by_itself + MOVES
+        holds = not gets_on(run, 0.9 * low)
+        gives = math.isinf(high) or gets_on(run, 1.1 * high)
         for pool in pools:
             held[pool][holds] += 1
             moved[pool][gives] += 1
@@ -55,7 +54,8 @@ def test_both_ends_of_an_escape_force_are_so(count: int, say: Callable[[str], No
                 f"{run.outcome} {run.scenario.robot.track.kind} {low:.1f} {high:.1f} N, {pools[2:]}"
             )
     for pool, holding in held.items():
-        found = f"{holding[True]} hold the lower, {moved[pool][True]} leave the upper"
+        stays, leaves = holding[True], moved[pool][True]
+        found = f"{stays} stay at 0.9 of the lower, {leaves} get on at 1.1 of the upper"
         say(f"{pool}: of {holding.total()} {found}")
     say(f"{wedged} are moved by no push")
     assert held["at rest"][True] >= 0.9 * held["at rest"].total()

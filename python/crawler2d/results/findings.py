@@ -19,7 +19,6 @@ __all__ = ["Findings", "Intrusion", "Mechanism", "Tried"]
 class Mechanism(StrEnum):
     """How the ground inside the track is held; the first that applies, in this order."""
 
-    BELLIED = "bellied"
     FOULED = "fouled"
     PINCHED = "pinched"
     INTERLOCKED = "interlocked"
@@ -60,7 +59,7 @@ class Intrusion:
     x, y : float
         [m] The deepest point.
     force : float
-        [N] Mean normal force on the piece.
+        [N] Mean normal force of the track on the piece; what the belly rests on jams nothing.
     """
 
     edge: int
@@ -85,9 +84,9 @@ class Tried:
     name : str
         What was changed.
     freed : bool
-        Whether that freed the robot: within `criteria.escape_time`, plus the time in which it would
-        drive `criteria.escape_distance` as commanded, it cleared, or got ahead of its greatest x by
-        `criteria.escape_distance` and had neither tipped over nor left the terrain.
+        Whether that freed the robot: within `duration` it cleared, or got ahead of its greatest x
+        by `criteria.escape_distance` and did not tip over, leave the terrain or throw its track
+        afterwards.
     starts, freeing : int
         From how many instants it was tried, and from how many of these it freed the robot. A robot
         that stands still is tried from one; one that rattles from up to five, a fifth of a stop
@@ -101,8 +100,12 @@ class Tried:
         next stop, of which nothing was tried.
     jammed : bool
         Whether it ended in a stop with ground jammed between two bodies of a track.
+    intrusion : Intrusion or None
+        The most loaded ground inside the track in that stop: where it is jammed, or else anywhere.
     duration : float
-        [s] For how long it was tried, unless it ended before.
+        [s] For how long it was tried, unless it ended before: `criteria.escape_time` plus the time
+        in which it would drive `criteria.escape_distance` as commanded, or from the start of the
+        run on as long as the run may last.
     position : tuple of float
         [m] Of the chassis frame at its end.
     chassis_angle : float
@@ -119,6 +122,7 @@ class Tried:
     time: float
     outcome: Outcome
     jammed: bool
+    intrusion: Intrusion | None
     duration: float
     position: tuple[float, float]
     chassis_angle: float
@@ -127,7 +131,15 @@ class Tried:
     @classmethod
     def from_core(cls, plain: Mapping[str, Any]) -> Tried:
         """Convert the dictionary that the core returns."""
-        return cls(**{**plain, "outcome": Outcome(plain["outcome"])})
+        values = {"intrusion": None, **plain, "outcome": Outcome(plain["outcome"])}
+        if values["intrusion"] is not None:
+            values["intrusion"] = Intrusion(**values["intrusion"])
+        return cls(**values)
+
+    @property
+    def is_from_the_start(self) -> bool:
+        """Whether the robot started where its run did, and not in the pose of the stop."""
+        return self.name.endswith(", from the start")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -163,6 +175,12 @@ class Findings:
     def freed_by(self) -> tuple[str, ...]:
         """Names of the trials made so far that freed the robot."""
         return tuple(tried.name for tried in self.trials if tried.freed)
+
+    @property
+    def reached_by_belt(self) -> bool | None:
+        """Whether a belt came as far as the robot from the start; None if none was tried."""
+        starts = [tried.distance >= 0.0 for tried in self.trials if tried.is_from_the_start]
+        return any(starts) if starts else None
 
     @property
     def belly_side(self) -> Literal["", "underside", "tail", "nose"]:

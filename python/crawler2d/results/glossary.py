@@ -19,7 +19,6 @@ OUTCOMES = {
 """How a run can end; if several apply, the first."""
 
 MECHANISMS = {
-    "bellied": "the belly rests on it",
     "fouled": "the guide or the wheels that a chain of shoes runs on rest on it",
     "pinched": "the gap between two shoes of a chain closes on it",
     "interlocked": "the motors are at their torque limit, a grouser's flank is against it",
@@ -37,6 +36,9 @@ TRIALS = {
         "the same belt, at rest in the nearest pose in which no ground is inside it"
     ),
     "closed smooth track": "a belt without grousers round the bodies of each track",
+    "belt": "a belt along the outlines of chassis and flippers, wherever the model has its bodies",
+    "belt, from the start": "the same where the run began",
+    "closed track, from the start": "the closed track where the run began",
     "one motor": "one motor for each track in place of one for each wheel",
     "torque x 2": "twice the torque limit",
     "torque x 10": "ten times the torque limit",

@@ -37,6 +37,9 @@ _CHANGED = {
     "closed track": "closed track",
     "closed track, clear of the ground": "closed track, set down clear of the ground",
     "closed smooth track": "smooth closed track",
+    "closed track, from the start": "closed track from the start",
+    "belt": "belt along its outline",
+    "belt, from the start": "belt from the start",
     "one motor": "one motor for all wheels",
     "torque x 2": "twice the torque",
     "torque x 10": "ten times the torque",
@@ -57,6 +60,7 @@ _ENDS = {
     Outcome.TIPPED_OVER: "tips over",
     Outcome.LEFT_TERRAIN: "leaves the ground",
     Outcome.DETRACKED: "throws its track",
+    Outcome.TIMED_OUT: "is still moving",
 }
 """How else a trial ends."""
 _HELD = {
@@ -78,7 +82,7 @@ def sentence(found: Findings) -> str:
     if d.passing:
         return f"{facts}. {_goes_on(d)}"
     tried = "; ".join(filter(None, (told(d, each) for each in d.trials)))
-    return f"{facts}. Tried: {tried}" if tried else facts
+    return f"{facts}. Tried: {tried}{_beyond_belts(d)}" if tried else facts
 
 
 def told(d: Findings, tried: Tried) -> str:
@@ -106,27 +110,53 @@ def _goes_on(d: Findings) -> str:
     return f"{how}: {_came(d, left)}"
 
 
+def _beyond_belts(d: Findings) -> str:
+    """Say so if no belt that was tried from the start got past the stop, or even came to it."""
+    starts = [tried for tried in d.trials if tried.is_from_the_start]
+    if not starts or any(tried.freed for tried in starts):
+        return ""
+    return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
+
+
 def _came(d: Findings, tried: Tried) -> str:
     """Say what came of a trial of a stop."""
+    end = _end(d, tried)
     if tried.freed:
-        said = f"free after {tried.time:.1f} s"
+        said = f"{'past here' if tried.is_from_the_start else 'free'} after {tried.time:.1f} s"
         if tried.outcome != Outcome.TIMED_OUT:
-            said += f", then {_end(d, tried)}"
+            said += f", then {end}"
+    elif tried.is_from_the_start:
+        said = f"{end} {_how_far(tried) or 'here'}"
     elif tried.outcome == Outcome.TIMED_OUT:
         said = "still moving, but not free"
     else:
-        said = _end(d, tried)
-        if tried.distance >= _LEAST_DEPTH and tried.outcome in _STAYS:
-            said += f" {1e3 * tried.distance:.0f} mm further on"
+        is_elsewhere = tried.jammed and "x =" in end
+        further = "" if tried.distance < 0.0 or is_elsewhere else _how_far(tried)
+        said = f"{end} {further}" if further else end
     if tried.starts > 1:
         said += f" ({tried.freeing} of {tried.starts} times free)"
     return said
 
 
+def _how_far(tried: Tried) -> str:
+    """Say how far ahead of the stop a trial came, or how far it fell short of it."""
+    if abs(tried.distance) < _LEAST_DEPTH:
+        return ""
+    which = "further on" if tried.distance > 0.0 else "short of here"
+    return f"{1e3 * abs(tried.distance):.0f} mm {which}"
+
+
 def _end(d: Findings, tried: Tried) -> str:
-    if tried.jammed:
-        return "is jammed again" if d.jammed else "is jammed"
-    return _ENDS.get(tried.outcome) or _STAYS[tried.outcome]
+    if not tried.jammed:
+        return _ENDS.get(tried.outcome) or _STAYS[tried.outcome]
+    was, jam = d.intrusion, tried.intrusion
+    if jam is None:
+        return "is jammed"
+    here = (jam.side, jam.carrier, jam.edge)
+    if not d.jammed or was is None or here != (was.side, was.carrier, was.edge):
+        return f"is jammed{_where(jam)}, in {_track(jam)} at x = {jam.x:z.3f} m, y = {jam.y:z.3f} m"
+    again = sorted(jam.bodies) == sorted(was.bodies)
+    return "is jammed again" if again else f"is jammed again,{_where(jam)}"
 
 
 def _inside(d: Findings) -> str:
@@ -213,12 +243,11 @@ def body_name(d: Findings, body: int) -> str:
 
 
 def _belly(d: Findings) -> str:
-    on_it = d.contacts["in_pocket"] & (d.contacts["body_kind"] == BodyKind.BELLY)
-    if d.belly_share < _LEAST_SHARE or (on_it.any() and d.outcome != Outcome.HUNG_UP):
+    if d.belly_share < _LEAST_SHARE:
         return ""
     side = d.belly_side
     what = f"the {side}" if side in ("tail", "nose") else "the belly"
-    return f"{what} carries {_percent(d.belly_share)} of the load"
+    return f"{what} carries {_percent(d.belly_share)} of the supporting force"
 
 
 def _drives(d: Findings) -> str:

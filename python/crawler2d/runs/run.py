@@ -234,6 +234,9 @@ class Run(Record):
               ground": the same at rest, in the nearest pose in which no ground is inside it. A pose
               with an edge between two wheels is one that no belt comes to. "closed smooth track":
               in this pose, without grousers;
+            - "belt": along the outlines of chassis and flippers, in this pose; "belt, from the
+              start" and "closed track, from the start": in place of the whole run. These are freed
+              if they get past the stop;
             - "one motor" for each track in place of one for each wheel;
             - "torque x 2", "torque x 10", "friction x 2", "no belly";
             - "flippers level": turned to angle 0.
@@ -340,13 +343,14 @@ class Run(Record):
         """Measure the push that moves the robot on from the stop that the run ended in.
 
         A horizontal force at the centre of mass, in the commanded direction, is raised by a tenth
-        every half a second, from a hundredth of the weight on, until the robot has moved by 5 mm.
+        every half a second, from a hundredth of the weight on, until the robot has got ahead of its
+        greatest x before the stop by `criteria.escape_distance`.
 
         Returns
         -------
         EscapeForce
-            [N] A tuple: the last level that was held and the first that moved it. Its `tips` says
-            whether that push tipped it over.
+            [N] A tuple: the last level that did not move it on and the first that did. Its `tips`
+            says whether that push tipped it over.
 
         Raises
         ------

@@ -56,13 +56,14 @@ class Trial(Tried, Generic[R]):
     """What came of one change at a stop, and the run that shows it; see `Run.trials`.
 
     One thing is changed in the pose of the stop, and the robot drives on for `criteria.escape_time`
-    plus the time in which it would drive `criteria.escape_distance` as commanded. Torque, friction,
+    plus the time in which it would drive `criteria.escape_distance` as commanded; or the run begins
+    anew. Torque, friction,
     belly and a push leave the rest of the state as it is. Another track takes over pose and speeds,
     and ground inside it is let out without a push.
 
     Attributes
     ----------
-    name, freed, starts, freeing, distance, time, outcome, jammed, duration
+    name, freed, starts, freeing, distance, time, outcome, jammed, intrusion, duration
         See `Tried`.
     position, chassis_angle, flipper_angles
         See `Tried`.
@@ -94,10 +95,10 @@ class EscapeForce(_Levels):
     Attributes
     ----------
     low : float
-        [N] The last level that was held; 0 if none was.
+        [N] The last level that did not move it on; 0 if the first did.
     high : float
-        [N] The first level that moved it 5 mm, or that much more than it moves without a push if it
-        rattles; inf if ten weights did not.
+        [N] The first level with which it got ahead of where it had come before by
+        `criteria.escape_distance`; inf if ten weights were not enough.
     tips : bool
         Whether that push tipped it over within two seconds.
     """

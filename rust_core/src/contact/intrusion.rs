@@ -8,7 +8,7 @@ mod tests;
 use super::Contact;
 use crate::geometry::cut::{self, Chord, Piece};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
-use crate::robot::{Mount, Part};
+use crate::robot::{BodyKind, Mount, Part};
 use crate::terrain::{Profile, Side};
 
 /// [m] A contact this close to a piece of the ground bears on it.
@@ -266,10 +266,12 @@ fn below_ground(profile: &Profile, pose: Pose, point: Vector) -> bool {
 }
 
 impl Intrusion {
-    /// Whether a contact lies on the intrusion, for a robot of these parts.
+    /// Whether a contact is one of the track with the ground of the intrusion, for a robot of these parts. The belly is
+    /// no part of a track: what it rests on jams nothing.
     pub(crate) fn bears(&self, lanes: &[Profile], parts: &[Part], contact: &Contact) -> bool {
         let part = &parts[contact.part];
-        if part.lane != self.lane || part.mount.carrier() != self.mount {
+        let of_track = part.kind != BodyKind::Belly && part.mount.carrier() == self.mount;
+        if part.lane != self.lane || !of_track {
             return false;
         }
         let (place, length) = lanes[self.lane].place_on(contact.facet, contact.point);

@@ -1,7 +1,6 @@
 //! How the ground inside the track is held.
 
 use super::StopContact;
-use crate::robot::BodyKind;
 use crate::scenario::SeizureCriteria;
 
 /// How the ground inside the track is held.
@@ -11,8 +10,6 @@ pub enum Mechanism {
     Straddled,
     /// One body alone bears on it and slides at its friction limit.
     Undercut,
-    /// The ground reached the belly.
-    Bellied,
     /// The motors are at their limit.
     Blocked,
     /// The motors are at their limit, with the flank of a grouser against it.
@@ -25,10 +22,9 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 6] = [
         Self::Straddled,
         Self::Undercut,
-        Self::Bellied,
         Self::Blocked,
         Self::Interlocked,
         Self::Pinched,
@@ -40,7 +36,6 @@ impl Mechanism {
         match self {
             Self::Straddled => "straddled",
             Self::Undercut => "undercut",
-            Self::Bellied => "bellied",
             Self::Blocked => "blocked",
             Self::Interlocked => "interlocked",
             Self::Pinched => "pinched",
@@ -61,16 +56,8 @@ impl Mechanism {
         let mut bodies: Vec<usize> = on_it().map(|c| c.body).collect();
         bodies.sort_unstable();
         bodies.dedup();
-        let is_belly = |body: &usize| {
-            on_it()
-                .find(|c| c.body == *body)
-                .is_some_and(|c| c.kind == BodyKind::Belly)
-        };
-        let (belly, track): (Vec<usize>, Vec<usize>) = bodies.into_iter().partition(is_belly);
-        let bearing = track.iter().filter(|b| force_of(**b) > 0.5 * least).count();
-        if belly.iter().any(|b| force_of(*b) > least) {
-            Some(Self::Bellied)
-        } else if on_it().any(|c| c.kind.is_in_chain() && force_of(c.body) > 0.5 * least) {
+        let bearing = bodies.iter().filter(|b| force_of(**b) > 0.5 * least);
+        if on_it().any(|c| c.kind.is_in_chain() && force_of(c.body) > 0.5 * least) {
             Some(Self::Fouled)
         } else if facts.pinched {
             Some(Self::Pinched)
@@ -80,7 +67,7 @@ impl Mechanism {
             } else {
                 Self::Blocked
             })
-        } else if bearing >= 2 {
+        } else if bearing.count() >= 2 {
             Some(Self::Straddled)
         } else if on_it().any(|c| c.slides) {
             Some(Self::Undercut)

@@ -1,5 +1,6 @@
 //! Trials: what came of changing one thing at a stop.
 
+use super::LoadedIntrusion;
 use crate::observe::Outcome;
 
 /// What a trial changes in the pose of a stop.
@@ -15,6 +16,12 @@ pub enum Change {
     ClosedTrackClear,
     /// A closed track without grousers.
     ClosedSmoothTrack,
+    /// A belt along the outlines of the robot and its arms, wherever the model has its bodies.
+    Belt,
+    /// The same from the start of the run on.
+    BeltFromStart,
+    /// A closed track, with the grousers of the model, from the start of the run on.
+    ClosedTrackFromStart,
     /// One motor for each track in place of one for each wheel.
     OneMotor,
     /// Twice the torque.
@@ -31,12 +38,15 @@ pub enum Change {
 
 impl Change {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 14] = [
         Self::Nothing,
         Self::Rebuilt,
         Self::ClosedTrack,
         Self::ClosedTrackClear,
         Self::ClosedSmoothTrack,
+        Self::Belt,
+        Self::BeltFromStart,
+        Self::ClosedTrackFromStart,
         Self::OneMotor,
         Self::TwiceTheTorque,
         Self::TenTimesTheTorque,
@@ -48,6 +58,11 @@ impl Change {
     /// Those that change nothing.
     pub const CONTROLS: [Self; 2] = [Self::Nothing, Self::Rebuilt];
 
+    /// Whether the robot starts again where its run began, in place of going on from the stop.
+    pub fn is_from_the_start(self) -> bool {
+        matches!(self, Self::ClosedTrackFromStart | Self::BeltFromStart)
+    }
+
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -56,6 +71,9 @@ impl Change {
             Self::ClosedTrack => "closed track",
             Self::ClosedTrackClear => "closed track, clear of the ground",
             Self::ClosedSmoothTrack => "closed smooth track",
+            Self::Belt => "belt",
+            Self::BeltFromStart => "belt, from the start",
+            Self::ClosedTrackFromStart => "closed track, from the start",
             Self::OneMotor => "one motor",
             Self::TwiceTheTorque => "torque x 2",
             Self::TenTimesTheTorque => "torque x 10",
@@ -94,11 +112,11 @@ impl Wanted {
 }
 
 /// What came of a change.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// What was changed: the name of a [`Change`], or "changed".
     pub name: &'static str,
-    /// It freed the robot.
+    /// It freed the robot, which was not lost afterwards; of one from the start: the robot got past the stop.
     pub freed: bool,
     /// From how many instants it was tried.
     pub starts: u32,
@@ -113,6 +131,8 @@ pub struct Trial {
     pub outcome: Outcome,
     /// It ended in a stop with ground jammed between two bodies of a track.
     pub jammed: bool,
+    /// The most loaded ground inside the track in that stop: where it is jammed, or else anywhere.
+    pub intrusion: Option<LoadedIntrusion>,
     /// [s] For how long it was tried, unless it ended before.
     pub duration: f64,
     /// [m, m, rad] Pose of the chassis frame at its end.

@@ -131,7 +131,7 @@ pub fn run_of_trial(
         return Ok(None);
     };
     let budget = budget::of_batch(std::slice::from_ref(scenario), record, 1)?;
-    let end = started.time() + trials::duration(&stop);
+    let end = started.time() + trials::duration(&stop, change);
     let run = advance(&mut started, end, record, (&budget, cancel), begin)?;
     Ok(Some((started.scenario().clone(), run)))
 }

@@ -69,6 +69,8 @@ pub struct Simulation {
     set_point_before: f64,
     /// The push at the centre of mass, along x.
     push: Push,
+    /// It has done what the scenario says from time 0 on: no branch, no command by hand, no push.
+    follows_scenario: bool,
     dents: Dents,
     /// The same for the step that is being tried.
     dents_now: Dents,
@@ -153,6 +155,7 @@ impl Simulation {
             set_point: 0.0,
             set_point_before: 0.0,
             push: Push::default(),
+            follows_scenario: true,
             dents: Dents::default(),
             dents_now: Dents::default(),
             contacts: Vec::new(),
@@ -281,6 +284,11 @@ impl Simulation {
             half_length: 0.5 * self.scenario.robot.outline.axle_distance(),
             running,
         })
+    }
+
+    /// Whether it has done what the scenario says from time 0 on: no branch, no command by hand, no push.
+    pub(crate) fn follows_scenario(&self) -> bool {
+        self.follows_scenario
     }
 
     /// [s] Time without progress that counts as a stop.

@@ -12,7 +12,7 @@ pub(crate) use escape::measure as escape_force;
 
 use self::variant::Start;
 use super::{Checked, Simulation};
-use crate::diagnosis::{Change, Diagnosis, Trial, Wanted};
+use crate::diagnosis::{Change, Diagnosis, LoadedIntrusion, Trial, Wanted};
 use crate::error::Error;
 use crate::limits::Cancel;
 use crate::observe::Outcome;
@@ -41,6 +41,11 @@ pub(super) fn judge(
         if found.jammed && !leaves {
             let in_pose = bench.frees(Change::ClosedTrack)?;
             let from_clear = bench.frees(Change::ClosedTrackClear)?;
+            // The model's bodies need not be where its track is, and no track need come to this pose.
+            bench.frees(Change::Belt)?;
+            if !bench.frees(Change::BeltFromStart)? {
+                bench.frees(Change::ClosedTrackFromStart)?;
+            }
             if in_pose || from_clear {
                 // What one motor for all wheels ends was want of torque at some of them.
                 let lacks_torque = bench.frees(Change::OneMotor)?;
@@ -90,7 +95,7 @@ pub(super) fn what_if(
         branch.raise_push(push.0, push.1)?;
         Ok(Some(branch))
     };
-    Bench::new(stop, &found, cancel).attempt("changed", STARTS, &start)
+    Bench::new(stop, &found, cancel).attempt("changed", (STARTS, pose_duration(stop)), &start)
 }
 
 /// A simulation with a change, as it starts from a stop; `None` if the change makes no sense for the robot.
@@ -101,6 +106,11 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
     let Some((scenario, start)) = variant::of(stop.scenario(), change) else {
         return Ok(None);
     };
+    if start == Start::Anew {
+        // Only the course of a scenario can be had again: nothing is known of commands by hand, or of a trunk.
+        let again = stop.follows_scenario().then(|| Checked::new(&scenario));
+        return Ok(again.transpose()?.map(|checked| Simulation::new(&checked)));
+    }
     let started = stop.varied(&scenario, start != Start::Continued)?;
     if start == Start::Clear {
         return Ok(started.clear_of_the_ground());
@@ -109,7 +119,16 @@ pub(super) fn start(stop: &Simulation, change: Change) -> Result<Option<Simulati
 }
 
 /// [s] For how long a change is tried.
-pub(super) fn duration(stop: &Simulation) -> f64 {
+pub(super) fn duration(stop: &Simulation, change: Change) -> f64 {
+    if change.is_from_the_start() {
+        stop.scenario().duration
+    } else {
+        pose_duration(stop)
+    }
+}
+
+/// [s] The same of a change in the pose of the stop.
+fn pose_duration(stop: &Simulation) -> f64 {
     let criteria = &stop.scenario().criteria;
     criteria.escape_time + criteria.escape_distance / stop.command().abs()
 }
@@ -119,8 +138,6 @@ struct Bench<'a> {
     /// The instants from which it is tried; those after the first follow when they are needed.
     starts: Vec<Simulation>,
     rattles: bool,
-    /// [s] For how long each is tried; a change of the command changes neither this nor what is ahead.
-    duration: f64,
     direction: f64,
     /// [m] How far the robot had come, in the commanded direction.
     greatest: f64,
@@ -129,12 +146,13 @@ struct Bench<'a> {
 }
 
 /// What came of one start.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Course {
     distance: f64,
     time: f64,
     outcome: Outcome,
     jammed: bool,
+    intrusion: Option<LoadedIntrusion>,
     pose: [f64; 3],
     flipper_angles: [f64; 2],
 }
@@ -144,7 +162,6 @@ impl<'a> Bench<'a> {
         Self {
             starts: vec![stop.copy()],
             rattles: !found.stationary,
-            duration: duration(stop),
             direction: stop.direction(),
             greatest: stop.monitor().best_advance(),
             made: Vec::new(),
@@ -158,22 +175,25 @@ impl<'a> Bench<'a> {
         if let Some(made) = self.made.iter().find(|trial| trial.name == name) {
             return Ok(made.freed);
         }
-        // A run that goes on passes through all the other starts.
-        let most = if change == Change::Nothing { 1 } else { STARTS };
+        // A run that goes on passes through all the other starts, and a run has one beginning.
+        let is_single = change == Change::Nothing || change.is_from_the_start();
+        let most = if is_single { 1 } else { STARTS };
+        let duration = duration(&self.starts[0], change);
         // A robot that cannot be built, or whose state becomes non-finite, tells nothing of the stop.
-        let made = match self.attempt(name, most, &|stop| start(stop, change)) {
+        let made = match self.attempt(name, (most, duration), &|stop| start(stop, change)) {
             Err(Error::Scenario(_) | Error::Simulation(_)) => None,
             made => made?,
         };
+        let freed = made.as_ref().is_some_and(|trial| trial.freed);
         self.made.extend(made);
-        Ok(made.is_some_and(|trial| trial.freed))
+        Ok(freed)
     }
 
-    /// Tries a change from as many starts as it takes to decide, `most` of them if the robot rattles.
+    /// Tries a change for a time [s] from as many starts as it takes to decide, `most` of them if the robot rattles.
     fn attempt(
         &mut self,
         name: &'static str,
-        most: u32,
+        (most, duration): (u32, f64),
         start: &dyn Fn(&Simulation) -> Result<Option<Simulation>, Error>,
     ) -> Result<Option<Trial>, Error> {
         let most = if self.rattles { most } else { 1 };
@@ -183,7 +203,7 @@ impl<'a> Bench<'a> {
             let Some(started) = start(self.start(i as usize)?)? else {
                 return Ok(None);
             };
-            let course = self.follow(started)?;
+            let course = self.follow(started, duration)?;
             courses[usize::from(course.time.is_finite())].push(course);
             let [stays, frees] = [0, 1].map(|k| courses[k].len() as u32);
             if frees == enough || stays > most - enough {
@@ -192,7 +212,7 @@ impl<'a> Bench<'a> {
         }
         let [starts, freeing] = [courses.concat().len(), courses[1].len()].map(|n| n as u32);
         let freed = freeing >= enough;
-        let first = courses[usize::from(freed)].first();
+        let first = courses[usize::from(freed)].drain(..).next();
         Ok(first.map(|course| Trial {
             name,
             freed,
@@ -202,7 +222,8 @@ impl<'a> Bench<'a> {
             time: course.time,
             outcome: course.outcome,
             jammed: course.jammed,
-            duration: self.duration,
+            intrusion: course.intrusion,
+            duration,
             pose: course.pose,
             flipper_angles: course.flipper_angles,
         }))
@@ -220,9 +241,10 @@ impl<'a> Bench<'a> {
         Ok(&self.starts[i])
     }
 
-    fn follow(&self, mut simulation: Simulation) -> Result<Course, Error> {
+    /// Lets a start run for a time [s]; a change of the command changes neither that nor what is ahead.
+    fn follow(&self, mut simulation: Simulation, duration: f64) -> Result<Course, Error> {
         let begin = simulation.time();
-        let end = begin + self.duration;
+        let end = begin + duration;
         let criteria = simulation.scenario().criteria.clone();
         let (mut distance, mut time) = (f64::NEG_INFINITY, f64::INFINITY);
         while simulation.time() < end && !simulation.is_over() {
@@ -239,8 +261,13 @@ impl<'a> Bench<'a> {
             }
         }
         let ended = simulation.monitor().ended_as();
+        if ended.is_some_and(|outcome| outcome != Outcome::Cleared) {
+            // A robot that falls over, off the ground or out of its track has not got free.
+            time = f64::INFINITY;
+        }
         let stop = simulation.examine();
-        let (symptom, jammed) = stop.map_or((Outcome::TimedOut, false), |d| (d.symptom, d.jammed));
+        let symptom = stop.as_ref().map_or(Outcome::TimedOut, |d| d.symptom);
+        let jammed = stop.as_ref().is_some_and(|d| d.jammed);
         let now = simulation.reading();
         let mut flipper_angles = [f64::NAN; 2];
         for (kept, angle) in flipper_angles.iter_mut().zip(simulation.flipper_angles()) {
@@ -251,6 +278,7 @@ impl<'a> Bench<'a> {
             time,
             outcome: ended.unwrap_or(symptom),
             jammed,
+            intrusion: stop.and_then(|d| d.intrusion),
             pose: [now.position.x, now.position.y, now.chassis_angle],
             flipper_angles,
         })

@@ -79,6 +79,7 @@ impl Simulation {
         let model = self.dynamics.model().clone();
         Self {
             engine: self.engine.clone(),
+            follows_scenario: self.follows_scenario,
             ..self.continued(&self.scenario, Arc::clone(&self.ground), model)
         }
     }
@@ -113,6 +114,7 @@ impl Simulation {
         self.driver = other.driver.commanded(before, now);
         (self.set_point, self.set_point_before) = (other.set_point, other.set_point);
         self.push = other.push;
+        self.follows_scenario = false;
         self.monitor.seen = Seen::from(self.time);
     }
 }

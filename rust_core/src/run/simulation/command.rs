@@ -86,6 +86,7 @@ impl Simulation {
         };
         drive.check(&self.scenario.robot.drivetrain)?;
         self.command = speed;
+        self.follows_scenario = false;
         Ok(())
     }
 
@@ -109,6 +110,7 @@ impl Simulation {
             return Err(ScenarioError::new(path, angle, rule).into());
         }
         self.driver.hold(usize::from(end == End::Rear), angle);
+        self.follows_scenario = false;
         Ok(())
     }
 
@@ -122,7 +124,7 @@ impl Simulation {
         flipper_angles: [(End, Option<f64>); 2],
         push: Option<f64>,
     ) -> Result<(), Error> {
-        let before = (self.command, self.driver, self.push);
+        let before = (self.command, self.driver, self.push, self.follows_scenario);
         let mut give = || {
             push.map_or(Ok(()), |push| self.set_push(push))?;
             for (end, angle) in flipper_angles {
@@ -132,7 +134,7 @@ impl Simulation {
         };
         let given = give();
         if given.is_err() {
-            (self.command, self.driver, self.push) = before;
+            (self.command, self.driver, self.push, self.follows_scenario) = before;
         }
         given
     }
@@ -164,6 +166,7 @@ impl Simulation {
             return Err(ScenarioError::new("push.rise_time", rise_time, rule).into());
         }
         self.push = self.push.raised(force, self.time, rise_time);
+        self.follows_scenario = false;
         Ok(())
     }
 }

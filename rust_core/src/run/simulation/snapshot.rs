@@ -45,6 +45,7 @@ struct Moment {
     driver: Driver,
     set_point: f64,
     push: Push,
+    follows_scenario: bool,
     state: State,
     impulses: Impulses,
     dents: Dents,
@@ -74,6 +75,7 @@ impl Simulation {
             driver: self.driver,
             set_point: self.set_point,
             push: self.push,
+            follows_scenario: self.follows_scenario,
             state: self.state.clone(),
             impulses: self.dynamics.impulses(),
             dents: self.dents.clone(),
@@ -132,6 +134,7 @@ impl Simulation {
         simulation.driver = moment.driver;
         (simulation.set_point, simulation.set_point_before) = (moment.set_point, moment.set_point);
         simulation.push = moment.push;
+        simulation.follows_scenario = moment.follows_scenario;
         simulation.state = moment.state;
         simulation.dynamics.start_from(moment.impulses);
         simulation.dents = moment.dents;

@@ -28,6 +28,15 @@ fn wheels(count: u32, height: f64) -> Scenario {
     scenario
 }
 
+fn barrier(height: f64, thickness: f64) -> Terrain {
+    Terrain::Barrier {
+        height,
+        thickness,
+        edge_radius: 0.0,
+        friction: 0.9,
+    }
+}
+
 fn why(scenario: &Scenario, wanted: Wanted) -> Diagnosis {
     let checked = Checked::new(scenario).expect("the scenario is valid");
     let record = Record {
@@ -46,12 +55,7 @@ fn freed(found: &Diagnosis) -> Vec<&str> {
 #[test]
 fn a_jammed_robot_that_a_closed_track_frees_is_seized_whatever_else_it_does() {
     let mut scenario = wheels(2, 0.0);
-    scenario.terrain = Terrain::Barrier {
-        height: 0.065,
-        thickness: 0.05,
-        edge_radius: 0.0,
-        friction: 0.9,
-    };
+    scenario.terrain = barrier(0.06, 0.2);
     let found = why(&scenario, Wanted::default());
     assert!(found.jammed);
     assert_eq!(
@@ -59,6 +63,59 @@ fn a_jammed_robot_that_a_closed_track_frees_is_seized_whatever_else_it_does() {
         (Outcome::HungUp, Outcome::Seized)
     );
     assert!(freed(&found).contains(&"closed track"));
+}
+
+#[test]
+fn ground_that_only_the_belly_rests_on_jams_nothing_whatever_lane_the_belly_has() {
+    let mut scenario = wheels(2, 0.0);
+    for terrain in [
+        barrier(0.065, 0.05),
+        Terrain::Lanes {
+            left: Box::new(barrier(0.065, 0.05)),
+            right: Box::new(barrier(0.065 - 1e-7, 0.05)),
+            middle: None,
+        },
+    ] {
+        scenario.terrain = terrain;
+        let found = why(&scenario, Wanted::of([Change::NoBelly]));
+        assert!(!found.jammed && found.intrusion.is_none());
+        assert_eq!(found.outcome, Outcome::HungUp);
+        assert_eq!(freed(&found), ["no belly"]);
+    }
+}
+
+#[test]
+fn a_robot_that_tips_over_after_it_got_away_is_not_freed() {
+    // With twice the friction it climbs the wall until it falls over backwards.
+    let mut scenario = wheels(5, 0.3);
+    scenario.terrain.scale_friction(0.5 / 0.9);
+    let found = why(&scenario, Wanted::of([Change::TwiceTheFriction]));
+    let Some(tried) = found.trials.iter().find(|t| t.name == "friction x 2") else {
+        unreachable!("it was asked for");
+    };
+    assert_eq!(tried.outcome, Outcome::TippedOver);
+    assert!(tried.distance > scenario.criteria.escape_distance);
+    assert!(!tried.freed && tried.time.is_infinite());
+}
+
+#[test]
+fn a_belt_from_the_start_is_tried_where_the_run_can_begin_anew() {
+    let checked = Checked::new(&wheels(4, 0.075)).expect("the scenario is valid");
+    let names = |simulation: &mut Simulation| -> Vec<&str> {
+        simulation.advance(10.0).expect("the state stays finite");
+        let found = judge(simulation, Wanted::default(), &Cancel::default());
+        let found = found.expect("trials can be made").expect("it has stopped");
+        assert_eq!(found.outcome, Outcome::Seized);
+        found.trials.iter().map(|trial| trial.name).collect()
+    };
+    let mut simulation = Simulation::new(&checked);
+    assert!(names(&mut simulation).contains(&"belt, from the start"));
+    let mut commanded = Simulation::new(&checked);
+    commanded.set_speed(0.39).expect("the speed is within limits");
+    assert!(!names(&mut commanded).contains(&"belt, from the start"));
+    let mut restored = Simulation::from_snapshot(&commanded.snapshot().expect("it is finite"))
+        .expect("the snapshot is whole");
+    assert!(!names(&mut restored).contains(&"belt, from the start"));
 }
 
 #[test]
@@ -112,6 +169,9 @@ fn what_makes_no_sense_for_a_robot_is_not_tried() {
             "rebuilt",
             "closed track",
             "closed track, clear of the ground",
+            "belt",
+            "belt, from the start",
+            "closed track, from the start",
             "torque x 2",
             "torque x 10",
             "friction x 2"

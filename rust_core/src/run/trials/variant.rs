@@ -2,7 +2,8 @@
 
 use crate::diagnosis::Change;
 use crate::scenario::{
-    ClosedSurface, ClosedTrack, Engine, Gait, Hold, Robot, Scenario, TorqueSharing, Track,
+    BeltTrack, ClosedSurface, ClosedTrack, Engine, Gait, Hold, Robot, Scenario, TorqueSharing,
+    Track,
 };
 
 /// How a trial continues from a stop.
@@ -14,6 +15,8 @@ pub(super) enum Start {
     Rebuilt,
     /// At rest, in the nearest pose in which no ground is inside.
     Clear,
+    /// Where the scenario begins.
+    Anew,
 }
 
 /// The variant that a change makes of a scenario; `None` if it makes no sense for its robot.
@@ -25,18 +28,31 @@ pub(super) fn of(scenario: &Scenario, change: Change) -> Option<(Scenario, Start
     let start = match change {
         Change::Nothing => Start::Continued,
         Change::Rebuilt => Start::Rebuilt,
-        Change::ClosedTrack | Change::ClosedTrackClear => {
+        Change::ClosedTrack | Change::ClosedTrackClear | Change::ClosedTrackFromStart => {
             robot.track = closed(robot, ClosedSurface::Own)?;
-            if change == Change::ClosedTrack {
-                Start::Rebuilt
-            } else {
-                Start::Clear
+            match change {
+                Change::ClosedTrack => Start::Rebuilt,
+                Change::ClosedTrackClear => Start::Clear,
+                _ => Start::Anew,
             }
         }
         Change::ClosedSmoothTrack => {
             any_track(robot, Track::has_grousers).then_some(())?;
             robot.track = closed(robot, ClosedSurface::Smooth)?;
             Start::Rebuilt
+        }
+        Change::Belt | Change::BeltFromStart => {
+            any_track(robot, Track::has_pockets).then_some(())?;
+            robot.track = Track::Belt(BeltTrack {});
+            robot.drivetrain.torque_sharing = TorqueSharing::Track;
+            if let Some(flippers) = &mut robot.flippers {
+                flippers.track = None;
+            }
+            if change == Change::Belt {
+                Start::Rebuilt
+            } else {
+                Start::Anew
+            }
         }
         Change::OneMotor => {
             let sharing = &mut robot.drivetrain.torque_sharing;

@@ -40,7 +40,7 @@ fn set_down(mut robot: Simulation, draw: &mut Draw) -> Option<Simulation> {
 
 /// Whether a robot gets ahead of where it had come [m], or clears, in the time of a trial.
 fn gets_away(mut robot: Simulation, greatest: f64) -> bool {
-    let end = robot.time() + trials::duration(&robot);
+    let end = robot.time() + trials::duration(&robot, Change::ClosedTrack);
     let (direction, far) = (robot.direction(), robot.scenario.criteria.escape_distance);
     while robot.time() < end && !robot.is_over() {
         robot.step_until(end).expect("the state stays finite");
