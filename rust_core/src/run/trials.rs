@@ -41,8 +41,11 @@ pub(super) fn judge(
         if found.jammed && !leaves {
             let in_pose = bench.frees(Change::ClosedTrack)?;
             let from_clear = bench.frees(Change::ClosedTrackClear)?;
-            // The model's bodies need not be where its track is, and no track need come to this pose.
-            bench.frees(Change::Belt)?;
+            // The model's bodies need not be where its track is,
+            if !in_pose {
+                bench.frees(Change::Belt)?;
+            }
+            // and no track need come to this pose.
             if !bench.frees(Change::BeltFromStart)? {
                 bench.frees(Change::ClosedTrackFromStart)?;
             }
