@@ -1,6 +1,6 @@
 //! The diagnosis of a stop as dictionaries and `NumPy` columns.
 
-use crawler2d_core::{Balance, Diagnosis, LoadedIntrusion, Mechanism, StopContact, Trial};
+use crawler2d_core::{Balance, Diagnosis, LoadedIntrusion, Mechanism, StopContact, TipOver, Trial};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -57,6 +57,18 @@ pub(crate) fn trial<'py>(py: Python<'py>, trial: &Trial) -> PyResult<Bound<'py, 
         "flipper_angles",
         PyTuple::new(py, arms.collect::<Vec<_>>())?,
     )?;
+    Ok(result)
+}
+
+/// How a robot tipped over.
+pub(crate) fn tip_over<'py>(py: Python<'py>, found: &TipOver) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    result.set_item("backwards", found.backwards)?;
+    result.set_item("time", found.time)?;
+    result.set_item("end", found.end)?;
+    result.set_item("chassis_angle", found.chassis_angle)?;
+    result.set_item("center_of_mass", PyTuple::new(py, found.center_of_mass)?)?;
+    result.set_item("pivot", PyTuple::new(py, found.pivot)?)?;
     Ok(result)
 }
 

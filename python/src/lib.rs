@@ -262,6 +262,19 @@ mod _core {
         Ok((found.low, found.high, found.tips))
     }
 
+    /// How a robot tipped over; None if it did not.
+    #[pyfunction]
+    fn tip_over(py: Python<'_>, text: PyBackedStr) -> PyResult<Option<Bound<'_, PyDict>>> {
+        let cancel = Cancel::default();
+        let asked = cancel.clone();
+        let found = beside(py, &cancel, move || {
+            crawler2d_core::tip_over(&Checked::from_json(&text)?, &asked)
+        })?;
+        found
+            .map(|found| diagnosis::tip_over(py, &found))
+            .transpose()
+    }
+
     /// Whether forces could hold a stop: the least imbalance, its tolerance, between which factors of the friction, and by
     /// how much each contact would have to pull.
     #[pyfunction]

@@ -46,8 +46,8 @@ pub use robot::{
 };
 pub use run::{
     Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run,
-    Simulation, Trace, balance, branch, diagnose, escape_force, make_trials, outcome_of, poses,
-    run_of_trial, simulate, simulate_many, what_if,
+    Simulation, TipOver, Trace, balance, branch, diagnose, escape_force, make_trials, outcome_of,
+    poses, run_of_trial, simulate, simulate_many, tip_over, what_if,
 };
 pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,

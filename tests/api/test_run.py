@@ -231,7 +231,10 @@ def test_a_run_survives_pickling(run: c2d.Run) -> None:
 
 
 def test_the_repr_is_one_short_line(run: c2d.Run) -> None:
-    assert repr(run) == f"Run(engineer, line, step: cleared after {run.time[-1]:.2f} s)"
+    assert (
+        repr(run)
+        == f"Run(engineer, line, step: cleared after {run.metrics['time_to_clear']:.2f} s)"
+    )
 
 
 def test_contacts_carry_the_weight_on_flat_ground() -> None:

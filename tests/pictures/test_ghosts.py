@@ -56,7 +56,8 @@ def test_the_lines_of_a_ghost_are_the_bodies_of_the_robot_moved_as_a_whole(run: 
 
 
 def test_a_plot_shows_the_ends_of_the_trials_that_freed_the_robot(run: c2d.Run) -> None:
-    freed = [ghost.change for ghost in ghosts(run) if ghost.freed]
+    ends = [ghost for ghost in ghosts(run) if not ghost.from_the_start]
+    freed = [ghost.change for ghost in ends if ghost.freed]
     legend = run.plot().get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]

@@ -33,6 +33,8 @@ class Ghost:
         What was changed; the same and what came of it; what that change is.
     freed : bool
         Whether it freed the robot.
+    from_the_start : bool
+        Whether the robot drove from the start of its run, not from the stop.
     is_belt : bool
         Whether a belt ran round its bodies.
     frames : ndarray, shape (k, 3)
@@ -43,6 +45,7 @@ class Ghost:
     said: str
     meaning: str
     freed: bool
+    from_the_start: bool
     is_belt: bool
     frames: NDArray[np.float64]
 
@@ -59,7 +62,8 @@ def ghosts(run: Record) -> list[Ghost]:
             said=text,
             meaning=TRIALS[tried.name],
             freed=tried.freed,
-            is_belt=tried.name.startswith("closed"),
+            from_the_start=tried.is_from_the_start,
+            is_belt=tried.name.startswith(("closed", "belt")),
             frames=frames,
         )
         for (tried, text), frames in zip(said.items(), _frames(run, list(said)), strict=True)

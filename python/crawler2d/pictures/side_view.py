@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,7 +44,7 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     left, right, bottom, top = scene.extent()
     freed = []
     if trials and shown == run.time.size - 1:
-        freed = [ghost for ghost in ghosts(run) if ghost.freed]
+        freed = [ghost for ghost in ghosts(run) if ghost.freed and not ghost.from_the_start]
         reach = run.scenario.robot.outline.axle_distance
         ends = [float(ghost.frames[0, 0]) for ghost in freed]
         left = min([left, *(end - reach for end in ends)])
@@ -62,15 +63,22 @@ def plot_run(run: Record, ax: Axes | None, time: ArrayLike | None, *, trials: bo
     draw_edges(run, scene, shown, ax)
     if left < scene.goal < right:
         draw_goal(scene.goal, ax)
-    return canvas.caption(run.title, *([] if run.diagnosis is None else [str(run.diagnosis)]))
+    return canvas.caption(run.title, *filter(None, [run.reason]))
 
 
 def _draw_ghosts(freed: list[Ghost], scene: Scene, ax: Axes) -> None:
     """Draw where trials that freed the robot ended."""
-    for ghost, color in zip(freed, _GHOSTS, strict=False):
+    looks = itertools.cycle(itertools.product(("-", "--"), _GHOSTS))
+    for ghost, (dashes, color) in zip(freed, looks, strict=False):
         label: str | None = f"end of the trial: {ghost.change}"
         for line in ghost_lines(scene, ghost):
-            look: Any = {"color": color, "linewidth": 0.8, "alpha": 0.8, "zorder": 1.5}
+            look: Any = {
+                "color": color,
+                "linestyle": dashes,
+                "linewidth": 0.8,
+                "alpha": 0.8,
+                "zorder": 1.5,
+            }
             ax.plot(*line.T, label=label, **look)
             label = None  # once is enough
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from crawler2d.common.bodies import bodies_of, moved
@@ -12,6 +13,7 @@ from crawler2d.errors import Crawler2dError
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
+from crawler2d.results.tip_over import tip_over_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -56,6 +58,39 @@ class Record:
         self.wall_time: float = result.get("wall_time", 0.0)
         self._trace = {name: read_only(array) for name, array in result.get("trace", {}).items()}
         self._contacts = Table(result.get("contacts", {}))
+
+    @cached_property
+    def reason(self) -> str:
+        """Why the robot did not clear, in a sentence; empty if it did.
+
+        Of a stop it is the diagnosis; what is said of a tip-over takes the time of one more run.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None)
+        >>> print(c2d.simulate(robot, c2d.terrains.step(0.05), duration=1.0).reason)
+        timed out after 1.00 s on its way, at 99 % of the commanded speed
+        """
+        if self.error is not None:
+            return str(self.error)
+        if self.diagnosis is not None:
+            return str(self.diagnosis)
+        figures, after = self.metrics, f"after {self.metrics['time']:.2f} s"
+        if self.outcome is Outcome.TIPPED_OVER:
+            found = None if self.trunk else tip_over_of(self.scenario, tried=False)
+            way = "backwards" if figures["final_angle"] > 0.0 else "forwards"
+            return f"tipped over {way} {after}" if found is None else str(found)
+        share = f"{100 * figures['progress']:.0f} % of the commanded speed"
+        pull = f"{figures['max_track_tension']:.0f} N"
+        said = {
+            Outcome.TIMED_OUT: f"timed out {after} on its way, at {share}",
+            Outcome.LEFT_TERRAIN: f"left the terrain {after}, at x = {figures['final_x']:.3f} m: an"
+            " end axle was beyond the described ground, or a metre below it",
+            Outcome.DETRACKED: f"threw its track {after}: a shoe came off what the chain runs on,"
+            f" whose pins held up to {pull}",
+        }
+        return said.get(self.outcome, "") if self.outcome else ""
 
     @property
     def mechanism(self) -> Mechanism | None:
@@ -251,7 +286,10 @@ class Record:
         """What ran and how it ended, in one line for tables and plots."""
         if self.error is not None:
             return f"{self.subject}: {type(self.error).__name__}"
-        return f"{self.subject}: {self.outcome} after {self.metrics['time']:.2f} s"
+        # A run ends when the goal has been held for a while; it was cleared before.
+        is_cleared = self.outcome is Outcome.CLEARED
+        time = self.metrics["time_to_clear" if is_cleared else "time"]
+        return f"{self.subject}: {self.outcome} after {time:.2f} s"
 
     @property
     def subject(self) -> str:

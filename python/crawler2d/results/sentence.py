@@ -12,7 +12,7 @@ from crawler2d.results.outcome import Outcome
 if TYPE_CHECKING:
     from crawler2d.results.findings import Findings, Intrusion, Tried
 
-__all__ = ["body_name", "sentence", "told"]
+__all__ = ["body_name", "in_words", "sentence", "told"]
 
 _NAMES = {
     BodyKind.BELT: "the belt",
@@ -48,21 +48,19 @@ _CHANGED = {
     "flippers level": "flippers level",
 }
 """What a trial changes, in words; the controls change nothing."""
-_STAYS = {
-    Outcome.CYCLING: "goes to and fro",
-    Outcome.HUNG_UP: "hangs on its belly",
-    Outcome.STALLED: "is stalled",
-    Outcome.SLIPPING: "slips",
-}
-"""What is seen of the stop in which a trial ends."""
 _ENDS = {
     Outcome.CLEARED: "clears",
     Outcome.TIPPED_OVER: "tips over",
     Outcome.LEFT_TERRAIN: "leaves the ground",
     Outcome.DETRACKED: "throws its track",
     Outcome.TIMED_OUT: "is still moving",
+    Outcome.SEIZED: "seizes",
+    Outcome.CYCLING: "goes to and fro",
+    Outcome.HUNG_UP: "hangs on its belly",
+    Outcome.STALLED: "is stalled",
+    Outcome.SLIPPING: "slips",
 }
-"""How else a trial ends."""
+"""How a trial ends; of a stop what is seen of it."""
 _HELD = {
     "interlocked": ", with the flank of a grouser against it",
     "pinched": ", closing the gap around it",
@@ -148,7 +146,7 @@ def _how_far(tried: Tried) -> str:
 
 def _end(d: Findings, tried: Tried) -> str:
     if not tried.jammed:
-        return _ENDS.get(tried.outcome) or _STAYS[tried.outcome]
+        return in_words(tried.outcome)
     was, jam = d.intrusion, tried.intrusion
     if jam is None:
         return "is jammed"
@@ -233,6 +231,11 @@ def _on_it(d: Findings) -> str:
     elif len(told) == 2:
         said += f", {names[1]} {'under' if slides[1] else 'with'} {newtons[1]}"
     return said + _HELD.get(str(d.mechanism), "")
+
+
+def in_words(outcome: Outcome) -> str:
+    """Say how a trial ends, in the present tense."""
+    return _ENDS[outcome]
 
 
 def body_name(d: Findings, body: int) -> str:

@@ -28,6 +28,9 @@ __all__ = [
 ]
 
 
+_ASK = "its `reason` says how"
+
+
 def refuse_without_result(run: Record) -> None:
     """Refuse a run that ended with an error, and a branch, whose scenario is not all of it."""
     if run.trunk is not None:
@@ -41,7 +44,8 @@ def branch_time(run: Record, at: float | str) -> float:
     refuse_without_result(run)
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
-            raise ScenarioError("at", at, "must be a time: the run did not end in a stop")
+            rule = f"must be a time: the run did not end in a stop, but {run.outcome}; {_ASK}"
+            raise ScenarioError("at", at, rule)
         return run.diagnosis.time
     end = run.metrics["time"]
     try:

@@ -6,7 +6,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from crawler2d import _core
+from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
+from crawler2d.results.tip_over import TipOver, tip_over_of
 from crawler2d.runs import branch as branching
 from crawler2d.runs.cross_check import CrossCheck, cross_checked
 from crawler2d.runs.recording import Recording, recording
@@ -51,7 +53,8 @@ class Run(Record):
     outcome : Outcome or None
         How it ended; None if there is no result, see `error`.
     diagnosis : Diagnosis or None
-        Why it stopped, if it did; ``print(run.diagnosis)`` says it in one sentence.
+        Why it stopped, if it did; ``print(run.diagnosis)`` says it in one sentence, and `reason`
+        says why a run that did not stop did not clear.
     metrics : dict of str to float
         Figures of the whole run, listed below. They are read-only; ``dict(run.metrics)`` is a copy
         that can be changed.
@@ -252,7 +255,7 @@ class Run(Record):
         >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
         >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
         >>> [trial.name for trial in run.trials() if trial.freed]
-        ['closed track']
+        ['closed track', 'belt']
         """
         time = branching.branch_time(self, "stop")
         made = trials_at(self, time, trial_names("all"))
@@ -335,7 +338,8 @@ class Run(Record):
 
         def show() -> Run:
             variant, result = run_of_trial(self, time, name)
-            return Run(variant, result, trunk=(self.scenario, time))
+            is_branch = not name.endswith(", from the start")
+            return Run(variant, result, trunk=(self.scenario, time) if is_branch else None)
 
         return show
 
@@ -358,6 +362,37 @@ class Run(Record):
             If the run did not end in a stop, or is a branch itself.
         """
         return escape_force_at(self, branching.branch_time(self, "stop"))
+
+    def tip_over(self) -> TipOver:
+        """Say how the robot tipped over, and try what would have held it.
+
+        The run is simulated again, and up to six times with one thing changed: with half of the
+        speed, with a tenth, and with the centre of mass moved away from the contact about which the
+        robot turned, by 2, 5, 10 and 20 % of the axle distance, until it does not tip over.
+
+        Returns
+        -------
+        TipOver
+            Which way it tipped, where its centre of mass was, and what came of the trials.
+
+        Raises
+        ------
+        ScenarioError
+            If the run did not tip over, or is a branch.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> run = c2d.simulate(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.11))
+        >>> found = run.tip_over()
+        >>> found.backwards, found.held_by
+        (True, ('centre of mass 36 mm further forward',))
+        """
+        branching.refuse_without_result(self)
+        found = tip_over_of(self.scenario, tried=True)
+        if found is None:
+            raise ScenarioError("run", self, f"must have tipped over, but ended as {self.outcome}")
+        return found
 
     def cross_check(self) -> CrossCheck[Run]:
         """Simulate the same scenario in the other engine, and compare.

@@ -152,7 +152,7 @@ impl Checked {
         let (sine, cosine) = libm::sincos(scenario.start.angle);
         let axle = position.x + (cosine * rear.center.x - sine * rear.center.y);
         let to_goal = ground.goal_of(&scenario) + rear.radius - axle;
-        let doubts = scenario.doubts(to_goal);
+        let doubts = scenario.doubts(to_goal, ground.extent().1);
         Ok(Self {
             scenario,
             ground,

@@ -10,6 +10,7 @@ mod poses;
 mod record;
 mod simulate;
 mod simulation;
+mod tip;
 mod trace;
 mod trials;
 
@@ -24,5 +25,6 @@ pub use simulate::{
     what_if,
 };
 pub use simulation::Simulation;
+pub use tip::{TipOver, tip_over};
 pub use trace::Trace;
 pub use trials::EscapeForce;

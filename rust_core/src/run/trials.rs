@@ -64,6 +64,8 @@ pub(super) fn judge(
         }
     }
     found.trials = bench.made;
+    let rank = |trial: &Trial| Change::ALL.iter().position(|c| c.name() == trial.name);
+    found.trials.sort_by_key(rank);
     Ok(Some(found))
 }
 

@@ -58,13 +58,15 @@ impl Doubts {
 }
 
 impl Scenario {
-    /// All doubts about a scenario whose goal is `to_goal` [m] away; costs only a few comparisons.
-    pub(crate) fn doubts(&self, to_goal: f64) -> Vec<Doubt> {
+    /// All doubts about a scenario whose goal is `to_goal` [m] away, on ground that ends at `end` [m]; costs only a few
+    /// comparisons.
+    pub(crate) fn doubts(&self, to_goal: f64, end: f64) -> Vec<Doubt> {
         let mut doubts = Doubts::default();
         self.robot.add_doubts(&mut doubts);
         self.terrain
             .add_doubts("terrain", self.robot.length(), &mut doubts);
         self.add_doubts_of_drive(to_goal, &mut doubts);
+        self.add_doubts_of_goal(end, &mut doubts);
         let most = (30.0, "m/s^2");
         doubts.at_most(
             "gravity".into(),
@@ -73,6 +75,18 @@ impl Scenario {
             "more than on any planet",
         );
         doubts.0
+    }
+
+    /// Doubts a goal that no robot clears: it must be all past it while both end axles are over the ground.
+    fn add_doubts_of_goal(&self, end: f64, doubts: &mut Doubts) {
+        let outline = &self.robot.outline;
+        let last = end - outline.axle_distance() - outline.rear_radius();
+        if let Some(goal) = self.goal.filter(|goal| *goal > last) {
+            let reason = format!(
+                "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
+            );
+            doubts.add("goal", goal, reason);
+        }
     }
 
     fn add_doubts_of_drive(&self, to_goal: f64, doubts: &mut Doubts) {

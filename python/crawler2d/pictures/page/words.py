@@ -38,10 +38,8 @@ def heading(run: Record) -> str:
 
 
 def sentence(run: Record) -> str:
-    """Say why the run stopped, or why there is no result; empty if there is nothing to say."""
-    if run.error is not None:
-        return str(run.error)
-    return "" if run.diagnosis is None else str(run.diagnosis)
+    """Say why the robot did not clear, or why there is no result; see `Run.reason`."""
+    return run.reason
 
 
 def verdict(run: Record) -> str:

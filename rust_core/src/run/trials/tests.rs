@@ -111,7 +111,9 @@ fn a_belt_from_the_start_is_tried_where_the_run_can_begin_anew() {
     let mut simulation = Simulation::new(&checked);
     assert!(names(&mut simulation).contains(&"belt, from the start"));
     let mut commanded = Simulation::new(&checked);
-    commanded.set_speed(0.39).expect("the speed is within limits");
+    commanded
+        .set_speed(0.39)
+        .expect("the speed is within limits");
     assert!(!names(&mut commanded).contains(&"belt, from the start"));
     let mut restored = Simulation::from_snapshot(&commanded.snapshot().expect("it is finite"))
         .expect("the snapshot is whole");

@@ -1,0 +1,124 @@
+"""How a robot tipped over, and what would have held it, tried from the start of its run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from crawler2d import _core
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.outcome import Outcome
+from crawler2d.results.sentence import in_words
+
+__all__ = ["TipOver", "tip_over_of"]
+
+_SLOWER = {"half the speed": 0.5, "a tenth of the speed": 0.1}
+"""Shares of the commanded speed that are tried."""
+_SHIFTS = (0.02, 0.05, 0.1, 0.2)
+"""By which shares of the axle distance the centre of mass is moved, until the robot stays up."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipOver:
+    """How a robot tipped over, and what would have held it; see `Run.tip_over`.
+
+    ``str(tip_over)`` says it in some sentences. The instant is the last one at which the centre of
+    mass was ahead of the rearmost contact, or of a fall forwards behind the foremost one. That may
+    be the end of the run, if the robot is driven over without losing its balance.
+
+    Attributes
+    ----------
+    backwards : bool
+        Whether it went over its rear, nose up.
+    time : float
+        [s] The instant.
+    end : float
+        [s] When the chassis tilted by more than `criteria.tip_over_angle`, and the run ended.
+    chassis_angle : float
+        [rad] Chassis angle then, nose up > 0.
+    center_of_mass : tuple of float
+        [m] Centre of mass of the whole robot then.
+    pivot : tuple of float
+        [m] The outermost contact that bore then on the side to which it fell.
+    tried : tuple of (str, Outcome)
+        What was changed from the start of the run on, and how that run ended: half of the speed, a
+        tenth of it, and the centre of mass moved away from the pivot by 2, 5, 10 and 20 % of the
+        axle distance, until the robot did not tip over.
+    """
+
+    backwards: bool
+    time: float
+    end: float
+    chassis_angle: float
+    center_of_mass: tuple[float, float]
+    pivot: tuple[float, float]
+    tried: tuple[tuple[str, Outcome], ...] = ()
+
+    @property
+    def held_by(self) -> tuple[str, ...]:
+        """What of that kept it from tipping over, whether it then cleared or not."""
+        return tuple(change for change, end in self.tried if end is not Outcome.TIPPED_OVER)
+
+    def __str__(self) -> str:
+        """Say it in some sentences."""
+        way, nose = ("backwards", "up") if self.backwards else ("forwards", "down")
+        beyond, last = ("behind", "rearmost") if self.backwards else ("beyond", "foremost")
+        did = f"passed {beyond}" if self.time < self.end else f"did not get {beyond}"
+        (_, y), (pivot, ground) = self.center_of_mass, self.pivot
+        said = (
+            f"tipped over {way}: its centre of mass {did} its {last} contact,"
+            f" {1e3 * (y - ground):.0f} mm below it at x = {pivot:z.3f} m, after {self.time:.2f} s,"
+            f" {math.degrees(abs(self.chassis_angle)):.0f} degrees nose {nose}"
+        )
+        tried = "; ".join(f"{change}: {in_words(end)}" for change, end in self.tried)
+        return f"{said}. Tried from the start: {tried}" if tried else said
+
+
+def tip_over_of(scenario: Scenario, *, tried: bool) -> TipOver | None:
+    """Simulate a scenario and say how it tipped over; None if it did not.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is simulated.
+    tried : bool
+        Whether to try what would have held it, which takes up to six more runs.
+    """
+    found = _core.tip_over(scenario.to_json())
+    if found is None:
+        return None
+    changes = _held(scenario, backwards=found["backwards"]) if tried else ()
+    return TipOver(**found, tried=tuple(changes))
+
+
+def _held(scenario: Scenario, *, backwards: bool) -> Iterator[tuple[str, Outcome]]:
+    """Yield what is changed, and how the run then ends."""
+    for change, share in _SLOWER.items():
+        yield change, _outcome(_slower(scenario, share))
+    length = scenario.robot.outline.axle_distance
+    x = scenario.robot.center_of_mass[0]
+    for share in _SHIFTS:
+        shift = share * length * (1.0 if backwards else -1.0)
+        end = _outcome(scenario.replace({"robot.center_of_mass[0]": x + shift}))
+        way = "forward" if backwards else "back"
+        yield f"centre of mass {1e3 * abs(shift):.0f} mm further {way}", end
+        if end is not Outcome.TIPPED_OVER:
+            return
+
+
+def _slower(scenario: Scenario, share: float) -> Scenario:
+    """Drive the same way in more time."""
+    drive = scenario.drive
+    changes: dict[str, Any] = {
+        "drive.speed": share * drive.speed,
+        "duration": scenario.duration / share,
+    }
+    if drive.schedule is not None:
+        changes["drive.schedule"] = [(t / share, share * speed) for t, speed in drive.schedule]
+    return scenario.replace(changes)
+
+
+def _outcome(scenario: Scenario) -> Outcome:
+    return Outcome(_core.simulate(scenario.to_json(), 0.01, "summary", [])["outcome"])

@@ -1,0 +1,91 @@
+"""Why a run did not clear, whatever its outcome."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+
+ROBOT = c2d.robots.engineer(flippers=None)
+
+
+@pytest.fixture(scope="module")
+def tipped() -> c2d.Run:
+    return c2d.simulate(ROBOT, c2d.terrains.step(0.11))
+
+
+def test_a_robot_that_tips_over_says_which_way_and_about_what(tipped: c2d.Run) -> None:
+    assert tipped.outcome is c2d.Outcome.TIPPED_OVER
+    assert tipped.reason.startswith("tipped over backwards: its centre of mass passed behind its")
+    assert tipped.reason in str(tipped.tip_over())
+    found = tipped.tip_over()
+    assert found.backwards
+    assert found.time < found.end == tipped.metrics["time"]
+    # Where its pose and the contacts of the run have it, to what moves in a sample of 10 ms.
+    at = int(np.searchsorted(tipped.time, found.time))
+    angle, (x, y) = tipped.chassis_angle[at], tipped.position[at]
+    along, up = ROBOT.center_of_mass
+    center = (
+        x + math.cos(angle) * along - math.sin(angle) * up,
+        y + math.sin(angle) * along + math.cos(angle) * up,
+    )
+    assert found.chassis_angle == pytest.approx(angle, abs=0.03)
+    assert found.center_of_mass == pytest.approx(center, abs=2e-3)
+    now = tipped.contacts["time"] == tipped.time[at]
+    assert found.pivot[0] == pytest.approx(tipped.contacts["x"][now].min(), abs=2e-3)
+
+
+def test_what_holds_a_robot_that_tips_over_is_tried(tipped: c2d.Run) -> None:
+    found = tipped.tip_over()
+    changes = [change for change, _ in found.tried]
+    assert changes[:2] == ["half the speed", "a tenth of the speed"]
+    assert found.held_by == (changes[-1],) == ("centre of mass 36 mm further forward",)
+    assert str(found).endswith("centre of mass 36 mm further forward: clears")
+    x, y = ROBOT.center_of_mass
+    shift = 0.1 * ROBOT.outline.axle_distance
+    moved = dataclasses.replace(ROBOT, center_of_mass=(x + shift, y))
+    assert c2d.simulate(moved, c2d.terrains.step(0.11)).outcome is c2d.Outcome.CLEARED
+
+
+def test_a_robot_tips_over_forwards_down_a_cliff() -> None:
+    cliff = c2d.terrains.from_points([(-3, 0), (1, 0), (1, -3), (9, -3)], goal=8, friction=0.9)
+    run = c2d.simulate(ROBOT, cliff)
+    assert run.outcome is c2d.Outcome.TIPPED_OVER
+    assert run.reason.startswith("tipped over forwards: its centre of mass passed beyond its fore")
+    found = run.tip_over()
+    assert found.pivot == pytest.approx((1.0, 0.0), abs=1e-3)
+    assert [end for change, end in found.tried if "further back" in change]
+
+
+def test_every_run_that_does_not_clear_has_a_reason(tipped: c2d.Run) -> None:
+    short = c2d.simulate(ROBOT, c2d.terrains.step(0.05), duration=1.0)
+    assert short.reason == "timed out after 1.00 s on its way, at 99 % of the commanded speed"
+    end = c2d.terrains.from_points([(-3, 0), (0, 0), (1, 0)], goal=0.9, friction=0.9)
+    fallen = c2d.simulate(ROBOT, end)
+    assert fallen.outcome is c2d.Outcome.LEFT_TERRAIN
+    assert fallen.reason.startswith("left the terrain after")
+    stopped = c2d.simulate(ROBOT, c2d.terrains.step(0.3, friction=0.3))
+    assert stopped.reason == str(stopped.diagnosis)
+    cleared = c2d.simulate(ROBOT, c2d.terrains.step(0.05))
+    assert cleared.reason == ""
+    with pytest.raises(c2d.ScenarioError, match="must have tipped over, but ended as cleared"):
+        cleared.tip_over()
+    with pytest.raises(c2d.ScenarioError, match="but tipped_over; its `reason` says how"):
+        tipped.trials()
+    branch = tipped.branch(1.0)
+    assert branch.reason.startswith("tipped over backwards after ")
+
+
+def test_a_title_says_when_the_goal_was_reached_as_the_metric_does() -> None:
+    run = c2d.simulate(ROBOT, c2d.terrains.step(0.05))
+    assert run.metrics["time_to_clear"] < run.metrics["time"]
+    assert run.title.endswith(f"cleared after {run.metrics['time_to_clear']:.2f} s")
+
+
+def test_a_goal_that_no_robot_clears_on_the_ground_is_doubted() -> None:
+    ground = c2d.terrains.step(0.05)
+    scenario = c2d.Scenario(ROBOT, ground, duration=300.0)
+    with pytest.warns(c2d.ScenarioWarning, match="goal cannot be cleared: beyond .* the ground"):
+        scenario.replace({"goal": 99.8}).validate()
