@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from crawler2d.audits.audit import Audit, audit
     from crawler2d.reading.reading import Reading, read_robot
     from crawler2d.sweeps.compare import compare
+    from crawler2d.sweeps.damage import check_store
     from crawler2d.sweeps.rates import rate
     from crawler2d.sweeps.sequential import Until, sequential
     from crawler2d.sweeps.statistics import newcombe, newcombe_paired, wilson
@@ -108,6 +109,7 @@ __all__ = [
     "Until",
     "audit",
     "build_info",
+    "check_store",
     "compare",
     "join_stores",
     "newcombe",
@@ -142,6 +144,7 @@ _WHEN_NAMED = {
     "read_robot": "crawler2d.reading.reading",
     "studies": "crawler2d.studies",
     "Until": "crawler2d.sweeps.sequential",
+    "check_store": "crawler2d.sweeps.damage",
     "compare": "crawler2d.sweeps.compare",
     "join_stores": "crawler2d.sweeps.store",
     "newcombe": "crawler2d.sweeps.statistics",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterable
+from typing import Any
 
 __all__ = [
     "Crawler2dError",
@@ -184,7 +185,18 @@ class StoreError(Crawler2dError, OSError):
     ----------
     message : str
         Which file, what is wrong, and what helps.
+
+    Attributes
+    ----------
+    runs : list of Run
+        What a sweep or a study had simulated when its store failed: one a scenario of the last
+        batch, in order. An unfinished run has a `RunUnfinished` as its `error`. `table` arranges
+        them. Empty if nothing was simulated.
     """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.runs: list[Any] = []
 
     def __str__(self) -> str:
         """Return the message."""

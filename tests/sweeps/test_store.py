@@ -14,6 +14,7 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
+from tests.sweeps.stores import change
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
@@ -131,7 +132,7 @@ def test_what_is_no_store_is_refused_and_left_alone(
 
 
 def test_a_place_where_no_file_can_be_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(c2d.StoreError, match="cannot be made"):
+    with pytest.raises(c2d.StoreError, match="cannot be opened: No such"):
         quiet(BASE, {}, repeats=1, store=tmp_path / "nowhere" / "a.sqlite")
     with pytest.raises(c2d.ScenarioError, match="must be the path of a file"):
         quiet(BASE, {}, repeats=1, store=7)
@@ -139,14 +140,16 @@ def test_a_place_where_no_file_can_be_is_refused(tmp_path: Path) -> None:
         c2d.table(tmp_path / "none.sqlite")
 
 
-def test_a_store_of_a_newer_format_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("build", ["0", "f" * 16, "zzzz"])
+def test_runs_of_another_build_stay_but_are_not_taken(tmp_path: Path, build: str) -> None:
     path = tmp_path / "a.sqlite"
-    quiet(BASE, {}, repeats=1, store=path)
-    connection = sqlite3.connect(path)
-    connection.execute("PRAGMA user_version = 99")
-    connection.close()
-    with pytest.raises(c2d.StoreError, match="newer crawler2d"):
-        c2d.table(path)
+    quiet(BASE, {}, repeats=2, store=path)
+    change(path, 1, build=build)
+    _, made = counted(BASE, {}, repeats=2, store=path)
+    assert made == 1
+    builds = [build for _, build, _ in stored_rows(path)]
+    own = c2d.build_info()["build_id"]
+    assert builds == [build, own, own]
 
 
 def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
@@ -157,10 +160,7 @@ def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:
     assert c2d.join_stores(third, one, other) == 0
     _, missing = counted(BASE, OVER, repeats=3, store=third)
     assert missing == 0
-    connection = sqlite3.connect(one)
-    connection.execute("UPDATE run SET outcome = 'seized' WHERE rowid = 1")
-    connection.commit()
-    connection.close()
+    change(one, 1, metrics='{"time":0.5}')
     with pytest.raises(c2d.StoreError, match="hold different results of the run"):
         c2d.join_stores(third, one)
     with pytest.raises(c2d.StoreError, match="is not there"):

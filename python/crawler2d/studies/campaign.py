@@ -21,11 +21,10 @@ from crawler2d.runs.progress import Progress, Reporter, reporter
 from crawler2d.runs.threads import thread_count
 from crawler2d.runs.trials import Trials, trial_names
 from crawler2d.studies.multiplied import multiplied
-from crawler2d.sweeps.collect import Collector, RowsInterrupted
+from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
 from crawler2d.sweeps.plan import Planner, World
 from crawler2d.sweeps.sequential import Until, sequential
 from crawler2d.sweeps.statistics import Interval
-from crawler2d.sweeps.tabulate import runs_of
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:

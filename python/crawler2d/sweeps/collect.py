@@ -14,13 +14,17 @@ from crawler2d.errors import (
     RunUnfinished,
     ScenarioError,
     SimulationDiverged,
+    StoreError,
 )
+from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.row import Row
+from crawler2d.runs.run import Run
 from crawler2d.sweeps.chunk import simulate_chunk
+from crawler2d.sweeps.database import Place
 from crawler2d.sweeps.plan import Checked
-from crawler2d.sweeps.store import Place, Store
+from crawler2d.sweeps.store import Store
 
-__all__ = ["Batch", "Collector", "RowsInterrupted"]
+__all__ = ["Batch", "Collector", "RowsInterrupted", "runs_of"]
 
 # Runs that a task of an executor has: milliseconds to seconds of work, little to send.
 _CHUNK = 25
@@ -92,7 +96,7 @@ class Collector:
         RowsInterrupted
             On Ctrl-C.
         StoreError
-            If the store cannot be written any longer.
+            If the store cannot be written any longer; its `runs` have what was simulated.
         InternalError
             If the executor lost its workers; what was finished is in the store.
         """
@@ -104,16 +108,21 @@ class Collector:
             for place, result in finished:
                 each = missing[place]
                 made.append(Row.of_result(each.identity, each.text, result))
+            new = batch.take(made)
             if self._store is not None:
                 self._store.add(row for row in made if _is_lasting(row))
-            report(batch.take(made))
+            report(new)
 
-        if self._executor is None:
-            interrupted = _core.simulate_many(
-                missing, self._threads, 0.01, "row", self._trials, take
-            )
-        else:
-            interrupted = _by_executor(self._executor, missing, self._trials, take)
+        try:
+            if self._executor is None:
+                interrupted = _core.simulate_many(
+                    missing, self._threads, 0.01, "row", self._trials, take
+                )
+            else:
+                interrupted = _by_executor(self._executor, missing, self._trials, take)
+        except StoreError as error:
+            error.runs = runs_of(batch.rows())
+            raise
         rows = batch.rows()
         if interrupted:
             raise RowsInterrupted(rows)
@@ -166,6 +175,23 @@ class Batch:
             else cast("Row", row)
             for row, each in zip(self._rows, self._checked, strict=True)
         ]
+
+
+def runs_of(rows: Iterable[Row]) -> list[Run]:
+    """Make runs of rows, with what rows hold; those that break a rule are left out."""
+    return [_run(row) for row in rows if row.scenario]
+
+
+def _run(row: Row) -> Run:
+    """Make a run of a row, with what rows hold."""
+    scenario = Scenario.from_json(row.scenario)
+    result = {
+        "outcome": row.outcome,
+        "metrics": row.metrics,
+        "diagnosis": row.diagnosis,
+        "wall_time": row.wall_time,
+    }
+    return Run(scenario, {} if row.error is not None else result, row.error)
 
 
 def _is_lasting(row: Row) -> bool:

@@ -125,7 +125,8 @@ def sweep(
     SimulationDiverged
         If a state became non-finite; a note names the run.
     StoreError
-        If the store is none, is written by another process, or cannot grow; what it holds is kept.
+        If the store is none, is damaged, is written by another process, or cannot grow. What it
+        holds is kept, and `runs` of the error has what was simulated since.
     InternalError
         If the executor lost its workers for good; what was finished is in the store.
     BatchInterrupted

@@ -43,7 +43,7 @@ def table(runs: Iterable[Run] | str | PathLike[str]) -> xarray.Dataset:
     ScenarioError
         If something is no Run.
     StoreError
-        If the path is that of no store.
+        If the path is that of no store, or it is damaged.
     ImportError
         If xarray is missing; the message names the extra to install.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,16 +14,14 @@ from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.results.row import Row
 from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.labelled import build_attributes
 from crawler2d.runs.progress import Progress, reporter
 from crawler2d.runs.recording import yes_or_no
-from crawler2d.runs.run import Run
 from crawler2d.runs.threads import thread_count
 from crawler2d.runs.trials import Trials, trial_names
 from crawler2d.sweeps.axes import Axis, coordinates, field_attributes, short_names
-from crawler2d.sweeps.collect import Collector, RowsInterrupted
+from crawler2d.sweeps.collect import Collector, RowsInterrupted, runs_of
 from crawler2d.sweeps.dataset import Column, dataset_of, row_columns
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
 from crawler2d.variation.draws import Variation
@@ -31,7 +29,7 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OnError", "runs_of", "tabulate"]
+__all__ = ["OnError", "tabulate"]
 
 OnError = Literal["raise", "record"]
 
@@ -123,20 +121,3 @@ def _drawn(
         values = np.repeat([plan.world.sampled.get(path, np.nan) for plan in plans], repeats)
         columns[f"unknown_{name}"] = (values, field_attributes([path]))
     return columns
-
-
-def runs_of(rows: Iterable[Row]) -> list[Run]:
-    """Make runs of rows, with what rows hold; those that break a rule are left out."""
-    return [_run(row) for row in rows if row.scenario]
-
-
-def _run(row: Row) -> Run:
-    """Make a run of a row, with what rows hold."""
-    scenario = Scenario.from_json(row.scenario)
-    result = {
-        "outcome": row.outcome,
-        "metrics": row.metrics,
-        "diagnosis": row.diagnosis,
-        "wall_time": row.wall_time,
-    }
-    return Run(scenario, {} if row.error is not None else result, row.error)

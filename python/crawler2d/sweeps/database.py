@@ -1,0 +1,254 @@
+"""The SQLite file of a store: made whole or not at all, read anywhere."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from crawler2d.errors import ScenarioError, StoreError
+from crawler2d.results.row import Row
+from crawler2d.sweeps.lock import Lock
+from crawler2d.sweeps.sealed import COLUMNS, sealed, unsealed
+
+__all__ = ["INSERT", "Place", "damage_of", "place_of", "read_row", "to_read", "to_write", "told"]
+
+# "c2ds": what tells the file from those of other programs.
+_APPLICATION = 0x63326473
+_VERSION = 2
+_TABLE = """CREATE TABLE run (
+    identity TEXT NOT NULL,  -- SHA-256 of the scenario, which is canonical JSON
+    build TEXT NOT NULL,     -- what computed it
+    trials TEXT NOT NULL,    -- what was tried at a stop, as JSON
+    outcome TEXT NOT NULL,
+    metrics TEXT NOT NULL,   -- as JSON; what is not known is null
+    diagnosis TEXT,          -- of a stop, as JSON
+    wall_time REAL,          -- [s]
+    error TEXT,              -- class and arguments as JSON, without a result
+    scenario TEXT NOT NULL,  -- as JSON
+    checksum TEXT NOT NULL,  -- SHA-256 of the other columns
+    PRIMARY KEY (identity, build, trials)
+)"""
+INSERT = f"INSERT OR IGNORE INTO run ({COLUMNS}) VALUES (?{', ?' * COLUMNS.count(',')})"
+"""Adds the values of a row unless its key is there."""
+
+_TAKEN = (
+    "is being written by another process or session: wait for it, or give this one a file of its"
+    " own and join both with join_stores"
+)
+
+Place = str | os.PathLike[str]
+
+
+def place_of(path: Place) -> Path:
+    """Return a path, or refuse what cannot be that of a file."""
+    try:
+        text = os.fspath(path)
+        named = text not in ("", ":memory:") and b"\0" not in os.fsencode(text)
+        if named and isinstance(text, str):
+            return Path(text)
+    except (TypeError, UnicodeEncodeError):
+        pass
+    raise ScenarioError("store", path, "must be the path of a file")
+
+
+def to_write(path: Path) -> tuple[sqlite3.Connection, Lock]:
+    """Open a store, or make it, for one writer; the lock is to be closed last.
+
+    Raises
+    ------
+    StoreError
+        If it is no store, is damaged, cannot be written, or another process writes into it.
+    """
+    with told(path), contextlib.ExitStack() as stack:
+        real = Path(os.path.realpath(path))
+        lock = stack.enter_context(contextlib.closing(Lock(real)))
+        if not real.is_file() or real.stat().st_nlink > 1:
+            raise StoreError(
+                f"{path} must be a file without a second name, a hard link: SQLite loses what is"
+                " written under two names. Copy it"
+            )
+        connection = stack.enter_context(contextlib.closing(_connected(real, "rw")))
+        # One transaction: whenever the process is killed, the file is empty or whole.
+        connection.execute("BEGIN IMMEDIATE")
+        if _is_blank(connection):
+            connection.execute(f"PRAGMA application_id = {_APPLICATION}")
+            connection.execute(f"PRAGMA user_version = {_VERSION}")
+            connection.execute(_TABLE)
+        version = _version(connection, path)
+        _check(connection, path)
+        if version < _VERSION:
+            _convert(connection, path)
+        # Also what was so before: if nothing can be written, that is told before the first run.
+        connection.execute(f"PRAGMA user_version = {_VERSION}")
+        connection.execute("COMMIT")
+        connection.execute("PRAGMA journal_mode = WAL")
+        # What is committed outlives this process, though not a loss of power.
+        connection.execute("PRAGMA synchronous = NORMAL")
+        # While SQLite has the log open it leaves the lock alone.
+        connection.execute("PRAGMA schema_version").fetchone()
+        lock.keep()
+        stack.pop_all()
+    return connection, lock
+
+
+def to_read(path: Path, *, checked: bool = True) -> sqlite3.Connection:
+    """Open a store as it is now, also while it is written or where nothing can be written.
+
+    Raises
+    ------
+    StoreError
+        If there is no such file, it is no store, or, if that is `checked`, damaged.
+    """
+    with told(path):
+        real = Path(os.path.realpath(path))
+        if not real.is_file():
+            raise StoreError(f"{path} is not there: a sweep with store= makes a store")
+        try:
+            return _snapshot(_connected(real, "rw"), path, checked)
+        except sqlite3.OperationalError as error:
+            # SQLite reads a file with a log only where it can write beside it. Without a log the
+            # file is whole, and where nobody can write it does not change while it is read.
+            log = _log(real)
+            if _kind(error) not in {"CANTOPEN", "READONLY"}:
+                raise
+            if log.exists() and log.stat().st_size > 0:
+                raise StoreError(
+                    f"{path} was not closed, and its last runs are in {log.name}, which cannot be"
+                    " read in a folder that cannot be written: copy both into another"
+                ) from error
+        return _snapshot(_connected(real, "ro&immutable=1"), path, checked)
+
+
+def damage_of(connection: sqlite3.Connection) -> list[str]:
+    """List what SQLite finds damaged in the structure of the file: pages, index, empty values."""
+    try:
+        found = [text for (text,) in connection.execute("PRAGMA integrity_check")]
+    except sqlite3.DatabaseError as error:
+        return [str(error)]
+    return [] if found == ["ok"] else found
+
+
+def read_row(path: Path, number: int, values: Sequence[Any]) -> tuple[Row, str, tuple[str, ...]]:
+    """Return the run in a row, its build and its trials; `StoreError` if it is damaged."""
+    try:
+        return unsealed(values)
+    except ValueError as fault:
+        raise StoreError(
+            f"{path}: row {number} (run {str(values[0])[:12]}) is damaged: {fault}; check_store"
+            " lists all damage"
+        ) from None
+
+
+@contextlib.contextmanager
+def told(path: Path) -> Iterator[None]:
+    """Turn an error of SQLite, or of the system, into one that says what helps."""
+    try:
+        yield
+    except StoreError:
+        raise
+    except BlockingIOError:
+        raise StoreError(f"{path} {_TAKEN}") from None
+    except OSError as error:
+        raise StoreError(f"{path} cannot be opened: {error.strerror}") from error
+    except sqlite3.Error as error:
+        match _kind(error):
+            case "BUSY" | "LOCKED":
+                why = _TAKEN
+            case "FULL" | "IOERR":
+                why = (
+                    f"cannot grow ({error}): the disk is full or fails; the runs in it are kept."
+                    " Free some space and call again: it goes on from there"
+                )
+            case "CANTOPEN":
+                why = f"cannot be made or opened: {error}"
+            case "READONLY" | "PERM":
+                why = f"cannot be written: {error}"
+            case "NOTADB" | "CORRUPT":
+                why = f"is no SQLite file, or is damaged ({error})"
+            case _:
+                why = f"cannot be read: {error}"
+        raise StoreError(f"{path} {why}") from error
+
+
+def _kind(error: sqlite3.Error) -> str:
+    """Return the kind of an error without its details: IOERR of SQLITE_IOERR_WRITE."""
+    return f"{getattr(error, 'sqlite_errorname', '')}__".split("_")[1]
+
+
+def _log(real: Path) -> Path:
+    return Path(f"{real}-wal")
+
+
+def _connected(real: Path, mode: str) -> sqlite3.Connection:
+    uri = f"{real.as_uri()}?mode={mode}"
+    connection = sqlite3.connect(uri, uri=True, timeout=10.0, isolation_level=None)
+    # Damaged text is for the checksum to find.
+    connection.text_factory = lambda text: text.decode(errors="surrogateescape")
+    return connection
+
+
+def _snapshot(connection: sqlite3.Connection, path: Path, checked: bool) -> sqlite3.Connection:
+    """Begin to read what is in the file now."""
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(contextlib.closing(connection))
+        connection.execute("BEGIN")
+        if _is_blank(connection):
+            raise StoreError(f"{path} is empty: no store was made there yet")
+        if _version(connection, path) < _VERSION:
+            raise StoreError(
+                f"{path} was written by an earlier crawler2d, in version 1 of the format:"
+                " join_stores(path) converts it"
+            )
+        if checked:
+            _check(connection, path)
+        stack.pop_all()
+    return connection
+
+
+def _is_blank(connection: sqlite3.Connection) -> bool:
+    """Whether nothing is in the file; one that lost its first page alone has others."""
+    (pages,) = connection.execute("PRAGMA page_count").fetchone()
+    (tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    (application,) = connection.execute("PRAGMA application_id").fetchone()
+    return pages <= 1 and tables == 0 and application in (0, _APPLICATION)
+
+
+def _version(connection: sqlite3.Connection, path: Path) -> int:
+    """Check that the file is a store; returns the version of its format."""
+    (application,) = connection.execute("PRAGMA application_id").fetchone()
+    if application != _APPLICATION:
+        raise StoreError(f"{path} is an SQLite file, but no store of crawler2d")
+    version: int = connection.execute("PRAGMA user_version").fetchone()[0]
+    if version > _VERSION:
+        raise StoreError(
+            f"{path} was written by a newer crawler2d (version {version} of the format;"
+            f" this one reads {_VERSION}): upgrade"
+        )
+    tables = [sql for (sql,) in connection.execute("SELECT sql FROM sqlite_master")]
+    if version < 1 or (version == _VERSION and _TABLE not in tables):
+        raise StoreError(f"{path} is damaged: no crawler2d makes such tables (format {version})")
+    return version
+
+
+def _check(connection: sqlite3.Connection, path: Path) -> None:
+    damage = damage_of(connection)
+    if damage:
+        raise StoreError(f"{path} is damaged ({damage[0]}): check_store lists what is")
+
+
+def _convert(connection: sqlite3.Connection, path: Path) -> None:
+    """Give the rows of version 1 their checksums."""
+    connection.execute("ALTER TABLE run RENAME TO former")
+    connection.execute(_TABLE)
+    former = connection.execute(
+        f"SELECT rowid, {COLUMNS.removesuffix(', checksum')} FROM former ORDER BY rowid"
+    )
+    for number, *values in former:
+        row = sealed(values)
+        read_row(path, number, row)
+        connection.execute(INSERT, row)
+    connection.execute("DROP TABLE former")
