@@ -54,13 +54,14 @@ def flip_many(path: Path, draw: random.Random) -> None:
 
 
 def cut(path: Path, draw: random.Random) -> None:
+    """Leave a part of it; nothing at all would be a new store."""
     content = path.read_bytes()
-    path.write_bytes(content[: draw.randrange(len(content))])
+    path.write_bytes(content[: draw.randrange(1, len(content))])
 
 
 def cut_pages(path: Path, draw: random.Random) -> None:
     content = path.read_bytes()
-    path.write_bytes(content[: PAGE * draw.randrange(len(content) // PAGE)])
+    path.write_bytes(content[: PAGE * draw.randrange(1, len(content) // PAGE)])
 
 
 def zero_a_page(path: Path, draw: random.Random) -> None:
@@ -260,6 +261,17 @@ def test_what_the_former_format_left_when_it_was_killed_is_a_store_again(tmp_pat
         c2d.table(path)
     quiet(BASE, {}, repeats=2, store=path)
     assert len(read(path)) == 2
+
+
+def test_damage_that_sqlite_cannot_even_tell_is_told(path: Path) -> None:
+    content = path.read_bytes()
+    assert content.count(b"CREATE TABLE run") == 1
+    # The name and the statement of a table.
+    path.write_bytes(content.replace(b"runrun\x02CREATE TABLE", b"\x9funrun\x02CRXATE TABLE"))
+    assert path.read_bytes() != content
+    for use in (c2d.table, c2d.check_store, c2d.join_stores):
+        with pytest.raises(c2d.StoreError, match="is damaged"):
+            use(path)
 
 
 def test_tables_and_indices_of_ones_own_are_left_alone(path: Path) -> None:

@@ -14,7 +14,17 @@ from crawler2d.results.row import Row
 from crawler2d.sweeps.lock import Lock
 from crawler2d.sweeps.sealed import COLUMNS, sealed, unsealed
 
-__all__ = ["INSERT", "Place", "damage_of", "place_of", "read_row", "to_read", "to_write", "told"]
+__all__ = [
+    "DAMAGED",
+    "INSERT",
+    "Place",
+    "damage_of",
+    "place_of",
+    "read_row",
+    "to_read",
+    "to_write",
+    "told",
+]
 
 # "c2ds": what tells the file from those of other programs.
 _APPLICATION = 0x63326473
@@ -35,6 +45,8 @@ _TABLE = """CREATE TABLE run (
 INSERT = f"INSERT OR IGNORE INTO run ({COLUMNS}) VALUES (?{', ?' * COLUMNS.count(',')})"
 """Adds the values of a row unless its key is there."""
 
+DAMAGED = (sqlite3.DatabaseError, UnicodeDecodeError)
+"""What reading a damaged file raises: the latter where SQLite cites a name from it."""
 _TAKEN = (
     "is being written by another process or session: wait for it, or give this one a file of its"
     " own and join both with join_stores"
@@ -127,7 +139,7 @@ def damage_of(connection: sqlite3.Connection) -> list[str]:
     """List what SQLite finds damaged in the structure of the file: pages, index, empty values."""
     try:
         found = [text for (text,) in connection.execute("PRAGMA integrity_check")]
-    except sqlite3.DatabaseError as error:
+    except DAMAGED as error:
         return [str(error)]
     return [] if found == ["ok"] else found
 
@@ -154,6 +166,8 @@ def told(path: Path) -> Iterator[None]:
         raise StoreError(f"{path} {_TAKEN}") from None
     except OSError as error:
         raise StoreError(f"{path} cannot be opened: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise StoreError(f"{path} is damaged ({error})") from error
     except sqlite3.Error as error:
         match _kind(error):
             case "BUSY" | "LOCKED":
