@@ -1,7 +1,6 @@
 """A store keeps every run: nothing is simulated twice, nothing is lost."""
 
 import random
-import sqlite3
 import subprocess
 import sys
 import time
@@ -14,7 +13,7 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
-from tests.sweeps.stores import change
+from tests.sweeps.stores import change, opened
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
@@ -46,6 +45,9 @@ def test_more_repeats_cells_and_models_simulate_only_what_is_new(tmp_path: Path)
     _, tried = counted(BASE, {"terrain.height": [0.03]}, repeats=2, store=store, trials="auto")
     assert tried == 2  # another question
     assert len(list(stored_rows(store))) == 12
+    quiet(BASE, {"terrain.height": [0.01]}, repeats=2, store=store, trials="auto")
+    _, plain = counted(BASE, {"terrain.height": [0.01]}, repeats=2, store=store)
+    assert plain == 2
 
 
 def test_equal_scenarios_run_once(tmp_path: Path) -> None:
@@ -109,18 +111,18 @@ def _rows_of(path: Path) -> Any:
     ("content", "message"),
     [
         (b"no database at all, but long enough to be read as one" * 20, "is no SQLite file"),
-        (None, "no store"),
+        ("CREATE TABLE mine (x)", "no store"),
+        ("CREATE VIEW mine AS SELECT 1", "no store"),
+        ("PRAGMA application_id = 7", "no store"),
     ],
 )
 def test_what_is_no_store_is_refused_and_left_alone(
-    tmp_path: Path, content: bytes | None, message: str
+    tmp_path: Path, content: bytes | str, message: str
 ) -> None:
     path = tmp_path / "a.sqlite"
-    if content is None:
-        connection = sqlite3.connect(path)
-        connection.execute("CREATE TABLE mine (x)")
-        connection.commit()
-        connection.close()
+    if isinstance(content, str):
+        with opened(path) as connection:
+            connection.execute(content)
     else:
         path.write_bytes(content)
     before = path.read_bytes()

@@ -263,6 +263,16 @@ def test_what_the_former_format_left_when_it_was_killed_is_a_store_again(tmp_pat
     assert len(read(path)) == 2
 
 
+def test_a_store_whose_list_of_tables_is_lost_is_no_new_one(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[103:105] = bytes(2)  # how many tables and indices the first page lists
+    path.write_bytes(content)
+    for use in (c2d.table, c2d.check_store, c2d.join_stores):
+        with pytest.raises(c2d.StoreError, match="is damaged: no crawler2d makes such tables"):
+            use(path)
+    assert path.read_bytes() == content
+
+
 def test_damage_that_sqlite_cannot_even_tell_is_told(path: Path) -> None:
     content = path.read_bytes()
     assert content.count(b"CREATE TABLE run") == 1

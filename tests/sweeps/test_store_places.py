@@ -16,7 +16,7 @@ import crawler2d as c2d
 from crawler2d.sweeps import database
 from crawler2d.sweeps.store import Store
 from tests.sweeps.small import BASE, quiet, refusal
-from tests.sweeps.stores import read, unprivileged
+from tests.sweeps.stores import opened, read, unprivileged
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="permissions and links of POSIX")
 
@@ -80,7 +80,7 @@ def test_a_file_that_may_not_be_read_is_told(folder: Path) -> None:
 OPEN = """
 import sys
 from crawler2d.sweeps.store import Store
-Store(sys.argv[1])
+store = Store(sys.argv[1])
 """
 
 
@@ -107,6 +107,41 @@ def test_no_second_writer_gets_in_by_another_name(tmp_path: Path) -> None:
     Store(path).close()
 
 
+def test_what_closes_the_file_lets_no_second_writer_in_for_long(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    command = [sys.executable, "-c", f"{OPEN}print('opened', flush=True); input()", str(path)]
+    with Store(path) as store:
+        path.read_bytes()  # which ends every lock of this process
+        store.add([])
+        told = subprocess.run(command, check=False, capture_output=True, text=True)
+        assert "is being written by another" in told.stderr
+        path.read_bytes()
+        with subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as second:
+            assert second.stdout is not None
+            assert second.stdout.readline() == "opened\n"
+            with pytest.raises(c2d.StoreError, match="is being written by another"):
+                store.add([])
+            second.communicate("")
+        store.add([])
+
+
+def test_a_store_that_another_program_keeps_to_itself_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.sqlite"
+    Store(path).close()
+    monkeypatch.setattr(database, "_PATIENCE", 0.1)
+    with opened(path) as connection:
+        connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+        connection.execute("BEGIN EXCLUSIVE")
+        for use in (c2d.table, c2d.check_store, c2d.join_stores):
+            with pytest.raises(c2d.StoreError, match="is being written by another"):
+                use(path)
+    assert read(path) == {}
+
+
 WRITE = """
 import dataclasses, hashlib, itertools, sys
 from crawler2d.sweeps.store import Store, stored_rows
@@ -117,6 +152,7 @@ with Store(sys.argv[1]) as store:
         text = row.scenario + " " * (1 + number)
         identity = hashlib.sha256(text.encode()).hexdigest()
         store.add([dataclasses.replace(row, identity=identity, scenario=text)])
+        print("added", flush=True)
 """
 
 
@@ -129,13 +165,13 @@ def test_a_writer_keeps_the_store_against_all_who_try(tmp_path: Path, tries: int
         assert writer.stdout is not None
         assert writer.stdout.readline() == "opened\n"
         for _ in range(tries):
+            assert writer.stdout.readline() == "added\n"
             with pytest.raises(c2d.StoreError, match="is being written by another"):
                 Store(path)
         assert writer.poll() is None
         writer.send_signal(signal.SIGKILL)
-    with Store(path) as store:
-        store.add([])
-    assert len(read(path)) > 10
+    Store(path).close()
+    assert len(read(path)) > tries
 
 
 def test_a_folder_that_is_deleted_during_a_sweep_is_told_and_the_runs_are_there(

@@ -45,6 +45,8 @@ _TABLE = """CREATE TABLE run (
 INSERT = f"INSERT OR IGNORE INTO run ({COLUMNS}) VALUES (?{', ?' * COLUMNS.count(',')})"
 """Adds the values of a row unless its key is there."""
 
+# [s] How long another program that reads or writes the file is waited for.
+_PATIENCE = 10.0
 DAMAGED = (sqlite3.DatabaseError, UnicodeDecodeError)
 """What reading a damaged file raises: the latter where SQLite cites a name from it."""
 _TAKEN = (
@@ -199,7 +201,7 @@ def _log(real: Path) -> Path:
 
 def _connected(real: Path, mode: str) -> sqlite3.Connection:
     uri = f"{real.as_uri()}?mode={mode}"
-    connection = sqlite3.connect(uri, uri=True, timeout=10.0, isolation_level=None)
+    connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
     # Damaged text is for the checksum to find.
     connection.text_factory = lambda text: text.decode(errors="surrogateescape")
     return connection

@@ -23,7 +23,7 @@ _OUTCOMES = frozenset({*map(str, Outcome), *NO_RESULT})
 # What a run ends with every time, so that it is kept; nothing else is made of a name in a file.
 _ERRORS: dict[str, type[Crawler2dError]] = {"SimulationDiverged": SimulationDiverged}
 # What reading a text raises that is no such row.
-_UNREADABLE = (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
+_UNREADABLE = (AttributeError, LookupError, RecursionError, TypeError, ValueError)
 
 
 def values_of(row: Row, build: str, trials: str) -> tuple[Any, ...]:
