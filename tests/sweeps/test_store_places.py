@@ -64,6 +64,11 @@ def test_a_log_that_cannot_be_read_is_told(folder: Path) -> None:
     folder.chmod(0o555)
     with unprivileged(), pytest.raises(c2d.StoreError, match=r"runs are in b\.sqlite-wal"):
         c2d.table(copy)
+    folder.chmod(0o777)
+    Path(f"{copy}-wal").write_bytes(b"")
+    folder.chmod(0o555)
+    with unprivileged():
+        assert c2d.table(copy).sizes == {"run": 3}
 
 
 def test_a_file_that_may_not_be_read_is_told(folder: Path) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import sqlite3
 from dataclasses import dataclass
 
-from crawler2d.sweeps.database import DAMAGED, Place, damage_of, place_of, to_read
+from crawler2d.sweeps.database import Place, damage_of, place_of, to_read
 from crawler2d.sweeps.sealed import COLUMNS, unsealed
 
 __all__ = ["Damage", "check_store"]
@@ -71,6 +72,6 @@ def check_store(path: Place) -> tuple[Damage, ...]:
                     unsealed(values)
                 except ValueError as fault:
                     found.append(Damage(number, str(fault)))
-        except DAMAGED as error:
+        except sqlite3.DatabaseError as error:
             found.append(Damage(None, f"nothing can be read behind row {number}: {error}"))
     return tuple(found)

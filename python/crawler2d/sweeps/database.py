@@ -15,7 +15,6 @@ from crawler2d.sweeps.lock import Lock
 from crawler2d.sweeps.sealed import COLUMNS, sealed, unsealed
 
 __all__ = [
-    "DAMAGED",
     "INSERT",
     "Place",
     "damage_of",
@@ -47,8 +46,6 @@ INSERT = f"INSERT OR IGNORE INTO run ({COLUMNS}) VALUES (?{', ?' * COLUMNS.count
 
 # [s] How long another program that reads or writes the file is waited for.
 _PATIENCE = 10.0
-DAMAGED = (sqlite3.DatabaseError, UnicodeDecodeError)
-"""What reading a damaged file raises: the latter where SQLite cites a name from it."""
 _TAKEN = (
     "is being written by another process or session: wait for it, or give this one a file of its"
     " own and join both with join_stores"
@@ -141,7 +138,7 @@ def damage_of(connection: sqlite3.Connection) -> list[str]:
     """List what SQLite finds damaged in the structure of the file: pages, index, empty values."""
     try:
         found = [text for (text,) in connection.execute("PRAGMA integrity_check")]
-    except DAMAGED as error:
+    except sqlite3.DatabaseError as error:
         return [str(error)]
     return [] if found == ["ok"] else found
 
@@ -168,7 +165,7 @@ def told(path: Path) -> Iterator[None]:
         raise StoreError(f"{path} {_TAKEN}") from None
     except OSError as error:
         raise StoreError(f"{path} cannot be opened: {error.strerror}") from error
-    except UnicodeDecodeError as error:
+    except UnicodeDecodeError as error:  # of SQLite's message, which cites a name from the file
         raise StoreError(f"{path} is damaged ({error})") from error
     except sqlite3.Error as error:
         match _kind(error):
@@ -203,7 +200,7 @@ def _connected(real: Path, mode: str) -> sqlite3.Connection:
     uri = f"{real.as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, timeout=_PATIENCE, isolation_level=None)
     # Damaged text is for the checksum to find.
-    connection.text_factory = lambda text: text.decode(errors="surrogateescape")
+    connection.text_factory = lambda text: text.decode(errors="backslashreplace")
     return connection
 
 
