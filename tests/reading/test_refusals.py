@@ -118,7 +118,7 @@ def test_a_roller_beside_driven_wheels_is_refused(tmp_path: Path) -> None:
 def test_a_mesh_is_refused_unless_its_hull_is_asked_for(tmp_path: Path) -> None:
     text = urdf(WHEELS, shapes=collision('<mesh filename="a.stl"/>'))
     refused(tmp_path, text, 'must be no mesh: mesh="hull" takes its hull')
-    refused(tmp_path, text, "must be a mesh that is there", mesh="hull")
+    refused(tmp_path, text, "must be a regular file that can be read .No such file", mesh="hull")
     reading = read(tmp_path, text, mesh="leave_out")
     assert reading.robot.belly is None
     assert "left out is a mesh" in reading.doubts[0]

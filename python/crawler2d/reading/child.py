@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.limits import MEGABYTES, SECONDS
+from crawler2d.reading.limits import CLOCK, MEGABYTES, SECONDS
 
 __all__ = ["answered"]
 
@@ -60,7 +60,10 @@ def answered(program: str, question: dict[str, Any], *, file: str, folder: Path)
     try:
         answer: dict[str, Any] = json.loads(done.stdout)
     except ValueError:
-        rule = f"must be understood in {SECONDS} s of computing and {MEGABYTES} MB of memory"
+        rule = (
+            f"must be understood in {SECONDS} s of computing, {CLOCK} s of the clock and"
+            f" {MEGABYTES} MB of memory"
+        )
         got = done.stderr.decode(errors="replace").strip().splitlines()
         said = got[-1] if got else f"an end by {_ended(done.returncode)}"
         raise ScenarioError(file, said, rule) from None

@@ -61,9 +61,14 @@ class Element:
             node = node.parent
         return "/".join(reversed(steps))
 
+    @property
+    def at(self) -> str:
+        """Its line and its way, for errors."""
+        return f"{self.where}: {self.path}"
+
     def refuse(self, value: object, rule: str, part: str = "") -> NoReturn:
         """Raise the error that this element, or an attribute of it, breaks a rule."""
-        raise ScenarioError(f"{self.where}: {self.path}{part}", value, rule)
+        raise ScenarioError(f"{self.at}{part}", value, rule)
 
     def all(self, tag: str) -> Iterator[Element]:
         """Yield the children of a name."""

@@ -1,22 +1,22 @@
-"""From a file to a neutral tree: which format it has, and how large it may be."""
+"""From a file to a neutral tree: which format it has, and how much it may hold."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from crawler2d.errors import ScenarioError
 from crawler2d.models.tree import Tree
 from crawler2d.reading.elements import Element
+from crawler2d.reading.files import Files
 from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.mjcf import read_mjcf
-from crawler2d.reading.parsing import LARGEST_FILE, parsed
+from crawler2d.reading.parsing import parsed
 from crawler2d.reading.sdf import read_sdf
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.xacro import expanded
 
-__all__ = ["Found", "bytes_of", "tree_of"]
+__all__ = ["Found", "tree_of"]
 
 _MOST_SHAPES = 3000  # collisions; the public models have at most 67
 
@@ -40,23 +40,6 @@ class Found:
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
 
-def bytes_of(path: Path) -> bytes:
-    """Read a file, but never more than a model may have.
-
-    Raises
-    ------
-    ScenarioError
-        If it cannot be read.
-    """
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise ScenarioError("path", str(path), f"must be a file ({reason})") from None
-    return data
-
-
 def tree_of(data: bytes, path: Path, how: How) -> Found:
     """Read what a file holds.
 
@@ -74,11 +57,12 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
     ScenarioError
         If it breaks a rule of its format, or needs what is not there.
     """
-    name, folder = path.name, path.resolve().parent
+    name, files = path.name, Files(path, how.packages)
     missing: list[tuple[str, str]] = []
     if path.suffix == ".xacro":
         data, includes = expanded(
             path,
+            data,
             parsed(data, name),  # entities are refused before anything else reads the file
             trusted=how.trusted,
             packages=how.packages,
@@ -93,7 +77,7 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         rule = f"must have at most {_MOST_SHAPES} collision shapes"
         shapes[_MOST_SHAPES].refuse(len(shapes), rule)
     text = data.decode("utf-8", errors="replace")
-    meshes = Meshes(rule=how.mesh, folder=folder, packages=how.packages)
+    meshes = Meshes(rule=how.mesh, files=files)
     if root.tag == "sdf":
         tree = read_sdf(root, how.model, meshes)
     elif root.tag == "robot":
@@ -101,7 +85,7 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         tree = read_urdf(root, meshes, left_out=joints)
         missing += [(joint.attribute("name"), "a joint of missing links") for joint in joints or ()]
     elif root.tag == "mujoco":
-        tree = read_mjcf(root, text, folder, how.model, meshes)
+        tree = read_mjcf(root, text, path, how, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
     missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]

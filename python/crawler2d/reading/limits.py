@@ -1,4 +1,4 @@
-"""What a child process may use, and how it answers: JSON in, JSON out."""
+"""What a child process may use and open, and how it answers: JSON in, JSON out."""
 
 from __future__ import annotations
 
@@ -7,15 +7,18 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from crawler2d.errors import ScenarioError
 
-__all__ = ["MEGABYTES", "SECONDS", "serve"]
+__all__ = ["CLOCK", "MEGABYTES", "SECONDS", "no_more_files", "serve"]
 
 SECONDS = 2
 """[s] Of computing, after the imports."""
+
+CLOCK = 4 * SECONDS
+"""[s] Of the clock, after the imports: whatever it waits for, it does not wait for ever."""
 
 MEGABYTES = 400
 """[MB] Of memory, beyond what the imports took."""
@@ -42,14 +45,31 @@ def serve(prepare: Callable[[], Callable[[dict[str, Any]], dict[str, Any]]]) -> 
     out.flush()
 
 
+@contextlib.contextmanager
+def no_more_files() -> Iterator[None]:
+    """Let nothing be opened, by whatever means, where the system knows such a limit."""
+    try:
+        import resource  # noqa: PLC0415 - not on Windows
+    except ImportError:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (0, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
 def _limit() -> None:
     """Set the limits, where the system knows such."""
     with contextlib.suppress(ImportError):
         import resource  # noqa: PLC0415 - not on Windows, where only the patience of the parent holds
 
-        # Its signal ends the process. The limit knows whole seconds only, but nothing that runs
+        # Their signals end the process. The limit knows whole seconds only, but nothing that runs
         # here can take it back.
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        signal.setitimer(signal.ITIMER_REAL, CLOCK)
         used = resource.getrusage(resource.RUSAGE_SELF)
         seconds = int(used.ru_utime + used.ru_stime) + 1 + SECONDS
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))

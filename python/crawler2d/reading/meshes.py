@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
+from pathlib import PurePath
 from typing import Literal
 
 import numpy as np
 
+from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Shape
 from crawler2d.reading.elements import Element
+from crawler2d.reading.files import LARGEST_TOGETHER, Files
 
 __all__ = ["MeshRule", "Meshes"]
 
 MeshRule = Literal["refuse", "hull", "leave_out"]
 
 _REMEDY = ', or be left out: mesh="leave_out"'
-_LARGEST = 50_000_000  # [bytes] of one mesh, and of all that a model names together
+_MOST_CORNERS = 300_000  # of all meshes of a model, each corner of a mesh once
+_FARTHEST = 1e6  # [m] as for any number of a model file
 _HEADER, _FACET = 84, 50  # [bytes] of a binary STL
-_SCHEME = re.compile(r"(package|model|file)://(.*)", re.DOTALL)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -32,19 +33,18 @@ class Meshes:
     ----------
     rule : {"refuse", "hull", "leave_out"}
         As in `read_robot`.
-    folder : Path
-        Where relative names begin.
-    packages : mapping of str to path
-        Folders of the packages and models that names begin with.
+    files : Files
+        The files of the model.
     left_out : list of (str, Element)
         The shapes that were left out.
+    corners : int
+        Of all meshes that were read.
     """
 
     rule: MeshRule
-    folder: Path
-    packages: Mapping[str, Path]
+    files: Files
     left_out: list[tuple[str, Element]] = field(default_factory=list)
-    size: int = 0
+    corners: int = 0
 
     def hull(self, shape: Shape, element: Element, name: str, scale: list[float]) -> Shape | None:
         """Return the shape with the corners of its mesh, or None if it is left out."""
@@ -54,46 +54,35 @@ class Meshes:
         if self.rule == "refuse":
             rule = 'must be no mesh: mesh="hull" takes its hull, mesh="leave_out" leaves it out'
             element.refuse(name, rule)
-        points = self._points(element, name) * np.array(scale)
+        with np.errstate(over="ignore", invalid="ignore"):  # of what is refused below
+            points = self._points(element, name) * np.array(scale)
         if not len(points):
-            element.refuse(name, "must be a mesh with corners")
+            element.refuse(name, f"must be a mesh with corners{_REMEDY}")
+        if not (np.abs(points) <= _FARTHEST).all():
+            rule = f"must have corners that are finite and at most {_FARTHEST:g} m away{_REMEDY}"
+            element.refuse(name, rule)
         return replace(shape, kind="hull", points=shape.pose.at(points))
 
     def _points(self, element: Element, name: str) -> Array:
         """[m] Return the corners of a mesh in its own frame."""
-        path = self._path(element, name)
-        try:
-            self.size += path.stat().st_size
-            if self.size > _LARGEST:
-                element.refuse(name, f"must be meshes of at most {_LARGEST} bytes together")
-            data = path.read_bytes()
-        except (OSError, ValueError):  # a name with a null byte is a ValueError
-            element.refuse(
-                name,
-                'must be a mesh that is there and can be read, or be left out: mesh="leave_out"',
-            )
-        if path.suffix.lower() == ".stl":
-            points = _of_stl(data)
-        elif path.suffix.lower() == ".obj":
-            points = _of_obj(data)
-        else:
+        kind = PurePath(name).suffix.lower()
+        if kind not in _CORNERS:
             element.refuse(name, f"must be an .stl or .obj mesh{_REMEDY}")
-        # Corners are shared by facets: a side view needs each once.
-        finite = np.isfinite(points).all(axis=1)
-        return np.unique(points[finite], axis=0)
+        data = self.files.read(name, at=element.at, most=LARGEST_TOGETHER, remedy=_REMEDY)
+        try:
+            points = _CORNERS[kind](data)
+        except ValueError:
+            element.refuse(name, f"must be a mesh whose corners are numbers{_REMEDY}")
+        points = np.unique(points, axis=0)  # facets share corners: a side view needs each once
+        self.count(len(points), element.at)
+        return points
 
-    def _path(self, element: Element, name: str) -> Path:
-        scheme = _SCHEME.fullmatch(name)
-        if scheme is None:
-            return self.folder / name
-        kind, rest = scheme.groups()
-        if kind == "file":
-            return Path(rest)
-        package, _, inside = rest.partition("/")
-        if package not in self.packages:
-            rule = f'must be in a package whose folder is given: packages={{"{package}": ...}}'
-            element.refuse(name, rule)
-        return Path(self.packages[package]) / inside
+    def count(self, corners: int, at: str) -> None:
+        """Refuse meshes that have too many corners, all together."""
+        self.corners += corners
+        if self.corners > _MOST_CORNERS:
+            rule = f"must, with the other meshes, have at most {_MOST_CORNERS} corners{_REMEDY}"
+            raise ScenarioError(at, self.corners, rule)
 
 
 def _of_stl(data: bytes) -> Array:
@@ -103,23 +92,23 @@ def _of_stl(data: bytes) -> Array:
         facets = np.frombuffer(data, dtype=np.uint8, offset=_HEADER).reshape(count, _FACET)
         corners = facets[:, 12:48].copy().view("<f4").reshape(-1, 3)  # after the normal
         return corners.astype(np.float64)
-    return _rows(data, rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)")
+    return _rows(data, rb"[ \t]*vertex")
 
 
 def _of_obj(data: bytes) -> Array:
     """Return the corners of an OBJ."""
-    return _rows(data, rb"^v\s+(\S+)\s+(\S+)\s+(\S+)")
+    return _rows(data, rb"v")
 
 
-def _rows(data: bytes, pattern: bytes) -> Array:
-    """Return the numbers of all lines of a pattern; those that are none become nan."""
+def _rows(data: bytes, start: bytes) -> Array:
+    """Return the three numbers after the start of a line, of all such lines.
 
-    def number(word: bytes) -> float:
-        try:
-            return float(word)
-        except ValueError:
-            return np.nan
+    No part of the pattern crosses lines or matches what the next one does, so that its time grows
+    with the size of the file and no faster.
+    """
+    rows = re.finditer(rb"^%s[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)" % start, data, re.MULTILINE)
+    numbers = (float(word) for row in rows for word in row.groups())
+    return np.fromiter(numbers, dtype=np.float64).reshape(-1, 3)
 
-    found = re.findall(pattern, data, re.MULTILINE)
-    rows = [[number(word) for word in row] for row in found]
-    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+_CORNERS = {".stl": _of_stl, ".obj": _of_obj}

@@ -14,6 +14,7 @@ from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
+from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 
@@ -25,7 +26,7 @@ _LARGEST = 1e6  # [m, kg, ...] as in other formats; limits may be infinite
 _SIZES = ("place", "center", "size", "points", "mass", "inertia", "moved")
 
 
-def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes: Meshes) -> Tree:
+def read_mjcf(root: Element, text: str, path: Path, how: How, meshes: Meshes) -> Tree:
     """Read the robot of an MJCF file: what hangs on one free joint.
 
     Parameters
@@ -34,10 +35,10 @@ def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes:
         Of the file.
     text : str
         All of it, which MuJoCo reads for itself.
-    folder : Path
-        To which the names of mesh files are relative.
-    model : str, optional
-        Name of the body with the free joint; None takes the only one.
+    path : Path
+        Where it is.
+    how : How
+        The keywords of `read_robot`; `model` is the name of the body with the free joint.
     meshes : Meshes
         What is done with meshes.
 
@@ -55,17 +56,19 @@ def read_mjcf(root: Element, text: str, folder: Path, model: str | None, meshes:
     """
     _refuse_includes(root)
     file = root.where.file
-    question = {"text": text, "folder": str(folder), "file": file}
-    plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=folder)
+    path = path.resolve()
+    packages = {name: str(folder.resolve()) for name, folder in how.packages.items()}
+    question = {"text": text, "path": str(path), "file": file, "packages": packages}
+    plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=path.parent)
     _refuse_wild(plain, file)
-    return _Model(plain, root.where, meshes).tree(model)
+    return _Model(plain, root.where, meshes).tree(how.model)
 
 
 def _refuse_includes(root: Element) -> None:
     """Refuse files in several parts, whose lines would be those of any of them."""
     for element in root.within():
-        if element.tag == "include":
-            rule = "must hold the robot itself: read the included file"
+        if element.tag in ("include", "model"):
+            rule = "must hold the robot itself: read the file that is named, or write it in here"
             element.refuse(element.attributes.get("file", ""), rule)
 
 
@@ -216,6 +219,7 @@ class _Model:
                     name=plain["name"], kind="mesh", pose=pose, at=at, pose_at=at, size_at=at
                 )
                 return self.meshes.hull(made, stand_in, plain["name"], [1.0, 1.0, 1.0])
+            self.meshes.count(len(plain["points"]), f"{at}: geom[{plain['name']}]")
             kind, points = "hull", pose.at(np.array(plain["points"], dtype=float).reshape(-1, 3))
         elif kind not in ("box", "cylinder", "capsule", "sphere"):
             rule = "must be a box, cylinder, capsule, sphere or mesh"

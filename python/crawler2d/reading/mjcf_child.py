@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
+from pathlib import Path, PurePath
 from typing import Any
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.limits import serve
+from crawler2d.reading.files import LARGEST_TOGETHER, Files
+from crawler2d.reading.limits import no_more_files, serve
 
 # MuJoCo numbers the kinds of joints and shapes; what is not here is refused by its number.
 _JOINTS = {0: "free", 1: "ball", 2: "slide", 3: "hinge"}
@@ -23,11 +26,18 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
     return lambda question: _described(mujoco, **question)
 
 
-def _described(mujoco: Any, text: str, folder: str, file: str) -> dict[str, Any]:
+def _described(
+    mujoco: Any, *, text: str, path: str, file: str, packages: dict[str, str]
+) -> dict[str, Any]:
+    files = Files(Path(path), packages)
     try:
-        spec = mujoco.MjSpec.from_string(text)
-        spec.modelfiledir = folder
-        model = spec.compile()
+        with no_more_files():
+            spec = mujoco.MjSpec.from_string(text)
+        _hand_over(spec, files, file)
+        with no_more_files():
+            model = spec.compile()
+    except ScenarioError:
+        raise
     except Exception as error:  # MuJoCo has several classes of errors for a bad file
         said = " ".join(str(error).split())
         line = re.search(r"line (\d+)", said)
@@ -40,6 +50,28 @@ def _described(mujoco: Any, text: str, folder: str, file: str) -> dict[str, Any]
         "shapes": [_shape(model, geom) for geom in spec.geoms],
         "motors": [_motor(model, actuator) for actuator in spec.actuators],
     }
+
+
+def _hand_over(spec: Any, files: Files, file: str) -> None:
+    """Read all files that a model names, and give MuJoCo what they hold in place of their names."""
+
+    def taken(name: str, folder: str, at: str) -> str:
+        if not name:
+            return name
+        place = os.path.join(folder, PurePath(name).name if spec.strippath else name)
+        new = f"{len(spec.assets)}{PurePath(name).suffix}"
+        spec.assets[new] = files.read(place, at=at, most=LARGEST_TOGETHER)
+        return new
+
+    folders = dict.fromkeys(("meshes", "hfields", "skins"), spec.meshdir)
+    folders["textures"] = spec.texturedir
+    spec.meshdir = spec.texturedir = ""
+    for kind, folder in folders.items():
+        for item in getattr(spec, kind):
+            at = f"{file}:{_line(item)}: {kind}[{item.name}]"
+            item.file = taken(item.file, folder, at)
+            if kind == "textures":
+                item.cubefiles = [taken(name, folder, at) for name in item.cubefiles]
 
 
 def _line(item: Any) -> int:
@@ -82,8 +114,9 @@ def _joint(model: Any, joint: Any) -> dict[str, Any]:
 def _shape(model: Any, geom: Any) -> dict[str, Any]:
     i = geom.id
     kind = _SHAPES.get(int(model.geom_type[i]), "unknown")
+    collides = bool(model.geom_contype[i] or model.geom_conaffinity[i])
     points = None
-    if kind == "mesh":
+    if kind == "mesh" and collides:
         mesh = int(model.geom_dataid[i])
         first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
         points = model.mesh_vert[first : first + count].tolist()
@@ -98,7 +131,7 @@ def _shape(model: Any, geom: Any) -> dict[str, Any]:
         # In one dimension, a contact has no friction.
         "friction": float(model.geom_friction[i, 0]) if model.geom_condim[i] > 1 else 0.0,
         "priority": int(model.geom_priority[i]),
-        "collides": bool(model.geom_contype[i] or model.geom_conaffinity[i]),
+        "collides": collides,
         "moved": geom.surfacevel.tolist() if hasattr(geom, "surfacevel") else [0.0] * 6,
         "line": _line(geom),
     }

@@ -13,11 +13,9 @@ from xml.parsers import expat
 from crawler2d.errors import ScenarioError
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element
+from crawler2d.reading.files import LARGEST_MODEL
 
-__all__ = ["LARGEST_FILE", "parsed"]
-
-LARGEST_FILE = 4_000_000
-"""[bytes] Of one model file. The largest of the public models has 150 kB."""
+__all__ = ["parsed"]
 
 _MOST_ELEMENTS = 50_000
 _DEEPEST = 60
@@ -53,8 +51,8 @@ def parsed(data: bytes, file: str) -> Element:
     ...
     crawler2d.errors.ScenarioError: bomb.sdf:1 must have no document type, got 'a'
     """
-    if len(data) > LARGEST_FILE:
-        raise ScenarioError(file, len(data), f"must have at most {LARGEST_FILE} bytes")
+    if len(data) > LARGEST_MODEL:
+        raise ScenarioError(file, len(data), f"must have at most {LARGEST_MODEL} bytes")
     return _Parser(file).parse(data)
 
 

@@ -16,7 +16,8 @@ from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.reading.assembly import Assembly, assembled
-from crawler2d.reading.formats import bytes_of, tree_of
+from crawler2d.reading.files import Files
+from crawler2d.reading.formats import tree_of
 from crawler2d.reading.friction import ENGINES, Engine
 from crawler2d.reading.how import How
 from crawler2d.reading.meshes import MeshRule
@@ -161,7 +162,8 @@ def read_robot(
     trusted : bool
         Whether the file may evaluate expressions, as xacro does.
     packages : mapping of str to path, optional
-        Folders of the packages that ``$(find ...)``, ``package://`` and ``model://`` name.
+        Folders of the packages that ``$(find ...)``, ``package://`` and ``model://`` name. Meshes
+        and includes are read from these, and from the folder or package of the file itself.
     arguments : mapping of str to str, optional
         Values for the arguments of a xacro file.
 
@@ -225,7 +227,7 @@ def read_robot(
         arguments=arguments or {},
     )
     path = Path(path)
-    reading, doubts = read_text(bytes_of(path), path, how)
+    reading, doubts = read_text(Files(path, how.packages).model(), path, how)
     for doubt in doubts:
         warnings.warn(doubt, stacklevel=2)
     return reading

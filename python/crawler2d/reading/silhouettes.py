@@ -78,14 +78,14 @@ def silhouette(shape: Shape, view: SideView, chords: int = _CHORDS) -> Array:
 
 def hull(points: Array) -> list[Array]:
     """Return the corners of the convex hull, counter-clockwise, none on a straight edge."""
-    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0)
+    order = np.unique(np.round(points, _DIGITS) + 0.0, axis=0).tolist()  # floats, which are faster
     ends = [_chain(order), _chain(order[::-1])]
-    return [corner for chain in ends for corner in chain[:-1]]
+    return [np.array(corner) for chain in ends for corner in chain[:-1]]
 
 
-def _chain(order: Array) -> list[Array]:
+def _chain(order: list[list[float]]) -> list[list[float]]:
     """Return one half of a hull of sorted points."""
-    chain: list[Array] = []
+    chain: list[list[float]] = []
     for point in order:
         while len(chain) > 1 and _height(chain[-2], chain[-1], point) <= _SMALLEST:
             chain.pop()
@@ -93,8 +93,9 @@ def _chain(order: Array) -> list[Array]:
     return chain
 
 
-def _height(start: Array, corner: Array, end: Array) -> float:
+def _height(start: list[float], corner: list[float], end: list[float]) -> float:
     """[m] Return by how much a corner stands out to the right of the line past it."""
-    along, to = end - start, corner - start
-    length = math.hypot(*along)
-    return float(along[1] * to[0] - along[0] * to[1]) / length if length > 0.0 else 0.0
+    x, y = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(x, y)
+    out = y * (corner[0] - start[0]) - x * (corner[1] - start[1])
+    return out / length if length > 0.0 else 0.0

@@ -13,6 +13,7 @@ __all__ = ["expanded"]
 
 def expanded(
     path: Path,
+    data: bytes,
     root: Element,
     *,
     trusted: bool,
@@ -26,6 +27,8 @@ def expanded(
     ----------
     path : Path
         The file.
+    data : bytes
+        What it holds.
     root : Element
         Of the file, for errors.
     trusted : bool
@@ -54,14 +57,20 @@ def expanded(
     if not trusted:
         rule = "must be trusted, because xacro evaluates expressions: trusted=True"
         root.refuse(f"trusted={trusted}", rule)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        root.refuse("another encoding", "must be UTF-8, which xacro reads")
+    path = path.resolve()
     question = {
-        "path": str(path.resolve()),
-        "file": path.name,
-        "packages": {name: str(Path(folder).resolve()) for name, folder in packages.items()},
+        "text": text,
+        "path": str(path),
+        "packages": {name: str(folder.resolve()) for name, folder in packages.items()},
+        "file": root.where.file,
         "arguments": dict(arguments),
         "leave_out": leave_out,
     }
     answer = answered(
-        "crawler2d.reading.xacro_child", question, file=path.name, folder=path.resolve().parent
+        "crawler2d.reading.xacro_child", question, file=root.where.file, folder=path.parent
     )
     return answer["text"].encode(), answer["left_out"]

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import builtins
+import errno
+import io
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.files import Files
 from crawler2d.reading.limits import serve
 
 _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
@@ -27,6 +32,7 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
 def _expanded(
     module: Any,
     *,
+    text: str,
     path: str,
     file: str,
     packages: dict[str, str],
@@ -34,7 +40,7 @@ def _expanded(
     leave_out: bool,
 ) -> dict[str, Any]:
     module.packages.update_package_cache(packages)
-    text = Path(path).read_text(encoding="utf-8")
+    builtins.open = _Door(Files(Path(path), packages), file, text)  # type: ignore[assignment]
     left_out: list[str] = []
     if leave_out:
         text = _without_missing(module, text, left_out)
@@ -42,6 +48,8 @@ def _expanded(
         document = module.XacroDoc.from_string(text, subargs=arguments, resolve_packages=False)
         return {"text": document.to_urdf_string(), "left_out": left_out}
     except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
+        if refusal := _refusal(error):
+            raise refusal from None
         said = " ".join(str(error).split()) or type(error).__name__
         if lost := _LOST.search(said):
             names = [name for name in _FIND.findall(text) if not _known(module, name)]
@@ -56,6 +64,36 @@ def _expanded(
             rule += ", which may need an include that was left out: packages= says where it is"
         culprits = [part for pair in _CULPRITS.findall(said) for part in pair if part]
         raise ScenarioError(_place(file, text, culprits), said, rule) from None
+
+
+class _Door:
+    """Takes the place of `open`: whatever xacro and its libraries read is read as the model is."""
+
+    def __init__(self, files: Files, file: str, text: str) -> None:
+        self.files = files
+        self.file = file
+        self.text = text
+
+    def __call__(
+        self, path: str | os.PathLike[str], mode: str = "r", *_: object, **__: object
+    ) -> IO[Any]:
+        if mode not in ("r", "rt", "rb"):
+            raise PermissionError(errno.EACCES, "must only be read", str(path))
+        name = str(Path(path).absolute())
+        try:
+            data = self.files.read(name, at=_place(self.file, self.text, [Path(path).name]))
+        except ScenarioError as error:
+            if isinstance(error.__cause__, FileNotFoundError):  # an include may be optional
+                raise error.__cause__ from None
+            raise
+        return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode(), newline=None)
+
+
+def _refusal(error: BaseException | None) -> ScenarioError | None:
+    """Return the refusal of a file among an error and those that it came of."""
+    while error is not None and not isinstance(error, ScenarioError):
+        error = error.__context__
+    return error
 
 
 def _place(file: str, text: str, culprits: list[str]) -> str:

@@ -1,0 +1,166 @@
+"""The one door to the files that a model names.
+
+Whatever a model is made of is read here and nowhere else: the model itself, what it includes, its
+meshes and textures, settings in YAML, manifests of packages. A file is read if it
+
+- lies in the folder of the model, in the package round that, or in a folder that the user named:
+  one of ``packages=``, or of the variables in which ROS looks for packages. Links and ``..`` are
+  followed first, so none of them leads out;
+- is a regular file: a pipe may never answer, a device never end;
+- is not too large, by itself and with all others of its model.
+
+Each refusal is a `ScenarioError` that names the file, the rule and what to do. New ways of finding
+files, such as packages by their manifests, are to add to the folders here.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import stat
+from collections.abc import Mapping
+from pathlib import Path
+
+from crawler2d.errors import ScenarioError
+
+__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files"]
+
+LARGEST_MODEL = 4_000_000
+"""[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
+
+LARGEST_TOGETHER = 30_000_000
+"""[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
+
+_SCHEME = re.compile(r"(package|model|file)://(.*)", re.DOTALL)
+_MANIFESTS = ("package.xml", "manifest.xml", "model.config")
+_SEARCHED = ("ROS_ROOT", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
+# Nothing that is opened waits, becomes the terminal, or is a link put there in the meantime.
+_FLAGS = os.O_RDONLY
+for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
+    _FLAGS |= getattr(os, _name, 0)
+
+
+class Files:
+    """The files of one model, of which each that is read counts.
+
+    Parameters
+    ----------
+    model : Path
+        The file of the model, to whose folder names are relative.
+    packages : mapping of str to path
+        Folders of packages by name.
+
+    Attributes
+    ----------
+    folder : Path
+        That of the model, with all links followed.
+    """
+
+    def __init__(self, model: Path, packages: Mapping[str, str | os.PathLike[str]]) -> None:
+        self._model = _real(model, "path")
+        self.folder = self._model.parent
+        self._packages = {name: _real(folder, "packages") for name, folder in packages.items()}
+        searched = os.pathsep.join(os.environ.get(name, "") for name in _SEARCHED)
+        named = [_real(each, "packages") for each in searched.split(os.pathsep) if each]
+        self._roots = [_package_round(self.folder), *self._packages.values(), *named]
+        self._left = LARGEST_TOGETHER
+
+    def model(self) -> bytes:
+        """Read the model itself; see `read`."""
+        return self.read(str(self._model), at="path")
+
+    def read(self, name: str, *, at: str, most: int = LARGEST_MODEL, remedy: str = "") -> bytes:
+        """Read a file.
+
+        Parameters
+        ----------
+        name : str
+            Relative to the folder of the model, absolute, or with ``package://``, ``model://`` or
+            ``file://``.
+        at : str
+            Who names it, as the path of errors.
+        most : int
+            [bytes] The largest size.
+        remedy : str
+            What else may be done, for errors.
+
+        Returns
+        -------
+        bytes
+            All of it.
+
+        Raises
+        ------
+        ScenarioError
+            If it must not or cannot be read; the system's error, if there is one, is the cause.
+        """
+        path = _real(self._path(name, at), at)
+        if not any(path.is_relative_to(root) for root in self._roots):
+            rule = (
+                "must be in the folder or package of its model, or in a folder that is named:"
+                f' packages={{"name": folder}}{remedy}'
+            )
+            raise ScenarioError(at, name, rule)
+        try:
+            data = _read_regular(path, most + 1)
+        except OSError as error:
+            rule = f"must be a regular file that can be read ({error.strerror}){remedy}"
+            raise ScenarioError(at, name, rule) from error
+        if len(data) > most:
+            raise ScenarioError(at, name, f"must have at most {most} bytes{remedy}")
+        self._left -= len(data)
+        if self._left < 0:
+            rule = f"must, with the other files of its model, have at most {LARGEST_TOGETHER} bytes"
+            raise ScenarioError(at, name, f"{rule}{remedy}")
+        return data
+
+    def _path(self, name: str, at: str) -> Path:
+        """Say where a file is that a model names."""
+        found = _SCHEME.fullmatch(name)
+        if found is None:
+            return self.folder / name
+        kind, rest = found.groups()
+        if kind == "file":
+            return self.folder / rest
+        package, _, inside = rest.partition("/")
+        if package not in self._packages:
+            rule = f'must be in a package whose folder is given: packages={{"{package}": ...}}'
+            raise ScenarioError(at, name, rule)
+        return self._packages[package] / inside
+
+
+def _read_regular(path: Path, most: int) -> bytes:
+    """Read so many bytes of what was opened, which also says what it is: nothing comes between."""
+    number = os.open(path, _FLAGS)
+    try:
+        kind = stat.S_IFMT(os.fstat(number).st_mode)
+        if kind != stat.S_IFREG:
+            raise OSError(errno.EINVAL, f"{_KINDS.get(kind, 'what it is')} is none")
+        with os.fdopen(number, "rb", closefd=False) as file:
+            return file.read(most) or b""  # None if the system has nothing ready
+    finally:
+        os.close(number)
+
+
+def _real(path: str | os.PathLike[str], at: str) -> Path:
+    """Follow all links; a circle of them is refused when it is opened."""
+    try:
+        return Path(os.path.realpath(path))
+    except (OSError, ValueError) as error:  # a name with a null byte is a ValueError
+        raise ScenarioError(at, str(path), f"must be the name of a file ({error})") from None
+
+
+def _package_round(folder: Path) -> Path:
+    """Return the innermost folder with a manifest round a folder, or else that itself."""
+    for each in (folder, *folder.parents):
+        if any(os.path.exists(each / name) for name in _MANIFESTS):
+            return each
+    return folder

@@ -1,0 +1,308 @@
+"""Whatever a model names as a file is read if it may be, or refused at once, with the reason."""
+
+import os
+import signal
+import socket
+import struct
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from tests.reading.carts import FILES, WHEELS, collision, read, refused, urdf
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
+
+CORNERS = [(x, y, z) for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05)]
+OBJ = "\n".join(f"v {x} {y} {z}" for x, y, z in CORNERS)
+XACRO = '<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.fixture(autouse=True)
+def _nothing_waits() -> Iterator[None]:
+    """End a test that waits for a pipe."""
+
+    def end(*_: Any) -> None:
+        raise TimeoutError("a file was waited for")
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.alarm(20)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def folder(path: Path) -> None:
+    path.mkdir()
+
+
+def bound(path: Path) -> None:
+    here = Path.cwd()
+    os.chdir(path.parent)  # names of sockets are short
+    with socket.socket(socket.AF_UNIX) as made:
+        made.bind(path.name)
+    os.chdir(here)
+
+
+def linked(to: str) -> Callable[[Path], None]:
+    def make(path: Path) -> None:
+        path.symlink_to(to)
+
+    make.__name__ = f"linked to {to}"
+    return make
+
+
+def linked_pipe(path: Path) -> None:
+    os.mkfifo(path.with_name("the pipe"))
+    path.symlink_to("the pipe")
+
+
+ODD = (
+    *(pipe, folder, bound, linked_pipe, linked("/dev/zero"), linked("/dev/random")),
+    *(linked("/dev/tty"), linked("/etc/passwd"), linked("itself"), linked("nowhere")),
+)
+odd = pytest.mark.parametrize("make", ODD, ids=[make.__name__ for make in ODD])
+
+
+def with_mesh(name: str) -> str:
+    return urdf(WHEELS, shapes=collision(f'<mesh filename="{name}"/>'))
+
+
+@odd
+@pytest.mark.parametrize("suffix", ["stl", "obj"])
+def test_a_mesh_that_is_no_file_of_the_model_is_refused(
+    tmp_path: Path, make: Callable[[Path], None], suffix: str
+) -> None:
+    name = "itself" if make.__name__ == "linked to itself" else "mesh"
+    make(tmp_path / f"{name}.{suffix}")
+    rule = r"must be (a regular file that can be read \(.*\)|in the folder or package of its model)"
+    refused(tmp_path, with_mesh(f"{name}.{suffix}"), f'{rule}.*mesh="leave_out"', mesh="hull")
+
+
+@pytest.mark.parametrize("name", ["file:///dev/zero.stl", "/dev/zero.stl", "../dev/zero.stl"])
+def test_dev_zero_is_not_read_as_a_mesh(tmp_path: Path, name: str) -> None:
+    (tmp_path / "cart").mkdir()
+    rule = r'in a folder that is named: packages=\{"name": folder\}'
+    refused(tmp_path / "cart", with_mesh(name), rule, mesh="hull")
+
+
+@odd
+@pytest.mark.parametrize("suffix", ["urdf", "sdf", "xml", "xacro"])
+def test_a_model_that_is_no_file_is_refused(
+    tmp_path: Path, make: Callable[[Path], None], suffix: str
+) -> None:
+    path = tmp_path / f"cart.{suffix}"
+    make(path)
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.read_robot(path, trusted=True)
+    if make.__name__ != "linked to /etc/passwd":  # a file, which its user named, but no model
+        assert caught.value.path == "path"
+        assert "must be a regular file that can be read (" in caught.value.rule
+
+
+@odd
+@pytest.mark.parametrize("what", ["include", "yaml"])
+def test_a_file_that_xacro_names_and_is_none_is_refused(
+    tmp_path: Path, make: Callable[[Path], None], what: str
+) -> None:
+    pytest.importorskip("xacrodoc")
+    make(tmp_path / "part")
+    part = '<xacro:include filename="part"/>'
+    if what == "yaml":
+        part = '<xacro:property name="p" value="${xacro.load_yaml(\'part\')}"/><a>${p}</a>'
+    rule = r"must be .*(\(.*\)|in the folder or package|xacro that expands, got .*No such file)"
+    refused(tmp_path, f"{XACRO}\n{part}</robot>", rule, "cart.xacro", trusted=True)
+
+
+MJCF = {
+    "mesh": '<mesh name="m" file="part.stl"/>',
+    "hfield": '<hfield name="m" file="part.png" size="1 1 1 1"/>',
+    "texture": '<texture name="m" type="2d" file="part.png"/>',
+    "sides": '<texture name="m" type="cube" fileright="part.png"/>',
+    "skin": '</asset><deformable><skin name="m" file="part.skn"/></deformable><asset>',
+    "model": '<model name="m" file="part.xml"/>',
+}
+
+
+def mjcf(asset: str) -> str:
+    text = (FILES / "cart.xml").read_text()
+    return text.replace("<worldbody>", f"<asset>{asset}</asset><worldbody>", 1)
+
+
+@pytest.mark.parametrize("make", [pipe, linked("/dev/zero"), linked("/etc/passwd")])
+@pytest.mark.parametrize("what", MJCF)
+def test_a_file_that_mjcf_names_and_is_none_is_refused(
+    tmp_path: Path, make: Callable[[Path], None], what: str
+) -> None:
+    pytest.importorskip("mujoco")
+    for suffix in ("stl", "png", "skn", "xml"):
+        make(tmp_path / f"part.{suffix}")
+    rule = "must (be a regular file|be in the folder or package|hold the robot itself)"
+    refused(tmp_path, mjcf(MJCF[what]), rule, "cart.xml")
+
+
+def test_mujoco_opens_nothing_by_itself(tmp_path: Path) -> None:
+    """Not even what no list of assets has, such as the mesh of a soft body."""
+    pytest.importorskip("mujoco")
+    os.mkfifo(tmp_path / "part.msh")
+    soft = '<flexcomp name="f" type="gmsh" dim="3" file="part.msh"/>'
+    text = (FILES / "cart.xml").read_text().replace("</body>", f"{soft}</body>", 1)
+    start = time.perf_counter()
+    refused(tmp_path, text, "must be a model that MuJoCo compiles", "cart.xml")
+    assert time.perf_counter() - start < 6.0
+
+
+def test_meshes_of_one_name_in_two_folders_are_told_apart(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    for number, name in enumerate(("low", "high")):
+        (tmp_path / name).mkdir()
+        rows = [f"v {x} {y} {z * (number + 1)}" for x, y, z in CORNERS]
+        faces = "\nf 1 2 3\nf 4 5 6\nf 6 7 8\nf 1 4 8"
+        (tmp_path / name / "box.obj").write_text("\n".join(rows) + faces)
+    assets = "".join(f'<mesh name="{n}" file="{n}/box.obj"/>' for n in ("low", "high"))
+    box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
+    text = mjcf(assets)
+    assert box in text
+    tops = []
+    for name in ("low", "high"):
+        shape = f'<geom type="mesh" mesh="{name}"/>'
+        belly = read(tmp_path, text.replace(box, shape), "cart.xml", mesh="hull").robot.belly
+        assert belly is not None
+        heights = [y for _, y in belly]
+        tops.append(max(heights) - min(heights))
+    assert tops == pytest.approx([0.05, 0.1], abs=1e-6)
+
+
+def test_an_include_that_is_optional_and_missing_is_passed_over(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    text = urdf('<xacro:include filename="no.xacro" optional="true"/>', WHEELS)
+    text = text.replace('<robot name="cart">', XACRO)
+    assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass > 0.0
+
+
+def test_includes_and_yaml_of_the_folder_are_read(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    (tmp_path / "wheels.xacro").write_text(f"{XACRO}{WHEELS}</robot>")
+    (tmp_path / "masses.yaml").write_text("hull: 8\n")
+    text = urdf('<xacro:include filename="wheels.xacro"/>', mass="${m['hull']}")
+    load = '<xacro:property name="m" value="${xacro.load_yaml(\'masses.yaml\')}"/>'
+    text = text.replace('<robot name="cart">', XACRO + load)
+    assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass == 12.0
+
+
+OUTSIDE = {
+    "above": "../other/m.obj",
+    "absolute": "{other}/m.obj",
+    "as a file": "file://{other}/m.obj",
+    "by a link": "link.obj",
+    "by a linked folder": "linked/m.obj",
+}
+
+
+@pytest.mark.parametrize("way", OUTSIDE)
+def test_a_mesh_elsewhere_is_read_only_where_its_folder_is_named(tmp_path: Path, way: str) -> None:
+    cart, other = tmp_path / "cart", tmp_path / "other"
+    cart.mkdir()
+    other.mkdir()
+    (other / "m.obj").write_text(OBJ)
+    (cart / "link.obj").symlink_to(other / "m.obj")
+    (cart / "linked").symlink_to(other)
+    text = with_mesh(OUTSIDE[way].format(other=other))
+    refused(cart, text, "must be in the folder or package of its model", mesh="hull")
+    reading = read(cart, text, mesh="hull", packages={"other": other})
+    assert reading.robot.belly == ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.05), (-0.1, 0.05))
+
+
+@pytest.mark.parametrize("manifest", ["package.xml", "model.config"])
+def test_a_mesh_of_the_package_round_a_model_is_read(tmp_path: Path, manifest: str) -> None:
+    for name in ("urdf", "meshes"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "meshes" / "m.obj").write_text(OBJ)
+    (tmp_path / manifest).write_text("<package/>")
+    reading = read(tmp_path / "urdf", with_mesh("../meshes/m.obj"), mesh="hull")
+    assert reading.robot.belly is not None
+
+
+def test_packages_of_the_ros_path_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Includes and meshes; a manifest that is a pipe keeps nobody waiting."""
+    pytest.importorskip("xacrodoc")
+    package, cart = tmp_path / "ros" / "parts", tmp_path / "cart"
+    package.mkdir(parents=True)
+    cart.mkdir()
+    (package / "package.xml").write_text("<package><name>parts</name></package>")
+    (package / "wheels.xacro").write_text(f"{XACRO}{WHEELS}</robot>")
+    (package / "m.obj").write_text(OBJ)
+    include = '<xacro:include filename="$(find parts)/wheels.xacro"/>'
+    text = urdf(include, shapes=collision('<mesh filename="file://$(find parts)/m.obj"/>'))
+    text = text.replace('<robot name="cart">', XACRO)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "ros"))
+    how: dict[str, Any] = {"trusted": True, "mesh": "hull"}
+    assert read(cart, text, "cart.xacro", **how).robot.belly is not None
+    (package / "package.xml").unlink()
+    os.mkfifo(package / "package.xml")
+    with pytest.raises(c2d.ScenarioError, match="a pipe is none"):
+        read(cart, text, "cart.xacro", **how)
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj"])
+def test_a_mesh_is_not_larger_than_30_megabytes(tmp_path: Path, suffix: str) -> None:
+    with (tmp_path / f"m.{suffix}").open("wb") as file:
+        file.truncate(100_000_000)
+    refused(tmp_path, with_mesh(f"m.{suffix}"), "must have at most 30000000 bytes", mesh="hull")
+
+
+def test_all_meshes_of_a_model_are_not_larger_than_30_megabytes(tmp_path: Path) -> None:
+    (tmp_path / "m.obj").write_text(OBJ + "\n" * 16_000_000)
+    shape = collision('<mesh filename="m.obj"/>')
+    rule = "must, with the other files of its model, have at most 30000000 bytes"
+    refused(tmp_path, urdf(WHEELS, shapes=2 * shape), rule, mesh="hull")
+
+
+def test_a_million_corners_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "m.obj").write_text("".join(f"v {k} 0 1\n" for k in range(1_000_000)))
+    rule = "must, with the other meshes, have at most 300000 corners"
+    refused(tmp_path, with_mesh("m.obj"), rule, mesh="hull")
+
+
+@pytest.mark.parametrize("filling", ["\n", " ", "vertex ", "v ", "vertex 1 ", "v 1 1 ", "\t\n"])
+@pytest.mark.parametrize("suffix", ["stl", "obj"])
+def test_a_text_mesh_takes_time_by_its_size_alone(
+    tmp_path: Path, suffix: str, filling: str
+) -> None:
+    """20 MB of empty lines in a text STL were read without an end: their time grew as a square."""
+    (tmp_path / f"m.{suffix}").write_text("solid\n" + filling * (20_000_000 // len(filling)))
+    start = time.process_time()
+    with pytest.raises(c2d.ScenarioError, match="must "):
+        read(tmp_path, with_mesh(f"m.{suffix}"), mesh="hull")
+    assert time.process_time() - start < 5.0
+
+
+@pytest.mark.parametrize("word", ["x", "nan", "inf", "1e9", "-1e300", "1e999", "\u0661", "1.2.3"])
+def test_a_corner_that_is_nowhere_is_refused(tmp_path: Path, word: str) -> None:
+    (tmp_path / "m.obj").write_text(f"{OBJ}\nv 0 0 {word}")
+    rule = "must (be a mesh whose corners are numbers|have corners that are finite and at most 1e)"
+    refused(tmp_path, with_mesh("m.obj"), rule, mesh="hull")
+
+
+def test_a_binary_mesh_with_odd_bits_is_refused(tmp_path: Path) -> None:
+    facet = struct.pack("<12f", *[float("nan")] * 12) + b"\0\0"
+    signalling = facet.replace(b"\0\0\xc0\x7f", b"\1\0\xa0\x7f")
+    for data in (facet, signalling):
+        (tmp_path / "m.stl").write_bytes(b"\0" * 80 + struct.pack("<I", 1) + data)
+        refused(tmp_path, with_mesh("m.stl"), "must have corners that are finite", mesh="hull")
+
+
+def test_a_mesh_of_a_package_is_held_to_the_same_rules(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "m.stl")
+    text = with_mesh("package://p/m.stl")
+    how: dict[str, Any] = {"mesh": "hull", "packages": {"p": tmp_path}}
+    refused(tmp_path, text, "a pipe is none", **how)
+    refused(tmp_path, text.replace("p/m", "p/../../m"), "in the folder or package", **how)
