@@ -288,3 +288,13 @@ def test_the_torque_of_a_robot_acts_at_its_rear_end(tmp_path: Path) -> None:
     outline, motors = reading.robot.outline, reading.robot.drivetrain
     force = 5.0 / 0.12 + 5.0 / 0.08  # [N] of one side
     assert motors.max_torque / outline.rear_radius == pytest.approx(force)
+
+
+def test_no_wheel_moves_more_than_its_mass_with_the_track(tmp_path: Path) -> None:
+    """Two wheels of 1 kg state the inertia of hoops of 2 kg, two that of hoops of half a kilogram."""
+    front = pair("front", 0.2).replace('iyy="0.003"', f'iyy="{2.0 * 0.08**2}"')
+    rear = pair("rear", -0.2).replace('iyy="0.003"', f'iyy="{0.5 * 0.08**2}"')
+    reading = read(tmp_path, urdf(front + rear))
+    assert reading.robot.track_mass == pytest.approx(2 * 1.0 + 2 * 0.5, rel=1e-12)
+    assert reading.sources["robot.track_mass"].startswith("estimate: the mass of the wheels")
+    assert "robot.track_mass is limited to hoops" in reading.doubts[0]
