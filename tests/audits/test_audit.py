@@ -348,6 +348,27 @@ def test_reading_an_audited_file_is_quiet() -> None:
     assert quietly(FILES / "cart.urdf").doubts == ()
 
 
+@pytest.mark.parametrize("how", [{"engine": "isaac"}, {"ground_friction": 0.4}])
+def test_a_reading_is_audited_as_it_was_read(how: Any) -> None:
+    path = FILES / "cart.urdf"
+    few: Any = {"samples": 2, "repeats": 1, "repair": False, **QUIET}
+    reading = quietly(path, **how)
+    of_file, of_reading = c2d.audit(path, **few, **how), c2d.audit(reading, **few)
+    assert of_reading.reading is reading
+    assert plain_of(of_reading) == plain_of(of_file)
+    assert of_reading.call == of_file.call
+    assert of_reading.call.reading == how
+
+
+def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
+    """Neither for its friction on other floors: its file may be gone."""
+    reading = read(tmp_path, urdf(WHEELS))
+    (tmp_path / "cart.urdf").unlink()
+    assert c2d.audit(reading, samples=1, repeats=1, repair=False, **QUIET).reading is reading
+    with pytest.raises(c2d.ScenarioError, match="engine must be left out: no file is read"):
+        c2d.audit(reading, engine="gz")
+
+
 def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
     assert "0 wheels a side" not in found.in_words
     for each in found.repairs:

@@ -1,7 +1,10 @@
 """The command `python -m crawler2d audit`: what it prints and writes, and its exit status."""
 
 import argparse
+import dataclasses
+import html
 import json
+import re
 import shlex
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.audits.call import Call, command_of
+from crawler2d.audits.plain import plain_of
 from crawler2d.reports import audit as command
 from tests.reading.carts import FILES
 
@@ -120,35 +124,73 @@ HOWS: Any = [
     {"engine": "isaac", "forward": "-x", "model": "a b; rm -rf $HOME", "ground_friction": 0.7},
     {"mesh": "hull", "missing": "leave_out", "trusted": True},
     {"tracks": ["-left", "right"], "packages": {"a": "b=c"}, "arguments": {"n": "it's"}},
+    {"tolerance": 0.01, "ground_friction": 0.5},
 ]
 
 
 @pytest.mark.parametrize("how", HOWS)
 def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     call = Call(samples=4, repeats=3, seed=2**63, repair=False, reading=how)
-    text = command_of(call, "my file.sdf")
+    text = command_of(call, "-my file.sdf")
     assert text is not None
     program, dash, package, name, *arguments = shlex.split(text)
     assert (program, dash, package, name) == ("python", "-m", "crawler2d", "audit")
     parser = argparse.ArgumentParser()
     command.add_arguments(parser)
     options = parser.parse_args(arguments)
-    assert options.file == Path("my file.sdf")
+    assert options.file == Path("-my file.sdf")
     assert (options.samples, options.repeats, options.seed) == (4, 3, 2**63)
     assert options.no_repairs
     kept = command._reading(options)
     assert {name: value for name, value in kept.items() if value} == {
         "mesh": "refuse",
         "missing": "refuse",
+        "tolerance": 0.001,
         **how,
     }
 
 
 def test_a_call_with_arguments_that_no_option_has_is_no_command() -> None:
     assert command_of(CALL, "a.sdf") is not None
-    for changed in ({"own": ("vary",)}, {"reading": {"tolerance": 0.01}}):
-        call = Call(samples=4, repeats=3, seed=1, repair=True, **changed)
-        assert command_of(call, "a.sdf") is None
+    assert command_of(dataclasses.replace(CALL, own=("vary",)), "a.sdf") is None
+
+
+@pytest.fixture
+def expanding(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A xacro file, named from the folder above its own, in which we are."""
+    pytest.importorskip("xacrodoc")
+    (tmp_path / "models").mkdir()
+    path = Path("models") / "cart.urdf.xacro"
+    monkeypatch.chdir(tmp_path)
+    path.write_text((FILES / "cart.xacro").read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+def test_the_command_on_a_page_makes_the_same_audit_again(expanding: Path, capsys: Any) -> None:
+    how: Any = {"trusted": True, "engine": "isaac", "tolerance": 0.01}
+    few: Any = {"samples": 1, "repeats": 1, "repair": False, "progress": False}
+    once = c2d.audit(expanding, **few, **how)
+    command = re.search(r"python -m crawler2d audit .*?(?=<)", once.to_html())
+    assert command is not None
+    arguments = shlex.split(html.unescape(command[0]))[4:]
+    status, out, err = run(capsys, *arguments, "--json", "--no-html")
+    assert status in (0, 1), err
+    assert json.loads(out) == json.loads(json.dumps(plain_of(once)))
+
+
+def test_the_lines_of_xacro_are_those_of_a_file_beside_the_page(
+    expanding: Path, capsys: Any
+) -> None:
+    few = ("--samples", "1", "--repeats", "1", "--no-repairs", "--trusted", "--json")
+    status, out, err = run(capsys, str(expanding), *few)
+    assert status in (0, 1)
+    text = Path("out") / "audit-cart.urdf-expanded.urdf"
+    assert err.strip().endswith(f"The lines are those of {text}")
+    source = json.loads(out)["sources"]["robot.outline.front_radius"]
+    line = int(re.search(r"expanded\):(\d+)", source)[1])  # type: ignore[index]
+    assert "<cylinder" in text.read_text(encoding="utf-8").splitlines()[line - 1]
+    page = (Path("out") / "audit-cart.urdf.html").read_text(encoding="utf-8")
+    assert "lines are those of the text that cart.urdf.xacro expands to, Reading.text" in page
 
 
 def test_the_command_advises_its_own_options(capsys: Any, tmp_path: Path) -> None:

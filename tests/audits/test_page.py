@@ -249,10 +249,12 @@ def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_pa
     assert c2d.__version__ in rows["crawler2d"]
     *_, (_, again) = file_page.all("pre")
     # Obstacles of one's own are no option of the command.
-    assert again.startswith("crawler2d.audit('cart.urdf', obstacles=..., samples=12")
+    assert of_file.reading is not None
+    path = of_file.reading.path
+    assert again.startswith(f"crawler2d.audit({str(path)!r}, obstacles=..., samples=12")
     changed = dataclasses.replace(of_file, call=dataclasses.replace(of_file.call, own=()))
     *_, (_, again) = Page(changed.to_html()).all("pre")
-    assert again.startswith("python -m crawler2d audit cart.urdf --samples 12 --repeats 1 --seed 3")
+    assert again.startswith(f"python -m crawler2d audit {path} --samples 12 --repeats 1 --seed 3")
 
 
 # Replays

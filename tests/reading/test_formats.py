@@ -291,7 +291,7 @@ def test_the_torque_of_a_robot_acts_at_its_rear_end(tmp_path: Path) -> None:
 
 
 def test_no_wheel_moves_more_than_its_mass_with_the_track(tmp_path: Path) -> None:
-    """Two wheels of 1 kg state the inertia of hoops of 2 kg, two that of hoops of half a kilogram."""
+    """Two wheels of 1 kg state the inertia of hoops of 2 kg, two that of hoops of 0.5 kg."""
     front = pair("front", 0.2).replace('iyy="0.003"', f'iyy="{2.0 * 0.08**2}"')
     rear = pair("rear", -0.2).replace('iyy="0.003"', f'iyy="{0.5 * 0.08**2}"')
     reading = read(tmp_path, urdf(front + rear))

@@ -34,6 +34,7 @@ from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Terrain
+from crawler2d.reading.reading import Reading
 from crawler2d.runs.progress import Progress
 
 __all__ = ["Audit", "audit"]
@@ -169,7 +170,7 @@ class Audit(Audited):
 
 
 def audit(
-    robot: Robot | str | os.PathLike[str],
+    robot: Robot | Reading | str | os.PathLike[str],
     obstacles: Mapping[str, Terrain] | None = None,
     *,
     vary: Mapping[str, Any] | None = None,
@@ -194,8 +195,8 @@ def audit(
 
     Parameters
     ----------
-    robot : Robot or path
-        The robot, or the file of a model: SDF, URDF, xacro or MJCF.
+    robot : Robot, Reading or path
+        The robot, what was read of a model, or its file: SDF, URDF, xacro or MJCF.
     obstacles : mapping of str to terrain, optional
         What to drive over, by label, in place of the standard obstacles. They keep their friction.
     vary : mapping of str to distribution, optional
@@ -225,7 +226,7 @@ def audit(
     executor, threads, progress
         See `sweep`.
     **reading
-        For a file: the keywords of `read_robot`, such as `engine` and `trusted`.
+        For a path: the keywords of `read_robot`, such as `engine` and `trusted`.
 
     Returns
     -------
@@ -316,7 +317,7 @@ def audit(
             seed=seed,
             repair=repair,
             own=tuple(name for name, value in own_arguments.items() if value is not None),
-            reading=dict(reading),
+            reading={} if read is None else read.how.given,
         ),
     )
 

@@ -17,10 +17,10 @@ _VALUES = {
     "mesh": "--mesh",
     "missing": "--missing",
     "ground_friction": "--ground-friction",
+    "tolerance": "--tolerance",
 }
 _LISTS = {"tracks": "--track"}
 _PAIRS = {"packages": "--package", "arguments": "--argument"}
-_USUAL = {"mesh": "refuse", "missing": "refuse"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,7 @@ class Call:
     own : tuple of str
         Names of the other arguments that were given.
     reading : mapping
-        How the file was read, as far as it was said.
+        How the file was read: the keywords of `read_robot` that differ from their defaults.
     """
 
     samples: int
@@ -54,21 +54,21 @@ def command_of(call: Call, file: str) -> str | None:
     >>> command_of(call, "my robot.sdf")
     "python -m crawler2d audit 'my robot.sdf' --samples 80 --repeats 2 --seed 1 --engine=gz"
     """
-    how = {name: value for name, value in call.reading.items() if value != _USUAL.get(name)}
-    if call.own or set(how) - {*_FLAGS, *_VALUES, *_LISTS, *_PAIRS}:
+    if call.own:
         return None
-    words = ["python", "-m", "crawler2d", "audit", file]
+    # A name that looks like an option is none with its folder.
+    words = ["python", "-m", "crawler2d", "audit", f"./{file}" if file.startswith("-") else file]
     words += ["--samples", str(call.samples), "--repeats", str(call.repeats)]
     words += ["--seed", str(call.seed)]
     if not call.repair:
         words.append("--no-repairs")
-    for name, value in how.items():
+    for name, value in call.reading.items():
         if name in _FLAGS:
-            words += [_FLAGS[name]] * bool(value)
+            words.append(_FLAGS[name])
         elif name in _VALUES:
-            words += [] if value is None else [f"{_VALUES[name]}={value}"]
+            words.append(f"{_VALUES[name]}={value}")
         elif name in _LISTS:
             words += [f"{_LISTS[name]}={each}" for each in value]
         else:
-            words += [f"{_PAIRS[name]}={key}={each}" for key, each in (value or {}).items()]
+            words += [f"{_PAIRS[name]}={key}={each}" for key, each in value.items()]
     return shlex.join(words)

@@ -1,4 +1,4 @@
-"""What is audited: a robot, or a file with its friction on floors that may be."""
+"""What is audited: a robot, or a model file with its friction on floors that may be."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Subject(NamedTuple):
     robot : Robot
         The robot.
     reading : Reading, optional
-        What was read, if it is a file.
+        What was read, if it is of a file.
     floors : mapping of float to float, optional
         [-] The friction with the floor of each of `FLOORS`; None if that of the floor is given.
     """
@@ -52,34 +52,32 @@ class Subject(NamedTuple):
 
 
 def subject_of(robot: object, how: HowToRead) -> Subject:
-    """Take a robot, or read a file; what reading doubts is left to the lint.
+    """Take a robot or what was read, or read a file; what reading doubts is left to the lint.
 
     Raises
     ------
     ScenarioError
-        If it is neither, a keyword is unknown, or the file cannot be read.
+        If it is none of them, a keyword is unknown, or the file cannot be read.
     """
-    if isinstance(robot, Robot):
+    if isinstance(robot, (Robot, Reading)):
         for name, value in how.items():
-            raise ScenarioError(name, value, "must be left out: the robot is not read from a file")
+            raise ScenarioError(name, value, "must be left out: no file is read")
+    if isinstance(robot, Robot):
         return Subject(robot)
-    if not isinstance(robot, (str, os.PathLike)):
-        raise ScenarioError("robot", robot, "must be a Robot or the name of a file")
+    read = robot if isinstance(robot, Reading) else _read(robot, how)
+    if read.how.ground_friction is not None:
+        return Subject(read.robot, read)
+    return Subject(read.robot, read, {floor: read.friction_on(floor) for floor in FLOORS})
+
+
+def _read(path: object, how: HowToRead) -> Reading:
+    if not isinstance(path, (str, os.PathLike)):
+        rule = "must be a Robot, a Reading, or the name of a file"
+        raise ScenarioError("robot", path, rule)
     unknown = set(how) - set(HowToRead.__annotations__)
     if unknown:
         rule = f"must be one of {', '.join(HowToRead.__annotations__)}"
         raise ScenarioError("audit", min(unknown), rule)
     with warnings.catch_warnings():
-        # What reading doubts is in the lint.
         warnings.simplefilter("ignore", ScenarioWarning)
-        read = read_robot(robot, **how)
-        if how.get("ground_friction") is not None:
-            return Subject(read.robot, read)
-        floors = {floor: _friction_on(robot, how, floor) for floor in FLOORS}
-    return Subject(read.robot, read, floors)
-
-
-def _friction_on(path: str | os.PathLike[str], how: HowToRead, floor: float) -> float:
-    """[-] Return the friction with a floor of some coefficient, by the rule of the engine."""
-    on_floor: HowToRead = {**how, "ground_friction": floor}
-    return read_robot(path, **on_floor).friction
+        return read_robot(path, **how)

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 from crawler2d.common.arrays import real_number
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.friction import ENGINES
 from crawler2d.reading.meshes import MeshRule
 
-__all__ = ["How"]
+__all__ = ["TOLERANCE", "How"]
+
+TOLERANCE = 0.001
+"""[m] By which sides may differ: public models are symmetric to their last digit, CAD exports to
+0.1 mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +59,7 @@ class How:
     missing: str = "refuse"
     tracks: Collection[str] = ()
     ground_friction: float | None = None
-    tolerance: float = 0.001
+    tolerance: float = TOLERANCE
     trusted: bool = False
     packages: Mapping[str, Path] = field(default_factory=dict)
     arguments: Mapping[str, str] = field(default_factory=dict)
@@ -73,6 +77,14 @@ class How:
         _check_between(self.tolerance, "tolerance", 0.0, 0.1)
         if self.ground_friction is not None:
             _check_between(self.ground_friction, "ground_friction", 0.0, 1e3)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What differs from the defaults, as `read_robot` takes it; folders as text."""
+        usual = How()
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        values["packages"] = {name: str(folder) for name, folder in self.packages.items()}
+        return {name: value for name, value in values.items() if value != getattr(usual, name)}
 
     @property
     def leaves_out_missing(self) -> bool:

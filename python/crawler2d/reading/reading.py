@@ -19,14 +19,13 @@ from crawler2d.reading.assembly import Assembly, assembled
 from crawler2d.reading.files import Files
 from crawler2d.reading.formats import tree_of
 from crawler2d.reading.friction import ENGINES, Engine
-from crawler2d.reading.how import How
+from crawler2d.reading.how import TOLERANCE, How
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.silhouettes import Silhouette, silhouettes
 from crawler2d.reading.sources import Sources
 
 __all__ = ["Reading", "read_robot", "read_text"]
 
-_TOLERANCE = 0.001  # [m] Public models are symmetric to their last digit; CAD exports to 0.1 mm.
 _SHOWN = 12  # wheels in the text of a reading
 
 
@@ -89,6 +88,17 @@ class Reading:
             f" friction {self.friction:.3g} ({self.tree.format}, {self.tree.file})"
         )
 
+    def friction_on(self, ground: float) -> float:
+        """[-] Return the friction with ground of another coefficient, by the rule of `engine`."""
+        _, friction, _ = assembled(
+            self.tree,
+            forward=self.how.forward,
+            tolerance=self.how.tolerance,
+            engine=self.engine,
+            ground=ground,
+        )
+        return friction
+
     def __repr__(self) -> str:
         """Write the robot, its wheels, and what was decided and doubted."""
         rows = [self.in_words]
@@ -123,7 +133,7 @@ def read_robot(
     missing: Literal["refuse", "leave_out"] = "refuse",
     tracks: Collection[str] = (),
     ground_friction: float | None = None,
-    tolerance: float = _TOLERANCE,
+    tolerance: float = TOLERANCE,
     trusted: bool = False,
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     arguments: Mapping[str, str] | None = None,
@@ -219,7 +229,7 @@ def read_robot(
         model=model,
         mesh=mesh,
         missing=missing,
-        tracks=tracks,
+        tracks=tuple(tracks),
         ground_friction=ground_friction,
         tolerance=tolerance,
         trusted=trusted is True,
@@ -260,12 +270,15 @@ def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[Scenario
     robot.wheels()  # the core checks every rule of a robot
     left_out = [("left out", what, f"is {kind}") for what, kind in found.left_out]
     doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.told.doubts]]
+    notes = list(work.told.notes)
+    if path.suffix == ".xacro":
+        notes.append(f"lines are those of the text that {path.name} expands to, Reading.text")
     reading = Reading(
         robot=robot,
         friction=friction,
         sources=Sources(work.told.sources),
         wheels=_table(work),
-        notes=tuple(work.told.notes),
+        notes=tuple(notes),
         doubts=tuple(str(doubt) for doubt in doubts),
         engine=engine,
         tree=tree,

@@ -20,6 +20,7 @@ from crawler2d.audits.plain import plain_of
 from crawler2d.audits.verdicts import least_samples
 from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
+from crawler2d.reading.how import TOLERANCE
 from crawler2d.reading.meshes import MeshRule
 
 __all__ = ["add_arguments", "run"]
@@ -65,6 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--track", action="append", default=[], help="a link that moves; repeatable"
     )
     reading.add_argument("--ground-friction", type=float, help="of the floor's own surface")
+    reading.add_argument("--tolerance", type=float, default=TOLERANCE, help="between sides, in m")
     reading.add_argument("--trusted", action="store_true", help="let xacro evaluate expressions")
     reading.add_argument("--package", action="append", default=[], metavar="NAME=FOLDER")
     reading.add_argument("--argument", action="append", default=[], metavar="NAME=VALUE")
@@ -108,6 +110,10 @@ def _show(found: Audit, options: argparse.Namespace) -> None:
             path = _OUT / f"audit-{options.file.stem}.html"
         found.to_html(path, threads=options.threads)
         print(f"\nThe page is in {path}", file=beside)
+        if found.reading is not None and found.reading.path.suffix == ".xacro":
+            expanded = path.with_name(f"{path.stem}-expanded.urdf")
+            expanded.write_text(found.reading.text, encoding="utf-8")
+            print(f"The lines are those of {expanded}", file=beside)
     if options.patch is not None and found.seizes:
         _patch(found, options.patch, beside)
 
@@ -148,9 +154,9 @@ def _given(number: int | None, usual: int) -> int:
 
 
 def _reading(options: argparse.Namespace) -> dict[str, Any]:
-    names = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "trusted")
+    names = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "tolerance")
     return {
-        **{name: getattr(options, name) for name in names},
+        **{name: getattr(options, name) for name in (*names, "trusted")},
         "tracks": options.track,
         "packages": _pairs(options.package, "package"),
         "arguments": _pairs(options.argument, "argument"),

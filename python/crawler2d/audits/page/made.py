@@ -66,11 +66,12 @@ def _table(head: tuple[str, str], rows: Iterable[tuple[str, str]], label: str) -
 def _again(audit: Audited) -> str:
     """Write the command that makes the audit again, or else the call."""
     call, read = audit.call, audit.reading
-    command = None if read is None else command_of(call, read.tree.file)
+    command = None if read is None else command_of(call, str(read.path))
     if command is not None:
         return command
-    arguments = ["robot" if read is None else repr(read.tree.file)]
-    arguments += [f"{name}=..." for name in (*call.own, *call.reading)]
+    arguments = ["robot" if read is None else repr(str(read.path))]
+    arguments += [f"{name}=..." for name in call.own]
+    arguments += [f"{name}={value!r}" for name, value in call.reading.items()]
     arguments += [
         f"{name}={getattr(call, name)}" for name in ("samples", "repeats", "seed", "repair")
     ]
