@@ -1,19 +1,26 @@
-"""Model files with faults: shipped and written ones, with bytes, numbers, tags, lines changed."""
+"""Model files with faults: shipped and written ones, with bytes, numbers, tags, lines changed.
+
+Where one names a file, a fault may name another in its place, such as a pipe or a device.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 import random
 import re
+import struct
+import zlib
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import crawler2d as c2d
 from crawler2d.common.ends import Disc
 from crawler2d.parameters.track import Track
+from tests.reading import carts
+from tests.reading.odd_files import ODD
 from tests.robots.robot_files import FOLDER
 
-CARTS = Path(__file__).parent.parent / "reading" / "files"
+CARTS = carts.FILES
 
 
 def _written(track: Track, form: str, discs: Sequence[Disc] | None = None) -> bytes:
@@ -32,31 +39,115 @@ GEARS = c2d.LineOfWheels(3, wheel=c2d.GearWheel(grouser_count=6))
 TAPERED = c2d.LineOfWheels(2, wheel=c2d.GearWheel(grouser_count=5, base_thickness=0.012))
 TRIANGLE = ((-0.18, 0.0, 0.064), (0.18, 0.0, 0.064), (0.25, 0.1, 0.05))
 
-ORIGINALS: dict[str, bytes] = {
+RING = [(0.08 * math.cos(a / 12 * math.tau), 0.08 * math.sin(a / 12 * math.tau)) for a in range(12)]
+RIM = [[(x, y, z) for z in (-0.025, 0.025) for x, y in RING][n] for n in range(24)]
+"""Corners of a prism that is a wheel [m]."""
+
+TRIANGLES = [
+    *[(n, (n + 1) % 12, 12 + n) for n in range(12)],
+    *[(12 + n, n, 12 + (n + 1) % 12) for n in range(12)],
+    *[(0, n, n + 1) for n in range(1, 11)],
+    *[(12, 12 + n, 13 + n) for n in range(1, 11)],
+]
+
+
+def _facet(corners: tuple[int, int, int]) -> str:
+    rows = "".join("vertex {:g} {:g} {:g}\n".format(*RIM[n]) for n in corners)
+    return f"facet normal 0 0 0\nouter loop\n{rows}endloop\nendfacet\n"
+
+
+MESHES = {
+    "part.stl": f"solid part\n{''.join(map(_facet, TRIANGLES))}endsolid part\n".encode(),
+    "binary.stl": b"\0" * 80
+    + struct.pack("<I", len(TRIANGLES))
+    + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *(part for n in corners for part in RIM[n]), 0)
+        for corners in TRIANGLES
+    ),
+    "part.obj": "".join(
+        ["v {:g} {:g} {:g}\n".format(*corner) for corner in RIM]
+        + ["f {} {} {}\n".format(*(n + 1 for n in corners)) for corners in TRIANGLES]
+    ).encode(),
+}
+"""A wheel as a mesh, in each form."""
+
+CHUNK = struct.Struct(">I4s")
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return CHUNK.pack(len(data), kind) + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+PARTS = {
+    **MESHES,
+    "wheels.xacro": f"{carts.XACRO}{carts.WHEELS}</robot>".encode(),
+    "masses.yaml": b"hull: 8\nothers: [1, 2.5]\n",
+    "part.png": b"\x89PNG\r\n\x1a\n"
+    + _chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 0, 0, 0, 0))
+    + _chunk(b"IDAT", zlib.compress(b"\0\x10\x20\x30\x40" * 4))
+    + _chunk(b"IEND", b""),
+}
+"""Files that models name."""
+
+_ROUND = '<mesh filename="{}"/>'
+_WHEELS = carts.pair("front", 0.2, geometry=_ROUND) + carts.pair("rear", -0.2, geometry=_ROUND)
+ON_MESHES = {name: carts.urdf(_WHEELS.format(*[name] * 4)).encode() for name in MESHES}
+"""By mesh, a cart that has it for its wheels."""
+
+
+def _changed(name: str, old: str, new: str) -> bytes:
+    text = (CARTS / name).read_text(encoding="utf-8")
+    assert old in text
+    return text.replace(old, new, 1).encode()
+
+
+SDF: dict[str, bytes] = {
     **{
         path.name: path.read_bytes()
         for path in (
             FOLDER / "absolem.sdf",
             FOLDER / "marv.sdf",
             FOLDER / "tracked_vehicle_simple.sdf",
-            FOLDER / "eng.urdf",
             CARTS / "cart.sdf",
-            CARTS / "cart.urdf",
         )
     },
     "belt.sdf": _written(c2d.BeltTrack(), "sdf", TRIANGLE),
     "gears.sdf": _written(GEARS, "sdf"),
-    "gears.urdf": _written(GEARS, "urdf"),
+    "mesh.sdf": _changed(
+        "cart.sdf", "<box><size>0.5 0.25 0.125</size></box>", "<mesh><uri>part.stl</uri></mesh>"
+    ),
 }
 """By name; of the small ones, a fault hits what matters more often."""
 
+URDF = {
+    "eng.urdf": (FOLDER / "eng.urdf").read_bytes(),
+    "cart.urdf": (CARTS / "cart.urdf").read_bytes(),
+    "gears.urdf": _written(GEARS, "urdf"),
+    "mesh.urdf": ON_MESHES["part.obj"],
+}
 MJCF = {
     "cart.xml": (CARTS / "cart.xml").read_bytes(),
     "belt.xml": _written(c2d.BeltTrack(), "mjcf", TRIANGLE),
     "gears.xml": _written(GEARS, "mjcf"),
     "tapered.xml": _written(TAPERED, "mjcf"),
+    "assets.xml": _changed(
+        "cart.xml",
+        "<worldbody>",
+        """<asset><mesh name="m" file="part.stl"/><mesh name="n" file="part.obj"/>
+        <texture name="t" type="2d" file="part.png"/><texture name="c" type="cube"
+        fileright="part.png"/><hfield name="h" file="part.png" size="1 1 0.1 0.1"/></asset>
+        <worldbody><geom type="mesh" mesh="n" contype="0" conaffinity="0"/>""",
+    ),
 }
-XACRO = {path.name: path.read_bytes() for path in (FOLDER / "eng.xacro", CARTS / "cart.xacro")}
+XACRO = {
+    **{path.name: path.read_bytes() for path in (FOLDER / "eng.xacro", CARTS / "cart.xacro")},
+    "parts.xacro": carts.urdf('<xacro:include filename="wheels.xacro"/>', mass="${m['hull']}")
+    .replace(
+        '<robot name="cart">',
+        f'{carts.XACRO}<xacro:property name="m" value="${{xacro.load_yaml(\'masses.yaml\')}}"/>',
+    )
+    .encode(),
+}
 
 NUMBERS = (
     *b"nan inf -inf 1e999 -1 0 -0.0 1e-320 1e300 999999 0x10 1_0 1,5 -1e6 3.1415".split(),
@@ -65,7 +156,15 @@ NUMBERS = (
 
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:e[+-]?\d+)?")
 _TAG = re.compile(rb"</?[A-Za-z_:]+")
+_FILE = re.compile(rb"(?<=[\"'>])[\w./:$() -]+\.(?:stl|obj|dae|png|yaml|xacro)(?=[\"'<])")
 _WORD = re.compile(rb"(?<=[>\"'])[A-Za-z_]\w+(?=[<\"'])")
+
+ELSEWHERE = {
+    "scheme": ("file:///dev/zero", "file://zero.stl", "package://p/pipe.obj", "model://m/a.stl"),
+    "place": ("/dev/zero", "../part.stl", "/proc/self/mem", "/proc/kmsg", ".", "/", "no.stl"),
+    "part": tuple(PARTS),
+}
+"""Names that a fault may give a file, beside those of what is none."""
 
 Fault = Callable[[bytes, random.Random], bytes]
 
@@ -94,6 +193,16 @@ def _of_a_tag(data: bytes, draw: random.Random) -> bytes:
 def _of_a_name(data: bytes, draw: random.Random) -> bytes:
     words = _WORD.findall(data)
     return _swapped(_WORD, data, draw, draw.choice(words)) if words else data
+
+
+def _of_a_file(data: bytes, draw: random.Random) -> bytes:
+    named = _FILE.findall(data)
+    if not named:
+        return _of_a_number(data, draw)
+    suffix = draw.choice([*named, b"a.stl", b"a.obj"]).rpartition(b".")[2].decode()
+    name = draw.choice([*ODD, *ELSEWHERE])
+    new = draw.choice(ELSEWHERE[name]) if name in ELSEWHERE else f"{name}.{suffix}"
+    return _swapped(_FILE, data, draw, new.encode())
 
 
 def _swapped(pattern: re.Pattern[bytes], data: bytes, draw: random.Random, new: bytes) -> bytes:
@@ -127,6 +236,7 @@ _FAULTS: tuple[Fault, ...] = (
     _of_a_number,
     _of_a_tag,
     _of_a_name,
+    _of_a_file,
     _without_lines,
     _with_lines_twice,
     _cut_short,

@@ -7,9 +7,11 @@ what it needs, under the same limits, with all of the reader round it.
 
 import random
 import resource
+import signal
 import sys
 import time
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +19,18 @@ import pytest
 
 import crawler2d as c2d
 from tests.fuzz.account import SEED, Account, cases
-from tests.fuzz.model_files import MJCF, ORIGINALS, XACRO, mutated
+from tests.fuzz.model_files import MESHES, MJCF, ON_MESHES, PARTS, SDF, URDF, XACRO, mutated
 from tests.fuzz.standing_child import StandingChild
+from tests.reading.odd_files import ODD, lay_out
 
 LONGEST = 2.2
 """[s] Of processor time for one file: 2 s for a child, and what the reader itself does."""
+
+PATIENCE = 10.0
+"""[s] Of the clock for one file; what takes longer waits for something, and is ended."""
+
+ODD_SHARE = 0.02
+"""Of all models, how many are no file, but a pipe, a device or the like."""
 
 MOST = 500
 """[MB] For all files, one after the other, and for any child with its imports."""
@@ -46,11 +55,18 @@ def go_through(
     count: int,
     originals: dict[str, bytes],
     standing: StandingChild | None = None,
+    models: dict[str, bytes] | None = None,
     **how: Any,
 ) -> Account:
-    """Read that many mutated files; a child that stands ready may do what the reader's do."""
+    """Read that many mutated files; a child that stands ready may do what the reader's do.
+
+    Where there are models, what is mutated is the mesh that each names.
+    """
     account = Account("model files")
     names = sorted(originals)
+    lay_out(folder, sorted({Path(name).suffix[1:] for name in (*names, *PARTS)}))
+    for name, data in PARTS.items():
+        (folder / name).write_bytes(data)
     before, largest_child = megabytes(), megabytes(resource.RUSAGE_CHILDREN)
     for number in range(count):
         draw = random.Random(f"{SEED} {number}")
@@ -58,8 +74,14 @@ def go_through(
         name = draw.choices(names, [1.0 / len(originals[n]) for n in names])[0]
         path = folder / name
         path.write_bytes(mutated(originals[name], draw))
-        case = f"case {number} of {name}"
+        if models is not None:
+            path = folder / "cart.urdf"
+            path.write_bytes(models[name])
+        elif draw.random() < ODD_SHARE:
+            path = folder / f"{draw.choice(list(ODD))}{path.suffix}"
+        case = f"case {number} of {path.name if models is None else name}"
         start, asked = computed(), standing.asked if standing else 0
+        signal.setitimer(signal.ITIMER_REAL, PATIENCE)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", c2d.ScenarioWarning)
@@ -69,8 +91,12 @@ def go_through(
             assert reading.robot.wheels() is not None
         except c2d.ScenarioError as error:
             account.counts["refused" if error.path else "refused without a path"] += 1
+            if "regular file" in error.rule or "folder or package of its model" in error.rule:
+                account.counts["of them for a file"] += 1
         except Exception as error:
             account.fault(type(error).__name__, f"{case}: {error}")
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         seconds = computed() - start
         if standing is not None and standing.asked > asked:
             seconds += standing.seconds
@@ -95,17 +121,50 @@ def check(account: Account) -> None:
     assert account.counts["refused"] > 0
 
 
-unix = pytest.mark.skipif(sys.platform == "win32", reason="measures memory as Unix tells it")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and limits of Unix")
 
 
-@unix
-def test_a_mutated_model_file_is_read_or_refused(tmp_path: Path) -> None:
-    check(go_through(tmp_path, cases("MODELS", 300), ORIGINALS))
+@pytest.fixture(autouse=True)
+def _nothing_waits() -> Iterator[None]:
+    def end(*_: Any) -> None:
+        raise TimeoutError(f"no answer within {PATIENCE:g} s")
+
+    before = signal.signal(signal.SIGALRM, end)
+    yield
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("originals", [SDF, URDF], ids=["sdf", "urdf"])
+def test_a_mutated_model_file_is_read_or_refused(
+    tmp_path: Path, originals: dict[str, bytes]
+) -> None:
+    check(go_through(tmp_path, cases("MODELS", 200), originals))
 
 
 @pytest.mark.soak
-def test_20000_mutated_model_files_are_read_or_refused(tmp_path: Path) -> None:
-    check(go_through(tmp_path, cases("MODELS", 20_000), ORIGINALS))
+@pytest.mark.parametrize("originals", [SDF, URDF], ids=["sdf", "urdf"])
+def test_20000_mutated_model_files_are_read_or_refused(
+    tmp_path: Path, originals: dict[str, bytes]
+) -> None:
+    check(go_through(tmp_path, cases("MODELS", 20_000), originals))
+
+
+MESH_FORMS = pytest.mark.parametrize("form", ["stl", "obj"])
+
+
+@MESH_FORMS
+def test_a_mutated_mesh_is_read_or_refused(tmp_path: Path, form: str) -> None:
+    meshes = {name: data for name, data in MESHES.items() if name.endswith(form)}
+    count = cases("MESHES", 100)
+    check(go_through(tmp_path, count, meshes, models=ON_MESHES, mesh="hull"))
+
+
+@pytest.mark.soak
+@MESH_FORMS
+def test_20000_mutated_meshes_are_read_or_refused(tmp_path: Path, form: str) -> None:
+    meshes = {name: data for name, data in MESHES.items() if name.endswith(form)}
+    count = cases("MESHES", 20_000)
+    check(go_through(tmp_path, count, meshes, models=ON_MESHES, mesh="hull"))
 
 
 def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
@@ -118,7 +177,6 @@ def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path) -> None:
     check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, **TRUSTED))
 
 
-@unix
 @pytest.mark.soak
 def test_20000_mutated_mjcf_files_are_read_or_refused(tmp_path: Path) -> None:
     """Each in a fork of a child that stands ready, under the limits of any child."""
@@ -127,7 +185,6 @@ def test_20000_mutated_mjcf_files_are_read_or_refused(tmp_path: Path) -> None:
         check(go_through(tmp_path, cases("MJCF", 20_000), MJCF, standing))
 
 
-@unix
 @pytest.mark.soak
 def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
@@ -135,7 +192,6 @@ def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path) -> None:
         check(go_through(tmp_path, cases("XACRO", 20_000), XACRO, standing, **TRUSTED))
 
 
-@unix
 def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     path = tmp_path / "loop.xacro"

@@ -15,6 +15,7 @@ import crawler2d as c2d
 FILES = Path(__file__).parent / "files"
 ROBOTS = Path(__file__).parent.parent / "robots"
 
+XACRO = '<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 HULL = '<link name="hull"><inertial><mass value="{mass}"/>{tensor}</inertial>{shapes}</link>'
 TENSOR = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/>'
 WHEEL_TENSOR = '<inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0" izz="0.002"/>'

@@ -2,24 +2,23 @@
 
 import os
 import signal
-import socket
 import struct
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import FILES, WHEELS, collision, read, refused, urdf
+from tests.reading.carts import FILES, WHEELS, XACRO, collision, read, refused, urdf
+from tests.reading.odd_files import ODD
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
 
 CORNERS = [(x, y, z) for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.0, 0.05)]
 OBJ = "\n".join(f"v {x} {y} {z}" for x, y, z in CORNERS)
-XACRO = '<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 @pytest.fixture(autouse=True)
@@ -36,40 +35,7 @@ def _nothing_waits() -> Iterator[None]:
     signal.signal(signal.SIGALRM, before)
 
 
-def pipe(path: Path) -> None:
-    os.mkfifo(path)
-
-
-def folder(path: Path) -> None:
-    path.mkdir()
-
-
-def bound(path: Path) -> None:
-    here = Path.cwd()
-    os.chdir(path.parent)  # names of sockets are short
-    with socket.socket(socket.AF_UNIX) as made:
-        made.bind(path.name)
-    os.chdir(here)
-
-
-def linked(to: str) -> Callable[[Path], None]:
-    def make(path: Path) -> None:
-        path.symlink_to(to)
-
-    make.__name__ = f"linked to {to}"
-    return make
-
-
-def linked_pipe(path: Path) -> None:
-    os.mkfifo(path.with_name("the pipe"))
-    path.symlink_to("the pipe")
-
-
-ODD = (
-    *(pipe, folder, bound, linked_pipe, linked("/dev/zero"), linked("/dev/random")),
-    *(linked("/dev/tty"), linked("/etc/passwd"), linked("itself"), linked("nowhere")),
-)
-odd = pytest.mark.parametrize("make", ODD, ids=[make.__name__ for make in ODD])
+odd = pytest.mark.parametrize("what", ODD)
 
 
 def with_mesh(name: str) -> str:
@@ -79,12 +45,11 @@ def with_mesh(name: str) -> str:
 @odd
 @pytest.mark.parametrize("suffix", ["stl", "obj"])
 def test_a_mesh_that_is_no_file_of_the_model_is_refused(
-    tmp_path: Path, make: Callable[[Path], None], suffix: str
+    tmp_path: Path, what: str, suffix: str
 ) -> None:
-    name = "itself" if make.__name__ == "linked to itself" else "mesh"
-    make(tmp_path / f"{name}.{suffix}")
+    ODD[what](tmp_path / f"mesh.{suffix}")
     rule = r"must be (a regular file that can be read \(.*\)|in the folder or package of its model)"
-    refused(tmp_path, with_mesh(f"{name}.{suffix}"), f'{rule}.*mesh="leave_out"', mesh="hull")
+    refused(tmp_path, with_mesh(f"mesh.{suffix}"), f'{rule}.*mesh="leave_out"', mesh="hull")
 
 
 @pytest.mark.parametrize("name", ["file:///dev/zero.stl", "/dev/zero.stl", "../dev/zero.stl"])
@@ -96,27 +61,25 @@ def test_dev_zero_is_not_read_as_a_mesh(tmp_path: Path, name: str) -> None:
 
 @odd
 @pytest.mark.parametrize("suffix", ["urdf", "sdf", "xml", "xacro"])
-def test_a_model_that_is_no_file_is_refused(
-    tmp_path: Path, make: Callable[[Path], None], suffix: str
-) -> None:
+def test_a_model_that_is_no_file_is_refused(tmp_path: Path, what: str, suffix: str) -> None:
     path = tmp_path / f"cart.{suffix}"
-    make(path)
+    ODD[what](path)
     with pytest.raises(c2d.ScenarioError) as caught:
         c2d.read_robot(path, trusted=True)
-    if make.__name__ != "linked to /etc/passwd":  # a file, which its user named, but no model
+    if what != "elsewhere":  # a file, which its user named, but no model
         assert caught.value.path == "path"
         assert "must be a regular file that can be read (" in caught.value.rule
 
 
 @odd
-@pytest.mark.parametrize("what", ["include", "yaml"])
+@pytest.mark.parametrize("named", ["include", "yaml"])
 def test_a_file_that_xacro_names_and_is_none_is_refused(
-    tmp_path: Path, make: Callable[[Path], None], what: str
+    tmp_path: Path, what: str, named: str
 ) -> None:
     pytest.importorskip("xacrodoc")
-    make(tmp_path / "part")
+    ODD[what](tmp_path / "part")
     part = '<xacro:include filename="part"/>'
-    if what == "yaml":
+    if named == "yaml":
         part = '<xacro:property name="p" value="${xacro.load_yaml(\'part\')}"/><a>${p}</a>'
     rule = r"must be .*(\(.*\)|in the folder or package|xacro that expands, got .*No such file)"
     refused(tmp_path, f"{XACRO}\n{part}</robot>", rule, "cart.xacro", trusted=True)
@@ -137,16 +100,16 @@ def mjcf(asset: str) -> str:
     return text.replace("<worldbody>", f"<asset>{asset}</asset><worldbody>", 1)
 
 
-@pytest.mark.parametrize("make", [pipe, linked("/dev/zero"), linked("/etc/passwd")])
-@pytest.mark.parametrize("what", MJCF)
+@pytest.mark.parametrize("what", ["pipe", "device", "elsewhere"])
+@pytest.mark.parametrize("named", MJCF)
 def test_a_file_that_mjcf_names_and_is_none_is_refused(
-    tmp_path: Path, make: Callable[[Path], None], what: str
+    tmp_path: Path, what: str, named: str
 ) -> None:
     pytest.importorskip("mujoco")
     for suffix in ("stl", "png", "skn", "xml"):
-        make(tmp_path / f"part.{suffix}")
+        ODD[what](tmp_path / f"part.{suffix}")
     rule = "must (be a regular file|be in the folder or package|hold the robot itself)"
-    refused(tmp_path, mjcf(MJCF[what]), rule, "cart.xml")
+    refused(tmp_path, mjcf(MJCF[named]), rule, "cart.xml")
 
 
 def test_mujoco_opens_nothing_by_itself(tmp_path: Path) -> None:
