@@ -224,6 +224,16 @@ def test_an_argument_that_is_none_of_its_values_is_refused(
     assert caught.value.path == argument
 
 
+@pytest.mark.parametrize("argument", ["packages", "arguments"])
+@pytest.mark.parametrize("value", [["a"], "a", 7, {"a": object()}, {7: "a"}, {"a": ["b"]}])
+def test_packages_and_arguments_that_are_no_pairs_are_refused(
+    tmp_path: Path, argument: str, value: object
+) -> None:
+    with pytest.raises(c2d.ScenarioError, match=r" by (their )?name") as caught:
+        read(tmp_path, urdf(WHEELS), **{argument: value})  # type: ignore[arg-type]
+    assert caught.value.path.startswith(argument)
+
+
 def test_a_flipper_without_a_partner_is_refused(tmp_path: Path) -> None:
     text = urdf(WHEELS, flippers().replace("0.2 -0.25 0", "0.19 -0.25 0"))
     refused(tmp_path, text, "must have a partner on the other side")

@@ -21,6 +21,7 @@ import re
 import stat
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from crawler2d.errors import ScenarioError
 
@@ -53,7 +54,7 @@ class Files:
 
     Parameters
     ----------
-    model : Path
+    model : path
         The file of the model, to whose folder names are relative.
     packages : mapping of str to path
         Folders of packages by name.
@@ -64,7 +65,9 @@ class Files:
         That of the model, with all links followed.
     """
 
-    def __init__(self, model: Path, packages: Mapping[str, str | os.PathLike[str]]) -> None:
+    def __init__(
+        self, model: str | os.PathLike[str], packages: Mapping[str, str | os.PathLike[str]]
+    ) -> None:
         self._model = _real(model, "path")
         self.folder = self._model.parent
         self._packages = {name: _real(folder, "packages") for name, folder in packages.items()}
@@ -72,6 +75,12 @@ class Files:
         named = [_real(each, "packages") for each in searched.split(os.pathsep) if each]
         self._roots = [_package_round(self.folder), *self._packages.values(), *named]
         self._left = LARGEST_TOGETHER
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The parameters, for another process."""
+        packages = {name: str(folder) for name, folder in self._packages.items()}
+        return {"model": str(self._model), "packages": packages}
 
     def model(self) -> bytes:
         """Read the model itself; see `read`."""

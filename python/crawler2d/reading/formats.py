@@ -61,11 +61,10 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
     missing: list[tuple[str, str]] = []
     if path.suffix == ".xacro":
         data, includes = expanded(
-            path,
+            files,
             data,
             parsed(data, name),  # entities are refused before anything else reads the file
             trusted=how.trusted,
-            packages=how.packages,
             arguments=how.arguments,
             leave_out=how.leaves_out_missing,
         )
@@ -85,7 +84,7 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         tree = read_urdf(root, meshes, left_out=joints)
         missing += [(joint.attribute("name"), "a joint of missing links") for joint in joints or ()]
     elif root.tag == "mujoco":
-        tree = read_mjcf(root, text, path, how, meshes)
+        tree = read_mjcf(root, text, how.model, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
     missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
-from pathlib import Path
 from typing import Any, get_args
 
 from crawler2d.common.arrays import real_number
@@ -41,7 +41,7 @@ class How:
         [m] By how much the two sides may differ in side view.
     trusted : bool
         Whether the file may evaluate expressions.
-    packages : mapping of str to Path
+    packages : mapping of str to path
         Folders of packages.
     arguments : mapping of str to str
         Values for the arguments of a xacro file.
@@ -61,7 +61,7 @@ class How:
     ground_friction: float | None = None
     tolerance: float = TOLERANCE
     trusted: bool = False
-    packages: Mapping[str, Path] = field(default_factory=dict)
+    packages: Mapping[str, str | os.PathLike[str]] = field(default_factory=dict)
     arguments: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -74,6 +74,8 @@ class How:
             if not (value is None or isinstance(value, str)) or value not in allowed:
                 rule = f"must be one of {', '.join(str(each) for each in allowed)}"
                 raise ScenarioError(name, value, rule)
+        _check_pairs(self.packages, "packages", "folders by their names", (str, os.PathLike))
+        _check_pairs(self.arguments, "arguments", "texts or numbers by name", (str, int, float))
         _check_between(self.tolerance, "tolerance", 0.0, 0.1)
         if self.ground_friction is not None:
             _check_between(self.ground_friction, "ground_friction", 0.0, 1e3)
@@ -90,6 +92,14 @@ class How:
     def leaves_out_missing(self) -> bool:
         """Whether what is not there is left out."""
         return self.missing == "leave_out"
+
+
+def _check_pairs(pairs: object, path: str, what: str, kinds: tuple[type, ...]) -> None:
+    if not isinstance(pairs, Mapping):
+        raise ScenarioError(path, pairs, f"must be {what}")
+    for name, value in pairs.items():
+        if not isinstance(name, str) or not isinstance(value, kinds):
+            raise ScenarioError(f"{path}[{name!r}]", value, f"must be {what}")
 
 
 def _check_between(value: float, path: str, least: float, most: float) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
-from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 
@@ -26,7 +24,7 @@ _LARGEST = 1e6  # [m, kg, ...] as in other formats; limits may be infinite
 _SIZES = ("place", "center", "size", "points", "mass", "inertia", "moved")
 
 
-def read_mjcf(root: Element, text: str, path: Path, how: How, meshes: Meshes) -> Tree:
+def read_mjcf(root: Element, text: str, model: str | None, meshes: Meshes) -> Tree:
     """Read the robot of an MJCF file: what hangs on one free joint.
 
     Parameters
@@ -35,12 +33,10 @@ def read_mjcf(root: Element, text: str, path: Path, how: How, meshes: Meshes) ->
         Of the file.
     text : str
         All of it, which MuJoCo reads for itself.
-    path : Path
-        Where it is.
-    how : How
-        The keywords of `read_robot`; `model` is the name of the body with the free joint.
+    model : str, optional
+        Name of the body with the free joint; None takes the only one.
     meshes : Meshes
-        What is done with meshes.
+        What is done with meshes, and the files of the model.
 
     Returns
     -------
@@ -56,12 +52,11 @@ def read_mjcf(root: Element, text: str, path: Path, how: How, meshes: Meshes) ->
     """
     _refuse_includes(root)
     file = root.where.file
-    path = path.resolve()
-    packages = {name: str(folder.resolve()) for name, folder in how.packages.items()}
-    question = {"text": text, "path": str(path), "file": file, "packages": packages}
-    plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=path.parent)
+    question = {"text": text, "file": file, "files": meshes.files.plain}
+    folder = meshes.files.folder
+    plain = answered("crawler2d.reading.mjcf_child", question, file=file, folder=folder)
     _refuse_wild(plain, file)
-    return _Model(plain, root.where, meshes).tree(how.model)
+    return _Model(plain, root.where, meshes).tree(model)
 
 
 def _refuse_includes(root: Element) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import Any
 
 from crawler2d.common.extras import extra
@@ -26,14 +26,11 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
     return lambda question: _described(mujoco, **question)
 
 
-def _described(
-    mujoco: Any, *, text: str, path: str, file: str, packages: dict[str, str]
-) -> dict[str, Any]:
-    files = Files(Path(path), packages)
+def _described(mujoco: Any, *, text: str, file: str, files: dict[str, Any]) -> dict[str, Any]:
     try:
         with no_more_files():
             spec = mujoco.MjSpec.from_string(text)
-        _hand_over(spec, files, file)
+        _hand_over(spec, Files(**files), file)
         with no_more_files():
             model = spec.compile()
     except ScenarioError:

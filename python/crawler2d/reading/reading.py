@@ -233,7 +233,7 @@ def read_robot(
         ground_friction=ground_friction,
         tolerance=tolerance,
         trusted=trusted is True,
-        packages={name: Path(folder) for name, folder in (packages or {}).items()},
+        packages=packages or {},
         arguments=arguments or {},
     )
     path = Path(path)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
+from crawler2d.reading.files import Files
 
 __all__ = ["expanded"]
 
 
 def expanded(
-    path: Path,
+    files: Files,
     data: bytes,
     root: Element,
     *,
     trusted: bool,
-    packages: Mapping[str, Path],
     arguments: Mapping[str, str],
     leave_out: bool,
 ) -> tuple[bytes, list[str]]:
@@ -25,16 +24,14 @@ def expanded(
 
     Parameters
     ----------
-    path : Path
-        The file.
+    files : Files
+        Those of the model.
     data : bytes
         What it holds.
     root : Element
         Of the file, for errors.
     trusted : bool
         Whether its user trusts it: its expressions are evaluated.
-    packages : mapping of str to Path
-        Folders by package.
     arguments : mapping of str to str
         Values of its ``xacro:arg``.
     leave_out : bool
@@ -61,16 +58,14 @@ def expanded(
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         root.refuse("another encoding", "must be UTF-8, which xacro reads")
-    path = path.resolve()
     question = {
         "text": text,
-        "path": str(path),
-        "packages": {name: str(folder.resolve()) for name, folder in packages.items()},
         "file": root.where.file,
+        "files": files.plain,
         "arguments": dict(arguments),
         "leave_out": leave_out,
     }
     answer = answered(
-        "crawler2d.reading.xacro_child", question, file=root.where.file, folder=path.parent
+        "crawler2d.reading.xacro_child", question, file=root.where.file, folder=files.folder
     )
     return answer["text"].encode(), answer["left_out"]

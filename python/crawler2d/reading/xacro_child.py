@@ -33,14 +33,13 @@ def _expanded(
     module: Any,
     *,
     text: str,
-    path: str,
     file: str,
-    packages: dict[str, str],
+    files: dict[str, Any],
     arguments: dict[str, str],
     leave_out: bool,
 ) -> dict[str, Any]:
-    module.packages.update_package_cache(packages)
-    builtins.open = _Door(Files(Path(path), packages), file, text)  # type: ignore[assignment]
+    module.packages.update_package_cache(files["packages"])
+    builtins.open = _Door(Files(**files), file, text)  # type: ignore[assignment]
     left_out: list[str] = []
     if leave_out:
         text = _without_missing(module, text, left_out)
