@@ -17,7 +17,7 @@ from crawler2d.__main__ import main
 from crawler2d.audits.call import Call, command_of
 from crawler2d.audits.plain import plain_of
 from crawler2d.reports import audit as command
-from tests.reading.carts import FILES
+from tests.reading.carts import FILES, WHEELS, collision, urdf
 
 
 def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
@@ -200,3 +200,14 @@ def test_the_command_advises_its_own_options(capsys: Any, tmp_path: Path) -> Non
     assert status == 2
     assert "--trusted" in err
     assert "trusted=True" not in err
+
+
+@pytest.mark.parametrize("name", ["package://p/m.stl", "/m.stl"])
+def test_the_command_advises_its_option_for_folders(capsys: Any, tmp_path: Path, name: str) -> None:
+    path = tmp_path / "cart.urdf"
+    shape = collision(f'<mesh filename="{name}"/>')
+    path.write_text(urdf(WHEELS, shapes=shape), encoding="utf-8")
+    status, _, err = run(capsys, str(path), "--mesh", "hull")
+    assert status == 2
+    assert "--package NAME=FOLDER" in err
+    assert "packages=" not in err

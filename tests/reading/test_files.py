@@ -55,7 +55,7 @@ def test_a_mesh_that_is_no_file_of_the_model_is_refused(
 @pytest.mark.parametrize("name", ["file:///dev/zero.stl", "/dev/zero.stl", "../dev/zero.stl"])
 def test_dev_zero_is_not_read_as_a_mesh(tmp_path: Path, name: str) -> None:
     (tmp_path / "cart").mkdir()
-    rule = r'in a folder that is named: packages=\{"name": folder\}'
+    rule = r"in a folder that is named: packages=\{name: folder\}"
     refused(tmp_path / "cart", with_mesh(name), rule, mesh="hull")
 
 

@@ -115,7 +115,7 @@ class Files:
         if not any(path.is_relative_to(root) for root in self._roots):
             rule = (
                 "must be in the folder or package of its model, or in a folder that is named:"
-                f' packages={{"name": folder}}{remedy}'
+                f" packages={{name: folder}}{remedy}"
             )
             raise ScenarioError(at, name, rule)
         try:
@@ -141,7 +141,7 @@ class Files:
             return self.folder / rest
         package, _, inside = rest.partition("/")
         if package not in self._packages:
-            rule = f'must be in a package whose folder is given: packages={{"{package}": ...}}'
+            rule = "must be in a package whose folder is given: packages={name: folder}"
             raise ScenarioError(at, name, rule)
         return self._packages[package] / inside
 
