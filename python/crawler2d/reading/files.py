@@ -63,6 +63,19 @@ class Files:
     ----------
     folder : Path
         That of the model, with all links followed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "wheel.obj").write_bytes(b"v 0 0 0")
+    >>> files = Files(folder / "cart.urdf", packages={"parts": folder / "parts"})
+    >>> files.read("wheel.obj", at="cart.urdf:3")
+    b'v 0 0 0'
+    >>> files.read("package://parts/wheel.obj", at="cart.urdf:4")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    crawler2d.errors.ScenarioError: cart.urdf:4 must be a regular file that can be read (No such ...
     """
 
     def __init__(
