@@ -3,6 +3,7 @@
 import os
 import signal
 import struct
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -184,7 +185,7 @@ def test_a_mesh_elsewhere_is_read_only_where_its_folder_is_named(tmp_path: Path,
     assert reading.robot.belly == ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.05), (-0.1, 0.05))
 
 
-@pytest.mark.parametrize("manifest", ["package.xml", "model.config"])
+@pytest.mark.parametrize("manifest", ["package.xml", "manifest.xml", "model.config"])
 def test_a_mesh_of_the_package_round_a_model_is_read(tmp_path: Path, manifest: str) -> None:
     for name in ("urdf", "meshes"):
         (tmp_path / name).mkdir()
@@ -269,3 +270,17 @@ def test_a_mesh_of_a_package_is_held_to_the_same_rules(tmp_path: Path) -> None:
     how: dict[str, Any] = {"mesh": "hull", "packages": {"p": tmp_path}}
     refused(tmp_path, text, "a pipe is none", **how)
     refused(tmp_path, text.replace("p/m", "p/../../m"), "in the folder or package", **how)
+
+
+def test_an_include_is_not_larger_than_a_model(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    with (tmp_path / "part.xacro").open("wb") as file:
+        file.truncate(5_000_000)
+    text = f'{XACRO}\n<xacro:include filename="part.xacro"/></robot>'
+    refused(tmp_path, text, "must have at most 4000000 bytes", "cart.xacro", trusted=True)
+
+
+def test_a_child_that_waits_is_ended_by_the_clock() -> None:
+    wait = "import os; from crawler2d.reading import limits; limits.CLOCK = 0.1; limits._limit()"
+    done = subprocess.run([sys.executable, "-c", f"{wait}; os.read(os.pipe()[0], 1)"], check=False)
+    assert done.returncode == -signal.SIGALRM
