@@ -13,7 +13,7 @@ import xarray as xr
 import crawler2d as c2d
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
-from tests.sweeps.stores import change, opened
+from tests.sweeps.stores import as_version_1, change, opened
 
 OVER = {"robot.track": MODELS, "terrain.height": [0.03, 0.12]}
 
@@ -152,6 +152,22 @@ def test_runs_of_another_build_stay_but_are_not_taken(tmp_path: Path, build: str
     builds = [build for _, build, _ in stored_rows(path)]
     own = c2d.build_info()["build_id"]
     assert builds == [build, own, own]
+
+
+def test_a_run_with_a_diagnosis_of_another_build_is_no_damage(tmp_path: Path) -> None:
+    path, other, former = (tmp_path / f"{name}.sqlite" for name in "abc")
+    quiet(BASE, {}, repeats=2, store=path)
+    change(path, 1, build="0", diagnosis='{"of": "another form"}')
+    assert c2d.check_store(path) == ()
+    assert c2d.join_stores(other, path) == 2
+    former.write_bytes(path.read_bytes())
+    as_version_1(former)
+    assert c2d.join_stores(former, other) == 0
+    for store in (path, other, former):
+        _, missing = counted(BASE, {}, repeats=2, store=store)
+        assert missing == 1
+        with pytest.raises(c2d.StoreError, match="is of the build 0, whose outcomes or diagnoses"):
+            c2d.table(store)
 
 
 def test_stores_join_and_a_run_that_differs_is_told(tmp_path: Path) -> None:

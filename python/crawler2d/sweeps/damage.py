@@ -7,7 +7,7 @@ import sqlite3
 from dataclasses import dataclass
 
 from crawler2d.sweeps.database import Place, damage_of, place_of, to_read
-from crawler2d.sweeps.sealed import COLUMNS, unsealed
+from crawler2d.sweeps.sealed import COLUMNS, OtherBuild, unsealed
 
 __all__ = ["Damage", "check_store"]
 
@@ -70,6 +70,8 @@ def check_store(path: Place) -> tuple[Damage, ...]:
             for number, *values in connection.execute(f"SELECT rowid, {COLUMNS} FROM run"):
                 try:
                     unsealed(values)
+                except OtherBuild:
+                    continue
                 except ValueError as fault:
                     found.append(Damage(number, str(fault)))
         except sqlite3.DatabaseError as error:

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError, StoreError
-from crawler2d.results.row import Row
 from crawler2d.sweeps.lock import Lock
-from crawler2d.sweeps.sealed import COLUMNS, sealed, unsealed
+from crawler2d.sweeps.sealed import COLUMNS, Kept, OtherBuild, sealed, unsealed
 
 __all__ = [
     "INSERT",
@@ -143,10 +142,18 @@ def damage_of(connection: sqlite3.Connection) -> list[str]:
     return [] if found == ["ok"] else found
 
 
-def read_row(path: Path, number: int, values: Sequence[Any]) -> tuple[Row, str, tuple[str, ...]]:
-    """Return the run in a row, its build and its trials; `StoreError` if it is damaged."""
+def read_row(path: Path, number: int, values: Sequence[Any]) -> Kept | None:
+    """Return what a row holds; None if another build wrote it and this one cannot read it.
+
+    Raises
+    ------
+    StoreError
+        If it is damaged.
+    """
     try:
         return unsealed(values)
+    except OtherBuild:
+        return None
     except ValueError as fault:
         raise StoreError(
             f"{path}: row {number} (run {str(values[0])[:12]}) is damaged: {fault}; check_store"

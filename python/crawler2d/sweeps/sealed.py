@@ -8,16 +8,20 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from crawler2d._core import build_info
 from crawler2d.errors import Crawler2dError, SimulationDiverged
 from crawler2d.results.outcome import Outcome
 from crawler2d.results.row import NO_RESULT, Row, diagnosis_json, read_diagnosis
 
-__all__ = ["COLUMNS", "sealed", "unsealed", "values_of"]
+__all__ = ["COLUMNS", "Kept", "OtherBuild", "sealed", "unsealed", "values_of"]
 
 COLUMNS = (
     "identity, build, trials, outcome, metrics, diagnosis, wall_time, error, scenario, checksum"
 )
 """In the order of the values of `values_of`."""
+
+Kept = tuple[Row, str, tuple[str, ...]]
+"""A run, its build and its trials."""
 
 _OUTCOMES = frozenset({*map(str, Outcome), *NO_RESULT})
 # What a run ends with every time, so that it is kept; nothing else is made of a name in a file.
@@ -52,11 +56,17 @@ def sealed(values: Sequence[Any]) -> tuple[Any, ...]:
     return (*values, hashlib.sha256(text.encode()).hexdigest())
 
 
-def unsealed(values: Sequence[Any]) -> tuple[Row, str, tuple[str, ...]]:
+class OtherBuild(ValueError):
+    """A row is as it was written, by another build, but this one cannot read it."""
+
+
+def unsealed(values: Sequence[Any]) -> Kept:
     """Return the run in a row, its build and its trials.
 
     Raises
     ------
+    OtherBuild
+        If it has outcomes or diagnoses of another build, which this one does not know.
     ValueError
         If the row is not as it was written; it says why.
     """
@@ -66,10 +76,10 @@ def unsealed(values: Sequence[Any]) -> tuple[Row, str, tuple[str, ...]]:
     # What is stored is the canonical text, so this holds for every build.
     if hashlib.sha256(str(scenario).encode()).hexdigest() != identity:
         raise ValueError("its scenario does not hash to its identity")
-    if outcome not in _OUTCOMES or (error is None) == (outcome in NO_RESULT):
-        with_error = "without" if error is None else "with"
-        raise ValueError(f"{str(outcome)[:40]!r} is no outcome {with_error} an error")
     try:
+        if outcome not in _OUTCOMES or (error is None) == (outcome in NO_RESULT):
+            with_error = "without" if error is None else "with"
+            raise ValueError(f"{str(outcome)[:40]!r} is no outcome {with_error} an error")
         row = Row(
             identity,
             scenario,
@@ -82,7 +92,8 @@ def unsealed(values: Sequence[Any]) -> tuple[Row, str, tuple[str, ...]]:
         row.why()
         return row, str(build), tuple(map(str, json.loads(trials)))
     except _UNREADABLE as fault:
-        raise ValueError(f"it cannot be read ({type(fault).__name__}: {fault})") from fault
+        kind = ValueError if build == build_info()["build_id"] else OtherBuild
+        raise kind(f"it cannot be read ({type(fault).__name__}: {fault})") from fault
 
 
 def _number(value: float | None) -> float:

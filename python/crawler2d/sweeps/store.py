@@ -13,7 +13,7 @@ from crawler2d._core import build_info
 from crawler2d.errors import StoreError
 from crawler2d.results.row import Row
 from crawler2d.sweeps.database import INSERT, Place, place_of, read_row, to_read, to_write, told
-from crawler2d.sweeps.sealed import COLUMNS, values_of
+from crawler2d.sweeps.sealed import COLUMNS, Kept, values_of
 
 __all__ = ["Store", "join_stores", "stored_rows"]
 
@@ -97,8 +97,9 @@ class Store:
                 for number, *values in self._connection.execute(
                     query, (self._build, self._trials, *some)
                 ):
-                    row, _, _ = read_row(self.path, number, values)
-                    found[row.identity] = row
+                    kept = read_row(self.path, number, values)
+                    if kept is not None:  # of this build, which can read it
+                        found[kept[0].identity] = kept[0]
         return found
 
     def copy(self, place: Path) -> int:
@@ -149,7 +150,7 @@ class Store:
                 )
 
 
-def stored_rows(path: Place) -> Iterator[tuple[Row, str, tuple[str, ...]]]:
+def stored_rows(path: Place) -> Iterator[Kept]:
     """Read every row of a store with its build and its trials, also while it is written.
 
     Raises
@@ -157,7 +158,14 @@ def stored_rows(path: Place) -> Iterator[tuple[Row, str, tuple[str, ...]]]:
     StoreError
         If there is no such file, it is no store, or damaged.
     """
-    return (kept for kept, _ in _stored(place_of(path)))
+    place = place_of(path)
+    for kept, (identity, build, *_) in _stored(place):
+        if kept is None:
+            raise StoreError(
+                f"{place}: the run {identity[:12]} is of the build {build}, whose outcomes or"
+                " diagnoses this one cannot read: read it with that one"
+            )
+        yield kept
 
 
 def join_stores(into: Place, *others: Place) -> int:
@@ -203,7 +211,7 @@ def join_stores(into: Place, *others: Place) -> int:
         return sum(map(store.copy, places))
 
 
-def _stored(place: Path) -> Iterator[tuple[tuple[Row, str, tuple[str, ...]], list[Any]]]:
+def _stored(place: Path) -> Iterator[tuple[Kept | None, list[Any]]]:
     """Read every row of a store, also as its values."""
     with told(place), contextlib.closing(to_read(place)) as connection:
         query = f"SELECT rowid, {COLUMNS} FROM run ORDER BY rowid"
