@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -139,8 +140,10 @@ VARIANTS = {
 """One scenario for every kind of track and terrain."""
 
 
-def refusal(robot: c2d.Robot, **fields: Any) -> c2d.ScenarioError:
-    """Return the error that a robot on flat ground gets."""
+def refusal(robot: c2d.Robot | Callable[[], c2d.Robot], **fields: Any) -> c2d.ScenarioError:
+    """Return the error that a robot on flat ground gets, or what makes it."""
     with pytest.raises(c2d.ScenarioError) as caught:
-        Scenario(robot, c2d.terrains.flat(), **fields).validate()
+        Scenario(
+            robot if isinstance(robot, c2d.Robot) else robot(), c2d.terrains.flat(), **fields
+        ).validate()
     return caught.value

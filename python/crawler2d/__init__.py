@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from crawler2d._core import build_info
 from crawler2d.common.bodies import BodyKind, Lane
+from crawler2d.common.keywords import beyond
 from crawler2d.errors import (
     Crawler2dError,
     InternalError,
@@ -162,7 +163,7 @@ if not TYPE_CHECKING:  # which would let any name pass
     def __getattr__(name: str) -> object:
         """Import what has not been named before."""
         if name not in _WHEN_NAMED:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{beyond(name)}")
         module = import_module(_WHEN_NAMED[name])
         found = module if module.__name__ == f"{__name__}.{name}" else getattr(module, name)
         globals()[name] = found

@@ -1,4 +1,4 @@
-"""Turn the core's doubts into warnings at the line of user code that led to them."""
+"""Turn doubts into warnings at the line of user code that led to them."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ __all__ = ["warn"]
 _PACKAGE = __name__.partition(".")[0]
 
 
-def warn(path: str, value: float, reason: str) -> None:
-    """Issue one doubt as a warning; called by the core.
+def warn(path: str, value: object, reason: str) -> None:
+    """Issue one doubt as a warning; called by the core, too.
 
     Parameters
     ----------

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from typing import Any
 
 __all__ = [
+    "ArgumentError",
     "Crawler2dError",
     "InternalError",
     "LimitError",
@@ -87,6 +88,22 @@ class ScenarioError(Crawler2dError, ValueError):
     def __str__(self) -> str:
         """Return path, rule and value in one line."""
         return f"{self.path} {self.rule}, got {self.value}"
+
+
+class ArgumentError(ScenarioError, TypeError):
+    """A function or class was called with a keyword that it does not take.
+
+    The rule lists those that it takes, and has the nearest.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> try:
+    ...     c2d.LineOfWheels(4, radius=0.06)
+    ... except ArgumentError as error:
+    ...     print(error.path, error.rule[-28:])
+    radius (did you mean wheel_radius?)
+    """
 
 
 class ScenarioWarning(UserWarning):

@@ -133,9 +133,8 @@ def test_a_ragged_list_names_its_first_bad_row() -> None:
     ],
 )
 def test_points_that_make_no_ground_are_refused_by_row(points: Any, path: str) -> None:
-    terrain = c2d.terrains.from_points(points, goal=0.0)
     with pytest.raises(c2d.ScenarioError) as caught:
-        c2d.Scenario(ROBOT, terrain).validate()
+        c2d.Scenario(ROBOT, c2d.terrains.from_points(points, goal=0.0)).validate()
     assert caught.value.path == path
 
 

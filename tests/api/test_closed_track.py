@@ -98,23 +98,31 @@ def test_it_survives_its_file() -> None:
 @pytest.mark.parametrize(
     ("track", "path", "rule"),
     [
-        (c2d.ClosedTrack(c2d.LineOfWheels(1)), "robot.track.of.count", "must be an integer"),
-        (c2d.ClosedTrack(c2d.CircumferentialWheels(5)), "robot.track.of.count", "must be larger"),
         (
-            c2d.ClosedTrack(c2d.BeltTrack(), surface="rough"),  # type: ignore[arg-type]
+            lambda: c2d.ClosedTrack(c2d.LineOfWheels(1)),
+            "robot.track.of.count",
+            "must be an integer",
+        ),
+        (
+            lambda: c2d.ClosedTrack(c2d.CircumferentialWheels(5)),
+            "robot.track.of.count",
+            "must be larger",
+        ),
+        (
+            lambda: c2d.ClosedTrack(c2d.BeltTrack(), surface="rough"),  # type: ignore[arg-type]
             "robot.track.surface",
             "must be one",
         ),
         (
-            c2d.ClosedTrack(c2d.ClosedTrack(c2d.BeltTrack())),  # type: ignore[arg-type]
+            lambda: c2d.ClosedTrack(c2d.ClosedTrack(c2d.BeltTrack())),  # type: ignore[arg-type]
             "robot.track.of",
             "must",
         ),
-        (c2d.ClosedTrack("belt"), "robot.track.of", "must be a"),  # type: ignore[arg-type]
+        (lambda: c2d.ClosedTrack("belt"), "robot.track.of", "must be a"),  # type: ignore[arg-type]
     ],
 )
 def test_what_cannot_be_closed_is_refused(track: Any, path: str, rule: str) -> None:
-    error = refusal(ROBOT.with_track(track))
+    error = refusal(lambda: ROBOT.with_track(track()))
     assert error.path == path
     assert error.rule.startswith(rule)
 

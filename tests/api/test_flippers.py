@@ -171,7 +171,7 @@ def test_ground_between_wheels_of_a_flipper_is_a_pocket() -> None:
     ],
 )
 def test_bad_flippers_are_refused_by_path(changes: dict[str, Any], path: str) -> None:
-    error = refusal(replace(ENGINEER, flippers=replace(ARMS, **changes)))
+    error = refusal(lambda: replace(ENGINEER, flippers=replace(ARMS, **changes)))
     assert error.path == path
 
 
@@ -183,12 +183,20 @@ def test_bad_flippers_are_refused_by_path(changes: dict[str, Any], path: str) ->
         (c2d.Hold(0.0, ((2.0, 0.1), (1.0, 0.2))), "drive.gait.schedule[1][0]"),
         (c2d.Hold(0.0, ((1.0, 9.0),)), "drive.gait.schedule[0][1]"),
         (c2d.Climb(level_angle=0.0), "drive.gait.level_angle"),
-        (c2d.Climb(reach_angle="up"), "drive.gait.reach_angle"),  # type: ignore[arg-type]
-        ("climb", "drive.gait"),
     ],
 )
 def test_a_bad_gait_is_refused_by_path(gait: Any, path: str) -> None:
     assert refusal(ENGINEER, drive=c2d.Drive(gait=gait)).path == path
+
+
+def test_what_is_no_gait_is_refused_at_once() -> None:
+    for make, path in (
+        (lambda: c2d.Climb(reach_angle="up"), "drive.gait.reach_angle"),  # type: ignore[arg-type]
+        (lambda: c2d.Drive(gait="climb"), "drive.gait"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(c2d.ScenarioError) as caught:
+            make()
+        assert caught.value.path == path
 
 
 def test_arms_that_turn_too_far_in_a_step_are_refused_not_slowed() -> None:

@@ -82,9 +82,8 @@ def test_a_robot_without_arms_is_without_arms() -> None:
     ],
 )
 def test_arms_that_cannot_be_taken_off_are_refused(fields: dict[str, Any], path: str) -> None:
-    robot = dataclasses.replace(BARE, flippers=dataclasses.replace(ARMS, **fields))
     with pytest.raises(c2d.ScenarioError) as caught:
-        robot.without_flippers()
+        dataclasses.replace(BARE, flippers=dataclasses.replace(ARMS, **fields)).without_flippers()
     assert caught.value.path == path
 
 

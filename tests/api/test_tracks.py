@@ -48,9 +48,12 @@ COUNTED: dict[str, tuple[Callable[[Any], Any], str, int]] = {
 @pytest.mark.parametrize("name", COUNTED)
 def test_an_impossible_count_is_refused(name: str, count: Any) -> None:
     model, path, least = COUNTED[name]
-    error = refusal(ROBOT.with_track(model(count)))
+    error = refusal(lambda: ROBOT.with_track(model(count)))
     assert error.path == f"robot.track.{path}"
-    assert error.rule == f"must be an integer from {least} to 200"
+    if isinstance(count, (str, bool)):
+        assert error.rule.startswith("must be a whole number")
+    else:
+        assert error.rule == f"must be an integer from {least} to 200"
 
 
 @pytest.mark.parametrize(("count", "works"), [(2, False), (3, True), (200, True), (201, False)])
@@ -81,9 +84,10 @@ def test_a_count_may_be_a_numpy_integer(count: Any) -> None:
     ids=["line", "circumferential"],
 )
 def test_an_impossible_radius_is_refused(model: Any, path: str, radius: Any) -> None:
-    error = refusal(ROBOT.with_track(model(radius)))
+    error = refusal(lambda: ROBOT.with_track(model(radius)))
     assert error.path == f"robot.track.{path}"
-    assert error.rule in ("must be >= 0.001 m and <= 100 m", "must be a number")
+    rules = ("must be >= 0.001 m and <= 100 m", "must be a number", "must be a finite number")
+    assert error.rule.startswith(rules)
 
 
 @pytest.mark.parametrize(
@@ -160,7 +164,7 @@ def test_a_wheel_that_turns_too_far_in_a_step_is_refused(radius: float, works: b
     ],
 )
 def test_a_misspelt_keyword_is_a_type_error_that_names_it(make: Any, keyword: str) -> None:
-    with pytest.raises(TypeError, match=rf"'{keyword}'"):
+    with pytest.raises(TypeError, match=rf"^{keyword} must be a keyword that "):
         make(**{keyword: 1})
 
 
@@ -260,7 +264,7 @@ def test_what_are_no_placements_is_refused_at_once(placements: Any, path: str) -
     ("placements", "path", "rule"),
     [
         ([], "placements", "must place at least one wheel"),
-        (None, "placements", "must be a list of [x, y, radius]"),
+        (None, "placements", "must be a list of circles (x, y, radius)"),
         (np.zeros((201, 3)), "placements", "must have at most 200 rows"),
         ([[0, 0, 0.1], [0, math.nan, 0.1]], "placements[1][1]", "must be >= -100 m and <= 100 m"),
         ([[-math.inf, 0, 0.1]], "placements[0][0]", "must be >= -100 m and <= 100 m"),
@@ -270,5 +274,5 @@ def test_what_are_no_placements_is_refused_at_once(placements: Any, path: str) -
     ],
 )
 def test_placements_that_make_no_wheels_are_refused(placements: Any, path: str, rule: str) -> None:
-    error = refusal(ROBOT.with_track(c2d.HybridWheels(placements)))
+    error = refusal(lambda: ROBOT.with_track(c2d.HybridWheels(placements)))
     assert (error.path, error.rule) == (f"robot.track.{path}", rule)

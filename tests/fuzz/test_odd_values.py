@@ -9,7 +9,11 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.scenario import Scenario
 from tests.fuzz.objects import Refuses
+from tests.shared import ROBOT
 
+BASE = Scenario(ROBOT, c2d.terrains.flat())
+ANY: Any = c2d
+ANY_ROBOT: Any = ROBOT
 HUGE = 10**5000
 """Python itself writes no number of so many digits."""
 
@@ -90,3 +94,44 @@ def test_an_error_keeps_what_is_short_as_it_is() -> None:
         kept = c2d.ScenarioError("duration", value, "must be a number").value
         assert kept == value
         assert type(kept) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("make", "path", "rule"),
+    [
+        (lambda: ANY_ROBOT.with_track("wheels"), "robot.track", "must be a LineOfWheels or"),
+        (lambda: ANY_ROBOT.with_track(ANY.BeltTrack), "robot.track", "write BeltTrack(...)"),
+        (lambda: ANY_ROBOT.with_track(None), "robot.track", "must be a LineOfWheels or"),
+        (lambda: ANY_ROBOT.with_flippers("built"), "robot.flippers", "must be a Flippers"),
+        (lambda: ANY.terrains.step(0.1, friction="0.7"), "terrain.friction", "not a string"),
+        (lambda: ANY.terrains.step(None), "terrain.height", "must be a number"),
+        (lambda: ANY.LineOfWheels("4"), "robot.track.count", "must be a whole number"),
+        (
+            lambda: ANY.LineOfWheels(4, wheel=ANY.GearWheel),
+            "robot.track.wheel",
+            "GearWheel(",
+        ),
+        (lambda: ANY.Scenario(ANY_ROBOT, "step"), "terrain", "must be a Flat or"),
+        (lambda: ANY.Scenario(ANY_ROBOT, ANY.terrains.flat), "terrain", "write Flat(...)"),
+        (lambda: ANY.Drive(gait=ANY.Climb), "drive.gait", "write Climb(...)"),
+        (lambda: ANY.Solver(engine=3), "solver.engine", "must be one of own, rapier"),
+        (lambda: BASE.replace({"solver": "rapier"}), "solver", "must be a Solver"),
+    ],
+)
+def test_what_is_of_another_type_is_refused_where_it_is_given(
+    make: Any, path: str, rule: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        make()
+    assert caught.value.path == path
+    assert rule in caught.value.rule
+
+
+@pytest.mark.parametrize("value", [HUGE, -HUGE, 10**400], ids=["huge", "less", "infinite"])
+def test_a_scenario_can_be_shown_because_no_field_holds_what_no_float_does(
+    scenario: Scenario, value: int
+) -> None:
+    for path in ("duration", "solver.iterations", "robot.mass"):
+        with pytest.raises(c2d.ScenarioError, match=f"^{path} must fit in float64, got a whole"):
+            scenario.replace({path: value})
+    assert repr(scenario.replace({"duration": 2**70})).endswith(f"duration={2**70})")

@@ -247,9 +247,10 @@ def test_numpy_numbers_give_the_same() -> None:
 
 @pytest.mark.parametrize(("successes", "count"), [(-1, 5), (6, 5), (0, -1)])
 def test_impossible_counts_are_refused(successes: int, count: int) -> None:
-    message = f"^successes must be from 0 to count = {count}, got {successes}$"
+    name, value = ("count", count) if count < 0 else ("successes", successes)
+    message = f"^{name} must be a whole number from 0 to .*, got {value}$"
     for refuse in (sequential, Until().is_done, Until().side):
-        with pytest.raises(ValueError, match=message):
+        with pytest.raises(ScenarioError, match=message):
             refuse(successes, count)
 
 
@@ -257,7 +258,7 @@ def test_impossible_counts_are_refused(successes: int, count: int) -> None:
 def test_impossible_confidence_is_refused(confidence: float) -> None:
     for count in (0, 2):
         message = f"^confidence must be between 0 and 1, got {confidence}$"
-        with pytest.raises(ValueError, match=message):
+        with pytest.raises(ScenarioError, match=message):
             sequential(0, count, confidence)
 
 

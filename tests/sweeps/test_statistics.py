@@ -1,10 +1,12 @@
 """Intervals: published values, an independent implementation where it is there, and the limits."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
+import crawler2d as c2d
 from crawler2d import newcombe, wilson
 from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
 
@@ -94,22 +96,23 @@ def test_newcombe_changes_sign_with_its_samples() -> None:
 
 @pytest.mark.parametrize(("successes", "count"), [(-1, 5), (6, 5), (0, -1)])
 def test_impossible_counts_are_refused(successes: int, count: int) -> None:
-    message = f"^successes must be from 0 to count = {count}, got {successes}$"
-    with pytest.raises(ValueError, match=message):
+    name, value = ("count", count) if count < 0 else ("successes", successes)
+    message = f"^{name} must be a whole number from 0 to .*, got {value}$"
+    with pytest.raises(c2d.ScenarioError, match=message):
         wilson(successes, count)
 
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0, 95.0, math.nan])
 def test_impossible_confidence_is_refused(confidence: float) -> None:
     message = f"^confidence must be between 0 and 1, got {confidence}$"
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(c2d.ScenarioError, match=message):
         wilson(1, 2, confidence)
 
 
 def test_an_empty_sample_has_no_difference() -> None:
-    for sizes in ((0, 2), (2, 0), (-1, 2)):
-        message = f"^n and m must be at least 1, got {sizes[0]} and {sizes[1]}$"
-        with pytest.raises(ValueError, match=message):
+    for sizes, name in (((0, 2), "n"), ((2, 0), "m"), ((-1, 2), "n")):
+        message = f"^{name} must be a whole number from 1 to .*, got {min(sizes)}$"
+        with pytest.raises(c2d.ScenarioError, match=message):
             newcombe(0, sizes[0], 0, sizes[1])
 
 
@@ -169,11 +172,18 @@ def test_newcombe_paired_of_a_million_pairs_does_not_overflow() -> None:
     assert newcombe_paired(*pairs) == difference
 
 
-@pytest.mark.parametrize("pairs", [(0, 0, 0, 0), (-1, 2, 3, 4), (1, 2, 3, -4)])
-def test_impossible_numbers_of_pairs_are_refused(pairs: tuple[int, int, int, int]) -> None:
-    a, b, c, d = pairs
-    message = f"numbers of pairs must be at least 0, and one above 0, got {a}, {b}, {c} and {d}$"
-    with pytest.raises(ValueError, match=f"^{message}"):
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ((0, 0, 0, 0), "neither must be at least 1 if there are no other pairs, got 0"),
+        ((-1, 2, 3, 4), "both must be a whole number from 0 to .*, got -1"),
+        ((1, 2, 3, -4), "neither must be a whole number from 0 to .*, got -4"),
+    ],
+)
+def test_impossible_numbers_of_pairs_are_refused(
+    pairs: tuple[int, int, int, int], message: str
+) -> None:
+    with pytest.raises(c2d.ScenarioError, match=f"^{message}$"):
         newcombe_paired(*pairs)
 
 
@@ -195,10 +205,24 @@ def test_mcnemar_of_many_pairs_is_the_normal_test() -> None:
 
 
 def test_mcnemar_refuses_a_negative_number() -> None:
-    with pytest.raises(ValueError, match=r"^numbers of pairs must be at least 0, got -1 and 3$"):
+    with pytest.raises(c2d.ScenarioError, match=r"^first must be a whole number .*, got -1$"):
         mcnemar(-1, 3)
-    with pytest.raises(ValueError, match=r"got 3 and -1$"):
+    with pytest.raises(c2d.ScenarioError, match=r"^second must be a whole number .*, got -1$"):
         mcnemar(3, -1)
+
+
+@pytest.mark.parametrize("odd", ["4", 1.5, None, True, [1], 10**400])
+def test_what_are_no_numbers_of_runs_are_refused_by_name(odd: Any) -> None:
+    calls: list[tuple[Any, tuple[Any, ...], str]] = [
+        (wilson, (odd, 5), "successes"),
+        (wilson, (1, odd), "count"),
+        (newcombe, (1, 2, odd, 3), "b"),
+    ]
+    for of, given, name in calls:
+        with pytest.raises(c2d.ScenarioError, match=rf"^{name} must be a whole number"):
+            of(*given)
+    with pytest.raises(c2d.ScenarioError, match=r"^confidence must be"):
+        wilson(1, 2, odd)
 
 
 def test_a_bootstrap_is_the_normal_interval_of_many_values() -> None:
@@ -238,7 +262,7 @@ def test_equal_values_have_an_interval_of_no_width() -> None:
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0, math.nan])
 def test_every_interval_refuses_an_impossible_confidence(confidence: float) -> None:
-    with pytest.raises(ValueError, match="confidence"):
+    with pytest.raises(c2d.ScenarioError, match="confidence"):
         newcombe_paired(1, 2, 3, 4, confidence)
-    with pytest.raises(ValueError, match="confidence"):
+    with pytest.raises(c2d.ScenarioError, match="confidence"):
         bootstrap_mean([1.0, 2.0], confidence)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Unpack, overload
 
+from crawler2d._doubts import warn
 from crawler2d.audits.audited import Audited
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.call import Call
@@ -30,6 +31,7 @@ from crawler2d.audits.text import text_of
 from crawler2d.audits.verdicts import BELT, OWN, verdicts_of
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.settings import Drive
@@ -73,6 +75,7 @@ class Audit(Audited):
         """The short form, as ``python -m crawler2d audit`` prints it."""
         return text_of(self)
 
+    @takes_keywords
     def patch(
         self, path: str | os.PathLike[str] | None = None, repair: Repair | None = None
     ) -> str:
@@ -107,9 +110,7 @@ class Audit(Audited):
         """
         patch = patch_of(self, repair)
         for setting in patch.left:
-            warnings.warn(
-                ScenarioWarning("patch", setting, "leaves this to be set by hand"), stacklevel=2
-            )
+            warn("patch", setting, "leaves this to be set by hand")
         if path is not None:
             Path(path).write_text(patch.text, encoding="utf-8")
         return patch.diff
@@ -124,6 +125,7 @@ class Audit(Audited):
     @overload
     def to_html(self, path: str | os.PathLike[str], *, threads: int | None = None) -> Path: ...
 
+    @takes_keywords
     def to_html(
         self, path: str | os.PathLike[str] | None = None, *, threads: int | None = None
     ) -> str | Path:
@@ -169,6 +171,7 @@ class Audit(Audited):
         return Path(path)
 
 
+@takes_keywords
 def audit(
     robot: Robot | Reading | str | os.PathLike[str],
     obstacles: Mapping[str, Terrain] | None = None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import KW_ONLY, dataclass
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.plain import Parameters, to_plain
 from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
 
@@ -33,6 +34,7 @@ class Form(Parameters):
     criteria: SeizureCriteria = SeizureCriteria()
     schema: int = 2
 
+    @takes_keywords
     def to_json(self, *, indent: int | None = None) -> str:
         """Write the scenario as JSON, every field present, no bit lost.
 
@@ -45,11 +47,6 @@ class Form(Parameters):
         -------
         str
             The text. It is not validated: see `validate`.
-
-        Raises
-        ------
-        ScenarioError
-            If a field holds something JSON cannot represent.
         """
         separators = (",", ":") if indent is None else (",", ": ")
         return json.dumps(to_plain(self), allow_nan=False, indent=indent, separators=separators)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import re
 import reprlib
-from collections.abc import Collection
-from typing import Any, TypeVar
+from collections.abc import Collection, Iterator
+from typing import Any, TypeVar, cast
 
 from crawler2d.common.arrays import frozen_rows, real_number
+from crawler2d.common.keywords import suggestion
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.plain import Parameters, alternatives, field_hints
 
@@ -32,20 +33,16 @@ def replace_path(parameters: P, path: str, value: Any, *, given: Collection[str]
     """
     if not isinstance(path, str):
         raise ScenarioError("path", path, "must be a string")
-    copy: P = _replaced(parameters, _steps(path), value, path)
+    copy = _replaced(parameters, path, value)
     for other in excluded(copy, path):
         if value is not None and other not in given:
-            copy = _replaced(copy, _steps(other), None, other)
+            copy = _replaced(copy, other, None)
     return copy
 
 
 def read_path(parameters: Parameters, path: str) -> Any:
     """Return what is at a path; errors are those of `replace_path`."""
-    node: Any = parameters
-    steps = _steps(path)
-    for depth in range(len(steps)):
-        node = _held(node, steps[: depth + 1], None, path)
-    return node
+    return _nodes(parameters, path, None)[-1]
 
 
 def expand_path(parameters: Parameters, path: str) -> list[str]:
@@ -101,30 +98,41 @@ def _steps(path: str) -> list[str | int]:
     return steps
 
 
-def _replaced(node: Any, steps: list[str | int], value: Any, path: str, depth: int = 0) -> Any:
-    held = _held(node, steps[: depth + 1], value, path)
-    step, is_last = steps[depth], depth + 1 == len(steps)
-    if not is_last:
-        value = _replaced(held, steps, value, path, depth + 1)
-    if isinstance(step, str):
-        return dataclasses.replace(node, **{step: value})
-    if is_last and isinstance(held, tuple):
-        value = frozen_rows(value, path, rows=False, columns=len(held))
-    elif is_last:
-        value = real_number(value, path)
-    return (*node[:step], value, *node[step + 1 :])
+def _replaced(root: P, path: str, value: Any) -> P:
+    steps, nodes = _steps(path), _nodes(root, path, value)
+    for depth in reversed(range(len(steps))):
+        step, node, held = steps[depth], nodes[depth], nodes[depth + 1]
+        if isinstance(step, str):
+            value = dataclasses.replace(node, **{step: value})
+            continue
+        if depth + 1 == len(steps) and isinstance(held, tuple):
+            value = frozen_rows(value, path, rows=False, columns=len(held))
+        elif depth + 1 == len(steps):
+            value = real_number(value, path)
+        value = (*node[:step], value, *node[step + 1 :])
+    return cast("P", value)
 
 
-def _held(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
-    """Return what the last step names; the earlier steps have led to `node`."""
+def _nodes(root: Parameters, path: str, value: Any) -> list[Any]:
+    """Return what the steps of a path lead through, the root first."""
+    nodes: list[Any] = [root]
+    steps = _steps(path)
+    for depth in range(len(steps)):
+        nodes.append(_held(nodes, steps[: depth + 1], value, path))
+    return nodes
+
+
+def _held(nodes: list[Any], steps: list[str | int], value: Any, path: str) -> Any:
+    """Return what the last step names; the earlier steps have led through these nodes."""
     *before, step = steps
+    node = nodes[-1]
     place = "".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in before).removeprefix(".")
     if isinstance(step, str):
         if not isinstance(node, Parameters):
             rule = f"must be a known field: {place} = {reprlib.repr(node)} has no fields"
             raise ScenarioError(path, value, rule)
         if step not in _names(type(node)):
-            raise ScenarioError(path, value, _rule(type(node), step))
+            raise ScenarioError(path, value, _rule(nodes[0], type(node), step))
         return getattr(node, step)
     if not isinstance(node, tuple):
         rule = f"must be a known field: {place} = {reprlib.repr(node)} has no elements"
@@ -139,11 +147,17 @@ def _names(cls: type[Parameters]) -> list[str]:
     return [*field_hints(cls), *cls.besides]
 
 
-def _rule(cls: type[Parameters], name: str) -> str:
-    import difflib  # noqa: PLC0415 - only a failure needs it
-
+def _rule(root: Parameters, cls: type[Parameters], name: str) -> str:
     fields = _names(cls)
-    nearest = difflib.get_close_matches(name, fields, n=1)
-    hint = f" (did you mean {nearest[0]}?)" if nearest else ""
+    hint = suggestion(name, fields, known_paths(root))
     listed = ", ".join(fields) if fields else "no fields"
     return f"must be a known field: {cls.__name__} has {listed}{hint}"
+
+
+def known_paths(parameters: Parameters) -> Iterator[str]:
+    """List the paths of all fields, those of nested objects after their own."""
+    for name in _names(type(parameters)):
+        yield name
+        held = getattr(parameters, name)
+        if isinstance(held, Parameters):
+            yield from (f"{name}.{path}" for path in known_paths(held))

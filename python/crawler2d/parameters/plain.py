@@ -14,6 +14,7 @@ import typing
 from typing import Any, ClassVar, TypeVar
 
 from crawler2d.common.arrays import frozen_rows, frozen_scalar
+from crawler2d.common.keywords import TakesKeywords
 from crawler2d.errors import ScenarioError
 
 P = TypeVar("P", bound="Parameters")
@@ -25,10 +26,17 @@ ROWS = {
 }
 """Rows and columns of the fields that hold arrays; None for rows means a single row, not nested."""
 
-_RULES = {float: "must be a number", int: "must be a whole number", str: "must be a string"}
+_ROWS = {
+    (None, 2): "a point (x, y)",
+    ("n", 2): "a list of points (x, y)",
+    ("n", 3): "a list of circles (x, y, radius)",
+}
+_NUMBERS = {float: "a number", int: "a whole number"}
+# A whole number of more bits exceeds every float.
+_LARGEST_WHOLE = 1024
 
 
-class Parameters:
+class Parameters(TakesKeywords):
     """Base of the parameter dataclasses: fields are normalised once, on creation.
 
     NumPy scalars become Python numbers, whole numbers become floats where the field is a float, and
@@ -76,17 +84,71 @@ class Parameters:
         return f"{type(self).__name__}({', '.join(given)})"
 
     def __post_init__(self) -> None:
-        """Convert every field to its plain Python form."""
+        """Convert every field to its plain Python form, and refuse what is no value of it.
+
+        Which numbers and names are values is for the validator to say.
+
+        Raises
+        ------
+        ScenarioError
+            If a field has something of another type, such as a text in place of a number.
+        """
         for name, hint in field_hints(type(self)).items():
             value = getattr(self, name)
+            path = f"{self.place}.{name}" if self.place else name
             shape = shape_of_rows(hint)
             if shape is not None:
                 rows, columns = shape
-                path = f"{self.place}.{name}"
                 value = frozen_rows(value, path, rows=rows is not None, columns=columns)
             else:
                 value = frozen_scalar(value, whole=float not in alternatives(hint))
+            _check_type(value, hint, path)
             object.__setattr__(self, name, value)
+
+
+def _check_type(value: Any, hint: Any, path: str) -> None:
+    """Refuse a value of a type that a field does not have."""
+    kinds = alternatives(hint)
+    if value is None and type(None) in kinds:
+        return
+    if isinstance(value, str) and any(kind is str or _names(kind) for kind in kinds):
+        if not value.isascii() and any("\ud800" <= each <= "\udfff" for each in value):
+            raise ScenarioError(path, ascii(value), "must be valid Unicode")
+    elif type(value) in (int, float) and not {int, float}.isdisjoint(kinds):
+        if isinstance(value, int) and value.bit_length() > _LARGEST_WHOLE:
+            raise ScenarioError(path, value, "must fit in float64")
+    elif not (
+        isinstance(value, nested_classes(hint))
+        or (type(value) is tuple and shape_of_rows(hint) is not None)  # made by frozen_rows
+        or (type(value) is bool and bool in kinds)
+    ):
+        raise ScenarioError(path, value, f"must be {_described(hint)}{_instead(value, kinds)}")
+
+
+def _names(kind: Any) -> tuple[str, ...]:
+    """List the names that a field may have, if that is what it has."""
+    return typing.get_args(kind) if typing.get_origin(kind) is typing.Literal else ()
+
+
+def _described(hint: Any) -> str:
+    """Say what a field takes."""
+    words = [cls.__name__ for cls in nested_classes(hint)]
+    if words:
+        words[0] = f"a {words[0]}"
+    shape = shape_of_rows(hint)
+    words += [] if shape is None else [_ROWS[shape]]
+    for kind in alternatives(hint):
+        words += [f"one of {', '.join(_names(kind))}"] if _names(kind) else []
+        words += [_NUMBERS[kind]] if kind in _NUMBERS else []
+        words += ["a string"] if kind is str else ["True or False"] if kind is bool else []
+    return " or ".join([*words, *(["None"] if type(None) in alternatives(hint) else [])])
+
+
+def _instead(value: Any, kinds: tuple[Any, ...]) -> str:
+    """Say what was given, where its text does not show it."""
+    if isinstance(value, type) and issubclass(value, Parameters):
+        return f", not a class: write {value.__name__}(...)"
+    return ", not a string" if isinstance(value, str) and not {float, int}.isdisjoint(kinds) else ""
 
 
 def _is_model(value: Any) -> bool:
@@ -124,60 +186,39 @@ def nested_classes(hint: Any) -> tuple[type[Parameters], ...]:
     return tuple(a for a in alternatives(hint) if isinstance(a, type) and issubclass(a, Parameters))
 
 
-def to_plain(parameters: Parameters, path: str = "") -> dict[str, Any]:
+def to_plain(parameters: Parameters) -> dict[str, Any]:
     """Convert a parameter object to dicts, lists, numbers and strings, with every field present.
 
     But those of `Parameters.unsaid` that have their defaults.
-
-    Raises
-    ------
-    ScenarioError
-        If a field holds something JSON cannot represent.
     """
     cls = type(parameters)
     plain: dict[str, Any] = {"kind": cls.kind} if cls.kind else {}
-    for name, hint in field_hints(cls).items():
-        if name in cls.unsaid and _is_default(parameters, name):
-            continue
-        numbers = parameters.in_place_of.get(name)
-        for each in numbers or (name,):
-            inner = f"{path}.{each}" if path else each
-            plain[each] = _plain_field(getattr(parameters, each), float if numbers else hint, inner)
+    for name in field_hints(cls):
+        if name not in cls.unsaid or not _is_default(parameters, name):
+            for each in parameters.in_place_of.get(name, (name,)):
+                plain[each] = _plain_value(getattr(parameters, each))
     return plain
 
 
 def _is_default(parameters: Parameters, name: str) -> bool:
     default = next(f.default for f in dataclasses.fields(parameters) if f.name == name)  # type: ignore[arg-type]
-    value = getattr(parameters, name)
-    return type(value) is type(default) and value == default  # others compare as they like
+    return bool(getattr(parameters, name) == default)
 
 
-def _plain_field(value: Any, hint: Any, path: str) -> Any:
-    classes = nested_classes(hint)
-    if classes and not (value is None and type(None) in alternatives(hint)):
-        if not isinstance(value, classes):
-            names = " or ".join(cls.__name__ for cls in classes)
-            raise ScenarioError(path, value, f"must be a {names}")
-        return to_plain(value, path)
-    if isinstance(value, tuple) and shape_of_rows(hint) is not None:  # from frozen_rows: numbers
-        rows = [[_plain_number(x) for x in v] if isinstance(v, tuple) else v for v in value]
-        return [row if isinstance(row, list) else _plain_number(row) for row in rows]
-    if isinstance(value, str):
-        try:
-            value.encode()
-        except UnicodeEncodeError:
-            raise ScenarioError(path, ascii(value), "must be valid Unicode") from None
-        return value
-    if value is None or isinstance(value, bool):
-        return value
-    if isinstance(value, (int, float)) and str not in alternatives(hint):  # "Infinity" is a name
-        return _plain_number(value)
-    rule = next((_RULES[a] for a in alternatives(hint) if a in _RULES), "must be a string or None")
-    raise ScenarioError(path, value, rule)
+def _plain_value(value: Any) -> Any:
+    if isinstance(value, Parameters):
+        return to_plain(value)
+    if isinstance(value, tuple):
+        return [
+            [_plain_number(x) for x in v] if isinstance(v, tuple) else _plain_number(v)
+            for v in value
+        ]
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return _plain_number(value) if is_number else value
 
 
 def _plain_number(value: float) -> float | str:
-    """Write a non-finite number as a string; a whole number too large for a float is infinite."""
+    """Write a non-finite number as a string."""
     if -sys.float_info.max <= value <= sys.float_info.max:
         return value
     if value != value:  # noqa: PLR0124 - the definition of NaN

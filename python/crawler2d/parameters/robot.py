@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from crawler2d import _core
 from crawler2d.common.arrays import frozen_rows, real_number
 from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.flippers import Flippers
@@ -228,6 +229,7 @@ class Robot(Parameters):
     drivetrain: Drivetrain
     track: Track = BeltTrack()
 
+    @takes_keywords
     def with_track(self, track: Track) -> Robot:
         """Return the same robot with another track model.
 
@@ -257,6 +259,7 @@ class Robot(Parameters):
             return replace(self, track=track, drivetrain=drive)
         return replace(self, track=track)
 
+    @takes_keywords
     def with_flippers(self, flippers: Flippers) -> Robot:
         """Mount arms, and add them to mass, centre of mass and moment of inertia.
 
@@ -346,6 +349,7 @@ class Robot(Parameters):
         """
         return Table(_core.wheels(self._alone()))
 
+    @takes_keywords
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the side view in the chassis frame, with the flippers at their `angle`.
 
@@ -380,6 +384,7 @@ class Robot(Parameters):
 
         return draw_robot(self._alone(), self.in_words, ax)
 
+    @takes_keywords
     def to_sdf(
         self,
         path: str | os.PathLike[str] | None = None,
@@ -431,6 +436,7 @@ class Robot(Parameters):
         widths = {"track_width": track_width, "chassis_width": chassis_width}
         return written(self._alone(), "sdf", path, friction=friction, **widths)
 
+    @takes_keywords
     def to_urdf(
         self,
         path: str | os.PathLike[str] | None = None,
@@ -482,6 +488,7 @@ class Robot(Parameters):
         widths = {"track_width": track_width, "chassis_width": chassis_width}
         return written(self._alone(), "urdf", path, friction=friction, **widths)
 
+    @takes_keywords
     def to_mjcf(
         self,
         path: str | os.PathLike[str] | None = None,
@@ -555,6 +562,7 @@ class Robot(Parameters):
             return None
 
     @staticmethod
+    @takes_keywords
     def simple(
         mass: float,
         *,
@@ -669,8 +677,9 @@ def _two(discs: Any, given: dict[str, Any]) -> tuple[Disc, ...]:
 
 def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
     """Add (+1) or subtract (-1) the mass of arms, as uniform rods at angle 0."""
-    length = real_number(flippers.length, "robot.flippers.length")
-    pair = sign * 2.0 * real_number(flippers.mass, "robot.flippers.mass")
+    if not isinstance(flippers, Flippers):
+        raise ScenarioError("robot.flippers", flippers, "must be a Flippers")
+    length, pair = flippers.length, sign * 2.0 * flippers.mass
     rear_axle, front_axle = robot.outline.ends
     front = (front_axle[0] + 0.5 * length, front_axle[1])
     rear = (rear_axle[0] - 0.5 * length, rear_axle[1])

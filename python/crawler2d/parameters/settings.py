@@ -138,9 +138,8 @@ class Solver(Parameters):
     def __post_init__(self) -> None:
         """Take the default accuracy, or step in rapier, if nothing says how long steps are."""
         Parameters.__post_init__(self)
-        is_usual = isinstance(self.accuracy, float) and self.accuracy == _ACCURACY
-        if self.time_step is None and (self.accuracy is None or is_usual):
-            in_rapier = isinstance(self.engine, str) and self.engine == "rapier"
+        if self.time_step is None and self.accuracy in (None, _ACCURACY):
+            in_rapier = self.engine == "rapier"
             object.__setattr__(self, "accuracy", None if in_rapier else _ACCURACY)
             object.__setattr__(self, "time_step", _STEP_IN_RAPIER if in_rapier else None)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from crawler2d._doubts import warn
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.markup import table
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError, ScenarioWarning
@@ -123,6 +124,7 @@ class Reading:
         return lines if more <= 0 else [*lines[:_SHOWN], f"and {more} more: see .wheels"]
 
 
+@takes_keywords
 def read_robot(
     path: str | os.PathLike[str],
     engine: Engine | None = None,
@@ -239,7 +241,7 @@ def read_robot(
     path = Path(path)
     reading, doubts = read_text(Files(path, how.packages).model(), path, how)
     for doubt in doubts:
-        warnings.warn(doubt, stacklevel=2)
+        warn(doubt.path, doubt.value, doubt.reason)
     return reading
 
 

@@ -6,7 +6,10 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Literal
 
 from crawler2d import _core
+from crawler2d.common.keywords import refuse_unknown, takes_keywords
 from crawler2d.errors import RunUnfinished, ScenarioError, own_error, raise_first
+from crawler2d.parameters.paths import known_paths
+from crawler2d.parameters.plain import field_hints
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -57,6 +60,8 @@ def simulate(
     ------
     ScenarioError
         If the scenario breaks a rule; nothing has been simulated.
+    ArgumentError
+        If a keyword is neither one of these nor a field of the scenario.
     LimitError
         If the run needs more memory than the system has, or than the environment variable
         CRAWLER2D_MEMORY allows [GiB]; the default is 8.
@@ -70,11 +75,16 @@ def simulate(
     >>> run.outcome
     <Outcome.CLEARED: 'cleared'>
     """
-    complete = _complete(scenario, terrain).replace(fields)
+    complete = _complete(scenario, terrain)
+    taken = ("record", "sample_interval", "trials", *field_hints(Scenario))
+    names = {name: value for name, value in fields.items() if name.isidentifier()}
+    refuse_unknown("simulate", names, taken, known_paths(complete))
+    complete = complete.replace(fields)
     recorded = (*recording(sample_interval, record), list(trial_names(trials)))
     return Run(complete, _core.simulate(complete.to_json(), *recorded))
 
 
+@takes_keywords
 def simulate_many(
     scenarios: Iterable[Scenario],
     *,

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from crawler2d import _core
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, tip_over_of
@@ -138,6 +139,7 @@ class Run(Record):
     ================  ====  =======================================================================
     """
 
+    @takes_keywords
     def branch(
         self,
         at: float | Literal["stop"] = "stop",
@@ -262,6 +264,7 @@ class Run(Record):
         self._remember(*made)
         return tuple(Trial.of(each, self._shown(time, each.name)) for each in made)
 
+    @takes_keywords
     def what_if(
         self,
         name: str | None = None,
@@ -450,6 +453,7 @@ class Run(Record):
 
         return to_dataset(self)
 
+    @takes_keywords
     def plot(
         self, ax: Axes | None = None, *, time: ArrayLike | None = None, trials: bool = True
     ) -> Axes:
@@ -495,6 +499,7 @@ class Run(Record):
 
         return plot_run(self, ax, time, trials=trials)
 
+    @takes_keywords
     def plot_history(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
         """Draw chassis angle, speeds and drive force over time, stops shaded.
 
@@ -519,6 +524,7 @@ class Run(Record):
 
         return plot_history(self, axes)
 
+    @takes_keywords
     def animate(
         self,
         path: str | PathLike[str],
@@ -571,6 +577,7 @@ class Run(Record):
     @overload
     def to_html(self, path: str | PathLike[str], *, time: float | None = None) -> Path: ...
 
+    @takes_keywords
     def to_html(
         self, path: str | PathLike[str] | None = None, *, time: float | None = None
     ) -> str | Path:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.frozen import read_only
+from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
@@ -60,7 +61,7 @@ class State:
     outcome: Outcome | None
 
 
-class Simulation:
+class Simulation(TakesKeywords):
     """A running simulation of a scenario.
 
     It has no end: it can be advanced beyond the scenario's duration and outcome. Any thread may use
@@ -98,6 +99,7 @@ class Simulation:
         """[s] Simulated time."""
         return self._core.time
 
+    @takes_keywords
     def advance(self, duration: float) -> None:
         """Advance the simulation.
 
@@ -116,6 +118,7 @@ class Simulation:
         """
         self._core.advance(real_number(duration, "duration"))
 
+    @takes_keywords
     def command(
         self,
         *,

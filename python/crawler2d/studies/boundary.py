@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 import numpy as np
 
 from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
@@ -44,6 +45,7 @@ SPOKEN = {
 """The columns of a `Crossing`, in words."""
 
 
+@takes_keywords
 def critical(
     scenario: Scenario,
     path: str,

@@ -300,14 +300,10 @@ def campaign(
     Raises
     ------
     ScenarioError
-        If a keyword is unknown, or breaks a rule.
+        If a keyword breaks a rule.
     BatchInterrupted
         On Ctrl-C; a store keeps what was finished.
     """
-    known = (How if repeats is None else Sampling).__annotations__
-    for name, value in how.items():
-        if name not in known:
-            raise ScenarioError(name, value, f"must be one of {', '.join(known)}")
     if not isinstance(base, Scenario):
         raise ScenarioError("scenario", base, "must be a Scenario")
     base.validate()

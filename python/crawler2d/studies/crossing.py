@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["success"]
 
 
+@takes_keywords
 def success(
     scenario: Scenario,
     *,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.along import check_ends, line_over, range_of
@@ -25,6 +26,7 @@ _FEWEST, _MOST = 32, 2**16
 """Points of a design."""
 
 
+@takes_keywords
 def what_decides(
     scenario: Scenario,
     *,

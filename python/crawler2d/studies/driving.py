@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.studies.campaign import Sampling
 from crawler2d.studies.limited import Asked, Figure, limited
@@ -24,6 +25,7 @@ _STANDS = 1e-3
 """[m/s] A robot that is slower stands."""
 
 
+@takes_keywords
 def max_speed(
     scenario: Scenario,
     *,
@@ -89,6 +91,7 @@ def max_speed(
     return limited(_MAX_SPEED, scenario, Asked(models, speed, repeats), how)
 
 
+@takes_keywords
 def acceleration(
     scenario: Scenario,
     *,
@@ -131,6 +134,7 @@ def acceleration(
     return limited(_ACCELERATION, scenario, Asked(models, speed, repeats), how)
 
 
+@takes_keywords
 def braking_distance(
     scenario: Scenario,
     *,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["seizure_map"]
 
 
+@takes_keywords
 def seizure_map(
     scenario: Scenario,
     x: tuple[str, Sequence[float]],

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import read_path
 from crawler2d.parameters.scenario import Scenario
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["max_gap", "max_obstacle", "max_slope"]
 
 
+@takes_keywords
 def max_obstacle(
     scenario: Scenario,
     *,
@@ -79,6 +81,7 @@ def max_obstacle(
     return _ladder(scenario, "max_obstacle", ("terrain.height", given), models, how)
 
 
+@takes_keywords
 def max_slope(
     scenario: Scenario,
     *,
@@ -101,6 +104,7 @@ def max_slope(
     return _ladder(scenario, "max_slope", ("terrain.angle", given), models, how)
 
 
+@takes_keywords
 def max_gap(
     scenario: Scenario,
     *,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.results.row import Row
 from crawler2d.studies.campaign import Cell, Sampling, Tally, campaign
@@ -27,6 +28,7 @@ _STANDS = 1e-3
 """[m] A robot that has moved less has no odometry to be judged."""
 
 
+@takes_keywords
 def ride(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
 ) -> Found:
@@ -121,6 +123,7 @@ def ride(
     return found.assign(ended=(dims, ends.reshape(found["vibration"].shape), told))
 
 
+@takes_keywords
 def odometry(
     scenario: Scenario, *, models: Models | None = None, repeats: int = 10, **how: Unpack[Sampling]
 ) -> Found:

@@ -10,6 +10,7 @@ import numpy as np
 
 from crawler2d.common.arrays import real_number, whole_number
 from crawler2d.common.extras import extra
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Terrain
@@ -33,6 +34,7 @@ _ELSEWHERE = 2**64
 Objective = Callable[[Scenario], float]
 
 
+@takes_keywords
 def search(
     scenario: Scenario,
     space: Models,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.units import METRICS
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.plain import Parameters
@@ -34,6 +35,7 @@ _COSTS = ("time_to_clear", "drive_work")
 """Metrics that are compared if both models cleared."""
 
 
+@takes_keywords
 def compare(
     scenario: Scenario,
     models: Mapping[Any, Variant] | Sequence[Variant],

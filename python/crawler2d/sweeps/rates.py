@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from crawler2d._doubts import warn
 from crawler2d.common.arrays import real_number
 from crawler2d.common.extras import extra
-from crawler2d.errors import ScenarioError, ScenarioWarning
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
 from crawler2d.results.outcome import Outcome
 from crawler2d.sweeps.statistics import wilson
 
@@ -50,6 +51,7 @@ _FEW = 4
 _MANY = 10
 
 
+@takes_keywords
 def rate(
     table: xarray.Dataset | Iterable[str | None],
     outcome: str = "cleared",
@@ -144,8 +146,9 @@ def rates_of(
     dims = [_name(each, "dim", [str(name) for name in outcomes.dims]) for each in given]
     with xr.set_options(keep_attrs=True):  # those of the coordinates
         made = outcomes.isin([str(each) for each in Outcome])
-        counts = made.sum(dims)
-        successes = outcomes.isin(counted).sum(dims)
+        # Over no dimension at all, a sum stays what it was.
+        counts = made.sum(dims).astype(int)
+        successes = outcomes.isin(counted).sum(dims).astype(int)
         intervals = xr.apply_ufunc(
             np.vectorize(wilson), successes, counts, level, output_core_dims=[(), (), ()]
         )
@@ -197,7 +200,7 @@ def _warn_of_few(rates: xarray.Dataset) -> None:
         " little of other robots or floors (unknown= gives a band over what is not known)"
     )
     found = f"{_FEW} or fewer in {few} of {rates['count'].size} cells"
-    warnings.warn(ScenarioWarning("table", found, reason), stacklevel=3)
+    warn("table", found, reason)
 
 
 def _distinct(made: NDArray[np.bool_], *steps: NDArray[np.float64]) -> int:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from math import exp, lgamma, log, log1p
 
 from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.common.keywords import TakesKeywords, takes_keywords
 from crawler2d.errors import ScenarioError
-from crawler2d.sweeps.statistics import Interval
+from crawler2d.sweeps.statistics import Interval, checked_counts, checked_level
 
 __all__ = ["Until", "sequential"]
 
@@ -24,6 +25,7 @@ _LGAMMA_PRIOR = lgamma(_PRIOR)
 _MOST = 10**6
 
 
+@takes_keywords
 def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval:
     r"""Estimate a rate with an interval that stays valid however often one looks.
 
@@ -49,8 +51,9 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
     Raises
     ------
-    ValueError
-        If not ``0 <= successes <= count``, or `confidence` is not between 0 and 1.
+    ScenarioError
+        If `successes` and `count` are not whole numbers with ``0 <= successes <= count``, or
+        `confidence` is not between 0 and 1.
 
     Notes
     -----
@@ -83,10 +86,8 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
     >>> round(low, 3), high
     (0.74, 1.0)
     """
-    if not 0 <= successes <= count:
-        raise ValueError(f"successes must be from 0 to count = {count}, got {successes}")
-    if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
+    successes, count = checked_counts(successes, count)
+    confidence = checked_level(confidence)
     if count == 0:
         return Interval(math.nan, 0.0, 1.0)
     failures = count - successes
@@ -97,7 +98,7 @@ def sequential(successes: int, count: int, confidence: float = 0.95) -> Interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Until:
+class Until(TakesKeywords):
     """When a cell was simulated often enough: its rate is known well, or on which side it lies.
 
     One may ask after every run, or after any number of them: the interval is that of `sequential`.
@@ -147,6 +148,7 @@ class Until:
         self._keep_whole("least", 0)
         self._keep_whole("most", max(self.least, 1))
 
+    @takes_keywords
     def is_done(self, successes: int, count: int) -> bool:
         """Whether no more runs are needed, or none are left.
 
@@ -157,7 +159,7 @@ class Until:
 
         Raises
         ------
-        ValueError
+        ScenarioError
             If not ``0 <= successes <= count``.
         """
         interval = sequential(successes, count, self.confidence)
@@ -165,6 +167,7 @@ class Until:
             return count >= self.most
         return interval.high - interval.low <= self.width or self._side(interval) != 0
 
+    @takes_keywords
     def side(self, successes: int, count: int) -> int:
         """On which side of the threshold the rate certainly lies.
 
@@ -180,7 +183,7 @@ class Until:
 
         Raises
         ------
-        ValueError
+        ScenarioError
             If not ``0 <= successes <= count``.
         """
         return self._side(sequential(successes, count, self.confidence))

@@ -7,14 +7,29 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from crawler2d.common.arrays import real_number, whole_number
+from crawler2d.common.keywords import takes_keywords
+from crawler2d.errors import ScenarioError
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["Interval", "bootstrap_mean", "mcnemar", "newcombe", "newcombe_paired", "wilson"]
+__all__ = [
+    "Interval",
+    "bootstrap_mean",
+    "checked_counts",
+    "checked_level",
+    "mcnemar",
+    "newcombe",
+    "newcombe_paired",
+    "wilson",
+]
 
 # Resamples of a bootstrap; with this many, bounds vary by about 2 % of the interval's width.
 _RESAMPLES = 2000
 _LOG_2 = math.log(2.0)
+_MOST = 10**9
+"""Runs: more than anyone makes."""
 
 
 class Interval(NamedTuple):
@@ -25,6 +40,7 @@ class Interval(NamedTuple):
     high: float
 
 
+@takes_keywords
 def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     """Estimate a rate with Wilson's score interval.
 
@@ -44,8 +60,9 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
 
     Raises
     ------
-    ValueError
-        If not ``0 <= successes <= count``, or `confidence` is not between 0 and 1.
+    ScenarioError
+        If `successes` and `count` are not whole numbers with ``0 <= successes <= count``, or
+        `confidence` is not between 0 and 1.
 
     References
     ----------
@@ -58,8 +75,7 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     >>> round(low, 3), high
     (0.839, 1.0)
     """
-    if not 0 <= successes <= count:
-        raise ValueError(f"successes must be from 0 to count = {count}, got {successes}")
+    successes, count = checked_counts(successes, count)
     z = _normal_quantile(confidence)
     if count == 0:
         return Interval(math.nan, 0.0, 1.0)
@@ -73,6 +89,7 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     return Interval(rate, low, high)
 
 
+@takes_keywords
 def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interval:
     """Estimate the difference between two independent rates, a / n - b / m.
 
@@ -94,8 +111,8 @@ def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interv
 
     Raises
     ------
-    ValueError
-        If a sample is empty, or an argument out of range.
+    ScenarioError
+        If a sample is empty, or an argument is not a number or out of range.
 
     References
     ----------
@@ -108,8 +125,8 @@ def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interv
     >>> round(low, 4), round(high, 4)
     (0.0524, 0.3339)
     """
-    if n < 1 or m < 1:
-        raise ValueError(f"n and m must be at least 1, got {n} and {m}")
+    n, m = (whole_number(each, name, 1, _MOST) for each, name in ((n, "n"), (m, "m")))
+    a, b = whole_number(a, "a", 0, n), whole_number(b, "b", 0, m)
     first, second = wilson(a, n, confidence), wilson(b, m, confidence)
     difference = first.rate - second.rate
     below = math.hypot(first.rate - first.low, second.high - second.rate)
@@ -117,6 +134,7 @@ def newcombe(a: int, n: int, b: int, m: int, confidence: float = 0.95) -> Interv
     return Interval(difference, difference - below, difference + above)
 
 
+@takes_keywords
 def newcombe_paired(
     both: int, first: int, second: int, neither: int, confidence: float = 0.95
 ) -> Interval:
@@ -141,8 +159,8 @@ def newcombe_paired(
 
     Raises
     ------
-    ValueError
-        If there are no pairs, or an argument is out of range.
+    ScenarioError
+        If there are no pairs, or an argument is not a number or out of range.
 
     References
     ----------
@@ -155,12 +173,11 @@ def newcombe_paired(
     >>> difference, round(low, 4), round(high, 4)
     (0.2, 0.0562, 0.3292)
     """
+    pairs = {"both": both, "first": first, "second": second, "neither": neither}
+    both, first, second, neither = (whole_number(n, name, 0, _MOST) for name, n in pairs.items())
     n = both + first + second + neither
-    if min(both, first, second, neither) < 0 or n == 0:
-        raise ValueError(
-            f"numbers of pairs must be at least 0, and one above 0,"
-            f" got {both}, {first}, {second} and {neither}"
-        )
+    if n == 0:
+        raise ScenarioError("neither", neither, "must be at least 1 if there are no other pairs")
     p = wilson(both + first, n, confidence)
     q = wilson(both + second, n, confidence)
     excess = float(both * neither - first * second)
@@ -174,6 +191,7 @@ def newcombe_paired(
     return Interval(difference, difference - below, difference + above)
 
 
+@takes_keywords
 def mcnemar(first: int, second: int) -> float:
     """Test whether two rates from paired data are equal: McNemar's test, exact and two-sided.
 
@@ -189,16 +207,15 @@ def mcnemar(first: int, second: int) -> float:
 
     Raises
     ------
-    ValueError
-        If a number is below 0.
+    ScenarioError
+        If they are not whole numbers from 0.
 
     Examples
     --------
     >>> mcnemar(0, 5)
     0.0625
     """
-    if min(first, second) < 0:
-        raise ValueError(f"numbers of pairs must be at least 0, got {first} and {second}")
+    first, second = whole_number(first, "first", 0, _MOST), whole_number(second, "second", 0, _MOST)
     n = first + second
     # Logarithms, because the binomial coefficients of many pairs overflow.
     tail = sum(
@@ -208,6 +225,7 @@ def mcnemar(first: int, second: int) -> float:
     return min(1.0, 2.0 * tail)
 
 
+@takes_keywords
 def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     """Estimate a mean with a bootstrap percentile interval.
 
@@ -228,7 +246,7 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
 
     Raises
     ------
-    ValueError
+    ScenarioError
         If `confidence` is not between 0 and 1.
 
     Examples
@@ -237,7 +255,7 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     >>> mean, low > 1.0, high < 4.0
     (2.5, True, True)
     """
-    tail = 0.5 * (1.0 - _checked(confidence))
+    tail = 0.5 * (1.0 - checked_level(confidence))
     sample = np.asarray(values, dtype=np.float64)
     n = sample.size
     if n < 2:
@@ -257,10 +275,18 @@ def _side(a: float, b: float, phi: float) -> float:
 def _normal_quantile(confidence: float) -> float:
     from statistics import NormalDist  # noqa: PLC0415 - slow to import
 
-    return NormalDist().inv_cdf(0.5 + _checked(confidence) / 2.0)
+    return NormalDist().inv_cdf(0.5 + checked_level(confidence) / 2.0)
 
 
-def _checked(confidence: float) -> float:
-    if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
-    return confidence
+def checked_counts(successes: int, count: int) -> tuple[int, int]:
+    """Refuse what are no numbers of successful runs and of all runs."""
+    count = whole_number(count, "count", 0, _MOST)
+    return whole_number(successes, "successes", 0, count), count
+
+
+def checked_level(confidence: float) -> float:
+    """Refuse what is no confidence level."""
+    level = real_number(confidence, "confidence")
+    if not 0.0 < level < 1.0:
+        raise ScenarioError("confidence", confidence, "must be between 0 and 1")
+    return level

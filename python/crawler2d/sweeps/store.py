@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from crawler2d._core import build_info
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import StoreError
 from crawler2d.results.row import Row
 from crawler2d.sweeps.database import INSERT, Place, place_of, read_row, to_read, to_write, told
@@ -168,6 +169,7 @@ def stored_rows(path: Place) -> Iterator[Kept]:
         yield kept
 
 
+@takes_keywords
 def join_stores(into: Place, *others: Place) -> int:
     """Copy the runs of other stores into one; what it holds already is left.
 

@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.runs.progress import Progress
 from crawler2d.runs.trials import Trials
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["sweep"]
 
 
+@takes_keywords
 def sweep(
     scenario: Scenario,
     over: Mapping[Any, Any],

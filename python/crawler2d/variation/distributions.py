@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from crawler2d.common.arrays import frozen_scalar, real_number
+from crawler2d.common.keywords import TakesKeywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import read_path
 
@@ -54,7 +55,7 @@ class Distribution(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class _Bounded:
+class _Bounded(TakesKeywords):
     """Bounds in order, both of them finite."""
 
     low: float
@@ -115,7 +116,7 @@ class Uniform(_Bounded):
 
 
 @dataclass(frozen=True, slots=True)
-class UniformInt:
+class UniformInt(TakesKeywords):
     """Any whole number from `low` to `high`, both included, all equally likely.
 
     Parameters

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Literal
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import LineOfWheels, Track
@@ -13,6 +14,7 @@ from crawler2d.presets.robots.finish import finished
 __all__ = ["absolem"]
 
 
+@takes_keywords
 def absolem(
     *,
     flippers: Flippers | Literal["built"] | None = "built",

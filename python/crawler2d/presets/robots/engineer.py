@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from crawler2d.common.arrays import real_number
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
 from crawler2d.parameters.track import HybridWheels, LineOfWheels, Track
@@ -13,6 +14,7 @@ from crawler2d.presets.robots.finish import finished
 __all__ = ["engineer"]
 
 
+@takes_keywords
 def engineer(
     *,
     center_of_mass: tuple[float, float] = (0.0, 0.02),

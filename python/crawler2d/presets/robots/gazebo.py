@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, Track
@@ -12,6 +13,7 @@ from crawler2d.presets.robots.finish import finished
 __all__ = ["gz_tracked_vehicle"]
 
 
+@takes_keywords
 def gz_tracked_vehicle(
     *,
     flippers: Flippers | Literal["built"] | None = "built",

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Literal
 
+from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import GrouserBeltTrack, LineOfWheels, Track
@@ -14,6 +15,7 @@ from crawler2d.presets.robots.finish import finished
 __all__ = ["marv"]
 
 
+@takes_keywords
 def marv(
     *,
     flippers: Flippers | Literal["built"] | None = "built",
