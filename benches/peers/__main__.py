@@ -54,8 +54,10 @@ def main() -> None:
     parser.add_argument("--render", action="store_true", help="only write the report again")
     arguments = parser.parse_args()
     path = _RESULT.with_stem("peers-quick") if arguments.quick else _RESULT
+    is_whole = arguments.quick or set(arguments.sections) == set(_SECTIONS)
+    if arguments.render or not is_whole:
+        _refuse_without_a_run(parser, path)
     if not arguments.render:
-        is_whole = arguments.quick or set(arguments.sections) == set(_SECTIONS)
         result = _begun() if is_whole else json.loads(path.read_text(encoding="utf-8"))
         start = time.perf_counter()
         for section in quick() if arguments.quick else full(arguments.scenes, arguments.sections):
@@ -68,6 +70,17 @@ def main() -> None:
     sys.stdout.write(text)
     if not arguments.quick and arguments.scenes == scenes.NAMES:
         _REPORT.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _refuse_without_a_run(parser: argparse.ArgumentParser, path: Path) -> None:
+    """End before anything is measured if the report would lack what only a whole run brings."""
+    found = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    missing = [name for name in ("machine", "wall") if name not in found]
+    if missing:
+        parser.error(
+            f"--sections and --render change a report: {path} must hold a whole run, "
+            f"and lacks {' and '.join(missing)}; run once without them"
+        )
 
 
 def quick() -> Iterator[dict[str, Any]]:

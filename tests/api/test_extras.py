@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -133,3 +134,22 @@ def test_a_log_gets_a_line_for_every_tenth_and_no_carriage_return(
         f"{done} of 1000" for done in range(100, 1001, 100)
     ]
     assert "\r" not in text
+
+
+def test_tables_can_be_made_where_dask_cannot_be_imported(folder: Path) -> None:
+    """With /proc hidden, dask raises psutil.NoSuchProcess on import."""
+    (folder / "dask.py").write_text('raise RuntimeError("no such process")')
+    code = """
+import crawler2d as c2d
+base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.step(0.05), duration=0.1)
+print(dict(c2d.sweep(base, {"terrain.height": [0.01, 0.02]}, repeats=1, progress=False).sizes))
+"""
+    path = os.pathsep.join([str(folder), *sys.path])
+    made = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert made.stdout == "{'height': 2, 'repeat': 1}\n", made.stderr

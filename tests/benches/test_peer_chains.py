@@ -1,5 +1,9 @@
 """benches/peers: the chain is one robot in both engines, closes, and its gaps are told rightly."""
 
+import importlib
+import json
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,3 +118,25 @@ def test_the_report_says_what_is_met_and_what_is_not() -> None:
     assert "none in the grid: 0.02 mm at 0.125 ms, 160 iterations" in text
     assert "| 22 shoes | 40.0 | 50, better 35 | yes |" in text
     assert "costs 1.5 to 1.5 times as much; its pins open 200 to 200 times less" in text
+
+
+@pytest.mark.parametrize("kept", [None, {"machine": {}}, {"wall": 1.0}])
+@pytest.mark.parametrize("given", [["--sections", "chains"], ["--render"]])
+def test_what_needs_a_whole_run_ends_before_anything_is_measured(
+    given: list[str],
+    kept: dict[str, Any] | None,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    pytest.importorskip("pymunk")
+    program = importlib.import_module("benches.peers.__main__")
+    result = tmp_path / "peers.json"
+    if kept is not None:
+        result.write_text(json.dumps(kept))
+    monkeypatch.setattr(program, "_RESULT", result)
+    monkeypatch.setattr(sys, "argv", ["peers", *given])
+    monkeypatch.setattr(program, "of_chains", lambda *_: pytest.fail("it measures"))
+    with pytest.raises(SystemExit):
+        program.main()
+    assert "must hold a whole run" in capsys.readouterr().err

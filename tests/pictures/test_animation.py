@@ -240,3 +240,24 @@ def test_the_palette_keeps_what_is_seen_most() -> None:
     palette = filming.palette_of(Image, pixels).getpalette()
     assert palette[:6] == [255, 255, 255, 217, 210, 197]
     assert 252 not in palette
+
+
+@pytest.mark.parametrize("suffix", ["gif", *(["mp4"] if has_ffmpeg else [])])
+def test_a_film_counts_its_frames(short: c2d.Run, tmp_path: Path, suffix: str) -> None:
+    calls: list[tuple[int, int]] = []
+    short.animate(
+        tmp_path / f"run.{suffix}",
+        fps=10.0,
+        width=200,
+        progress=lambda done, total: calls.append((done, total)),
+    )
+    assert calls == [(done, 6) for done in range(7)]
+
+
+def test_a_film_shows_how_far_it_is_unless_told_not_to(
+    short: c2d.Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short.animate(tmp_path / "run.gif", fps=10.0, width=200)
+    assert capsys.readouterr().err.splitlines()[-1].startswith("6 of 6 frames")
+    short.animate(tmp_path / "run.gif", fps=10.0, width=200, progress=False)
+    assert capsys.readouterr().err == ""

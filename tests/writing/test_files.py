@@ -203,3 +203,11 @@ def test_any_legal_robot_is_written_or_refused_by_a_rule() -> None:
 @pytest.mark.filterwarnings("ignore::crawler2d.ScenarioWarning")
 def test_very_many_legal_robots_are_written_or_refused_by_a_rule() -> None:
     assert sum(attempt(number) for number in range(1000, 3000)) > 400
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_console_does_not_show_the_whole_file(name: str, tmp_path: Path) -> None:
+    text = write(WHEELS, name, tmp_path / "model.xml")
+    assert len(repr(text)) < 80
+    assert str(len(text)) in repr(text)
+    assert (tmp_path / "model.xml").read_text(encoding="utf-8") == text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -27,6 +28,8 @@ def extra(module: str, name: str) -> Any:
         why).
     """
     top = module.partition(".")[0]
+    if top == "xarray" and top not in sys.modules:
+        _leave_out_broken("dask")
     try:
         with _without_interrupt():
             return importlib.import_module(module)
@@ -39,6 +42,20 @@ def extra(module: str, name: str) -> Any:
                 " (if an earlier import of it was interrupted, only a new Python process helps)"
             )
         raise ImportError(message, name=top) from error
+
+
+def _leave_out_broken(module: str) -> None:
+    """Hide a package that another one would use, if it is there but cannot be imported.
+
+    xarray knows only that dask may be missing. With /proc hidden dask fails, as it counts cores.
+    """
+    try:
+        with _without_interrupt():
+            importlib.import_module(module)
+    except ImportError:
+        return
+    except Exception:  # whatever it is, what uses it can do without
+        sys.modules[module] = None  # type: ignore[assignment] # then importing it is an ImportError
 
 
 @contextlib.contextmanager

@@ -416,7 +416,7 @@ class Robot(Parameters):
         Returns
         -------
         str
-            The text of the file.
+            The text of the file; a console shows only how long it is.
 
         Raises
         ------
@@ -464,7 +464,7 @@ class Robot(Parameters):
         Returns
         -------
         str
-            The text of the file.
+            The text of the file; a console shows only how long it is.
 
         Raises
         ------
@@ -518,7 +518,7 @@ class Robot(Parameters):
         Returns
         -------
         str
-            The text of the file.
+            The text of the file; a console shows only how long it is.
 
         Raises
         ------

@@ -21,6 +21,8 @@ from crawler2d.pictures.scenes import scene_of
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -48,8 +50,12 @@ def animate(
     speed: float,
     follow: bool | None,
     width: int,
+    counted: Callable[[int], AbstractContextManager[Callable[[int], None]]],
 ) -> Path:
-    """Write a run as a film; see `Run.animate`."""
+    """Write a run as a film; see `Run.animate`.
+
+    Given the number of frames, `counted` opens what is told of each that has been drawn.
+    """
     checked = checked_path(path)
     fps = _in_range(fps, "fps", (1.0, 50.0))
     speed = _in_range(speed, "speed", (1e-3, 1e3))
@@ -60,7 +66,17 @@ def animate(
         raise ScenarioError("speed", speed, f"must give at most {_MOST_FRAMES} frames, not {count}")
     times = np.minimum(start + np.arange(count) * speed / fps, end)
     film = Film(run, times, pace=speed, follow=follow, width=width)
-    write_film(checked, film.figure, film.show, count=count, fps=fps)
+    shown = 0
+    with counted(count) as report:
+
+        def show(number: int) -> None:
+            nonlocal shown
+            film.show(number)
+            if number == shown:  # some are drawn twice, for the palette or to be held
+                shown += 1
+                report(1)
+
+        write_film(checked, film.figure, show, count=count, fps=fps)
     return checked
 
 

@@ -1,4 +1,4 @@
-"""Progress of a batch: a bar on a terminal if tqdm is installed, else lines of text."""
+"""Progress of what takes long: a bar on a terminal if tqdm is installed, else lines of text."""
 
 from __future__ import annotations
 
@@ -46,7 +46,9 @@ class Reporter:
 
 
 @contextlib.contextmanager
-def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Iterator[Reporter]:
+def reporter(
+    progress: bool | Progress | None, total: int, done: int = 0, *, unit: str = "run"
+) -> Iterator[Reporter]:
     """Turn the argument `progress` into what counts the finished runs.
 
     Parameters
@@ -56,6 +58,8 @@ def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Ite
         finished runs and of all runs.
     total, done : int
         See `Reporter`.
+    unit : str
+        What is counted.
 
     Raises
     ------
@@ -67,24 +71,24 @@ def reporter(progress: bool | Progress | None, total: int, done: int = 0) -> Ite
     elif callable(progress):
         yield Reporter(progress, total, done)
     elif progress is True:
-        with _bar(total, done) as show:
+        with _bar(total, done, unit) as show:
             yield Reporter(show, total, done)
     else:
         raise ScenarioError("progress", progress, "must be True, False or a callable")
 
 
 @contextlib.contextmanager
-def _bar(total: int, begun: int) -> Iterator[Progress]:
+def _bar(total: int, begun: int, unit: str) -> Iterator[Progress]:
     # Notebooks draw their own bar and are no terminal; a log would get one copy of it a second.
     if not sys.stderr.isatty() and not _in_a_notebook():
-        yield _line()
+        yield _line(unit)
         return
     try:
         tqdm = extra("tqdm.auto", "progress").tqdm
     except ImportError:  # then a line must do
-        yield _line()
+        yield _line(unit)
         return
-    with tqdm(total=total, initial=begun, unit="run") as bar:
+    with tqdm(total=total, initial=begun, unit=unit) as bar:
 
         def advance(done: int, total: int) -> None:
             bar.total = total
@@ -100,7 +104,7 @@ def _in_a_notebook() -> bool:
     return hasattr(shell, "kernel")
 
 
-def _line() -> Progress:
+def _line(unit: str) -> Progress:
     """Write one line, overwritten on a terminal; elsewhere a new line for every tenth."""
     begin = time.monotonic()
     last = 0
@@ -114,7 +118,7 @@ def _line() -> Progress:
             return
         last = part
         end = "\r" if terminal and done < total else "\n"
-        sys.stderr.write(f"{done} of {total} runs, {now - begin:.0f} s{end}")
+        sys.stderr.write(f"{done} of {total} {unit}s, {now - begin:.0f} s{end}")
         sys.stderr.flush()
 
     return write

@@ -12,6 +12,7 @@ from crawler2d.results.record import Record
 from crawler2d.results.tip_over import TipOver, tip_over_of
 from crawler2d.runs import branch as branching
 from crawler2d.runs.cross_check import CrossCheck, cross_checked
+from crawler2d.runs.progress import Progress, Reporter, reporter
 from crawler2d.runs.recording import Recording, recording
 from crawler2d.runs.trials import (
     EscapeForce,
@@ -26,6 +27,7 @@ from crawler2d.runs.trials import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
     from os import PathLike
     from pathlib import Path
 
@@ -533,6 +535,7 @@ class Run(Record):
         speed: float = 1.0,
         follow: bool | None = None,
         width: int = 800,
+        progress: bool | Progress | None = True,
     ) -> Path:
         """Write a film of the side view with the contact forces, which ends with the outcome.
 
@@ -550,6 +553,8 @@ class Run(Record):
             unless the robot would be too small to see.
         width : int
             [px] Width of the film, from 200 to 4000.
+        progress : bool or callable
+            As for `simulate_many`; frames are counted.
 
         Returns
         -------
@@ -569,7 +574,12 @@ class Run(Record):
         """
         from crawler2d.pictures.animation import animate  # noqa: PLC0415 - optional
 
-        return animate(self, path, fps=fps, speed=speed, follow=follow, width=width)
+        def counted(frames: int) -> AbstractContextManager[Reporter]:
+            return reporter(progress, frames, unit="frame")
+
+        return animate(
+            self, path, fps=fps, speed=speed, follow=follow, width=width, counted=counted
+        )
 
     @overload
     def to_html(self, path: None = None, *, time: float | None = None) -> str: ...

@@ -22,7 +22,7 @@ from crawler2d.writing.sdf import SDF, sdf_of
 from crawler2d.writing.urdf import URDF, urdf_of
 from crawler2d.writing.xml import XML, commented, document
 
-__all__ = ["Name", "written"]
+__all__ = ["ModelText", "Name", "written"]
 
 Name = Literal["sdf", "urdf", "mjcf"]
 
@@ -33,6 +33,25 @@ _WRITERS: dict[Name, tuple[Format, Callable[[Tree, Across, Limits], XML]]] = {
 }
 
 
+class ModelText(str):
+    """The text of a model file: any string, but that a console shows what it is, and not all of it.
+
+    Examples
+    --------
+    >>> text = ModelText("<robot></robot>")
+    >>> text
+    <model file, 15 characters; print it to see them>
+    >>> print(text)
+    <robot></robot>
+    """
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Write the short form."""
+        return f"<model file, {len(self)} characters; print it to see them>"
+
+
 def written(
     text: str,
     name: Name,
@@ -41,7 +60,7 @@ def written(
     friction: float,
     track_width: float | None,
     chassis_width: float | None,
-) -> str:
+) -> ModelText:
     """Write the robot of a scenario; see `Robot.to_sdf`.
 
     Parameters
@@ -62,7 +81,9 @@ def written(
         raise ScenarioError("friction", friction, "must be between 0 and 1000")
     form, write = _WRITERS[name]
     tree = model_of(robot, text, across, friction=friction, form=form)
-    made = document(write(tree, across, _limits(robot)), _comment(robot, across, friction))
+    made = ModelText(
+        document(write(tree, across, _limits(robot)), _comment(robot, across, friction))
+    )
     if path is not None:
         Path(path).write_text(made, encoding="utf-8")
     return made
