@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crawler2d_core::{Cancel, Checked, End, Error, Outcome};
+use crawler2d_core::{Cancel, Checked, ContactTable, End, Error, Outcome};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
@@ -22,8 +22,20 @@ pub(crate) struct Simulation {
     turn: Mutex<()>,
     /// Its steps take so long that Ctrl-C must not have to wait for one.
     is_slow: AtomicBool,
-    /// Its outcome, once it is certain, and after how many steps: to know it takes trials.
-    outcome: Mutex<Option<(u64, Outcome)>>,
+    /// Its outcome, once it is certain; to know it takes trials, and what is commanded later does not change it.
+    outcome: Mutex<Option<Outcome>>,
+}
+
+/// Contacts at an instant, whose columns are made when somebody asks for them.
+#[pyclass(frozen, module = "crawler2d._core")]
+struct Contacts(ContactTable);
+
+#[pymethods]
+impl Contacts {
+    /// All columns.
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        convert::contacts(py, self.0.clone())
+    }
 }
 
 /// Time between two checks for Ctrl-C.
@@ -136,6 +148,7 @@ impl Simulation {
         rear_flipper_angle: Option<f64>,
         push: Option<f64>,
     ) -> PyResult<()> {
+        self.outcome(py)?;
         self.with(py, |simulation| {
             let ends = [(End::Front, flipper_angle), (End::Rear, rear_flipper_angle)];
             simulation.command_all(speed, ends, push)
@@ -144,15 +157,14 @@ impl Simulation {
 
     /// The current state.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (reading, contacts, ended_at, flippers) = self.with(py, |simulation| {
+        let (reading, contacts, flippers) = self.with(py, |simulation| {
             Ok((
                 simulation.reading(),
                 simulation.contact_table(),
-                simulation.is_over().then(|| simulation.steps()),
                 simulation.flipper_angles().collect::<Vec<_>>(),
             ))
         })?;
-        let outcome = ended_at.map(|steps| self.outcome(py, steps)).transpose()?;
+        let outcome = self.outcome(py)?;
         let state = PyDict::new(py);
         state.set_item("time", reading.time)?;
         state.set_item(
@@ -169,7 +181,7 @@ impl Simulation {
         state.set_item("track_speed", reading.track_speed)?;
         state.set_item("track_position", reading.track_position)?;
         state.set_item("flipper_angles", flippers.into_pyarray(py))?;
-        state.set_item("contacts", convert::contacts(py, contacts)?)?;
+        state.set_item("contacts", Bound::new(py, Contacts(contacts))?)?;
         state.set_item("outcome", outcome.map(Outcome::name))?;
         Ok(state)
     }
@@ -201,13 +213,12 @@ impl Simulation {
         }
     }
 
-    /// The outcome after this many steps, after which it is certain.
-    fn outcome(&self, py: Python<'_>, steps: u64) -> PyResult<Outcome> {
+    /// The outcome, if it is certain.
+    fn outcome(&self, py: Python<'_>) -> PyResult<Option<Outcome>> {
         let known = || self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((at, outcome)) = *known()
-            && at == steps
-        {
-            return Ok(outcome);
+        let found = *known();
+        if found.is_some() || !self.with(py, |simulation| Ok(simulation.is_over()))? {
+            return Ok(found);
         }
         let (cancel, inner) = (Cancel::default(), Arc::clone(&self.inner));
         let asked = cancel.clone();
@@ -216,8 +227,7 @@ impl Simulation {
                 crawler2d_core::outcome_of(simulation, &asked)
             })
         })?;
-        *known() = Some((steps, outcome));
-        Ok(outcome)
+        Ok(Some(*known().get_or_insert(outcome)))
     }
 
     /// Waits until no other thread advances it; Ctrl-C is answered meanwhile.

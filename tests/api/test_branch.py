@@ -249,7 +249,7 @@ def test_a_run_without_a_result_is_not_branched() -> None:
         ({"push": 5.0}, "push"),
         ({"push": (5.0,)}, "push"),
         ({"push": (math.nan, 1.0)}, "push"),
-        ({"push": (1e7, 1.0)}, "push"),
+        ({"push": (1e17, 1.0)}, "push"),
         ({"push": (5.0, -1.0)}, "push.rise_time"),
         ({"duration": -1.0}, "duration"),
         ({"duration": math.inf}, "duration"),

@@ -79,6 +79,17 @@ DOUBTFUL: dict[str, tuple[Scenario, str, float]] = {
         "robot.moment_of_inertia",
         440.0,
     ),
+    "a robot in grams": (Scenario(replace(ROBOT, mass=21_200.0), STEP), "robot.mass", 21_200.0),
+    "a robot in tonnes": (
+        Scenario(replace(ROBOT, mass=0.0212, track_mass=0.002), STEP),
+        "robot.mass",
+        0.0212,
+    ),
+    "ground like foam": (
+        Scenario(ROBOT, STEP, solver=c2d.Solver(contact_frequency=3.0)),
+        "solver.contact_frequency",
+        3.0,
+    ),
     "gravity in centimetres": (Scenario(ROBOT, STEP, gravity=981.0), "gravity", 981.0),
 }
 
@@ -137,10 +148,29 @@ def test_what_is_usual_is_not_doubted(name: str) -> None:
         hold(math.pi),
         on(line(0.12)),
         on(line(0.01)),
+        Scenario(ROBOT, STEP, solver=c2d.Solver(contact_frequency=30.0)),
     ],
 )
 def test_what_may_well_be_meant_is_not_doubted(scenario: Scenario) -> None:
     assert not doubts(scenario.validate)
+
+
+@pytest.mark.parametrize("frequency", [10.0, 30.0])
+def test_the_sinkage_of_a_doubt_is_that_of_a_robot_at_rest(frequency: float) -> None:
+    solver = c2d.Solver(contact_frequency=frequency, contact_damping_ratio=1.0)
+    still = Scenario(ROBOT, c2d.terrains.flat(), drive=c2d.Drive(speed=0.0), solver=solver)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", c2d.ScenarioWarning)
+        run = c2d.simulate(still, duration=4.0)
+    # Each end of the belt bears half of the weight, on a contact as stiff as if it bore all.
+    sinkage = 9.81 / (2.0 * math.pi * frequency) ** 2
+    bearing = run.contacts["time"] == run.time[-1]
+    share = run.contacts["normal_force"][bearing] / (9.81 * ROBOT.mass)
+    assert run.contacts["penetration"][bearing] == pytest.approx(share * sinkage, rel=1e-3)
+    assert share.sum() == pytest.approx(1.0, rel=1e-3)
+    doubted = doubts(still.validate)
+    assert [each.path for each in doubted] == ["solver.contact_frequency"] * (frequency < 20.0)
+    assert all(f"{sinkage:.2e}"[:4] in each.reason for each in doubted)
 
 
 CALLS: dict[str, Callable[[], object]] = {

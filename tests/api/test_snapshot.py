@@ -85,7 +85,7 @@ def test_a_push_beyond_friction_moves_a_standing_robot() -> None:
         assert (moved < -0.05) if moves else (abs(moved) < 1e-3)
 
 
-@pytest.mark.parametrize("push", [np.nan, np.inf, 1.1e6, -1.1e6, "1", True, [1.0], 1j])
+@pytest.mark.parametrize("push", [np.nan, np.inf, 1.1e15, -1.1e15, "1", True, [1.0], 1j])
 def test_an_impossible_push_is_refused_and_changes_nothing(scenario: Scenario, push: Any) -> None:
     sim = c2d.Simulation(scenario)
     before = sim.snapshot()

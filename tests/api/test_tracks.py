@@ -86,7 +86,7 @@ def test_a_count_may_be_a_numpy_integer(count: Any) -> None:
 def test_an_impossible_radius_is_refused(model: Any, path: str, radius: Any) -> None:
     error = refusal(lambda: ROBOT.with_track(model(radius)))
     assert error.path == f"robot.track.{path}"
-    rules = ("must be >= 0.001 m and <= 100 m", "must be a number", "must be a finite number")
+    rules = ("must be >= 0.0001 m and <= 100 m", "must be a number", "must be a finite number")
     assert error.rule.startswith(rules)
 
 
@@ -266,11 +266,11 @@ def test_what_are_no_placements_is_refused_at_once(placements: Any, path: str) -
         ([], "placements", "must place at least one wheel"),
         (None, "placements", "must be a list of circles (x, y, radius)"),
         (np.zeros((201, 3)), "placements", "must have at most 200 rows"),
-        ([[0, 0, 0.1], [0, math.nan, 0.1]], "placements[1][1]", "must be >= -100 m and <= 100 m"),
-        ([[-math.inf, 0, 0.1]], "placements[0][0]", "must be >= -100 m and <= 100 m"),
-        ([[0, 0, 0.0]], "placements[0][2]", "must be >= 0.001 m and <= 100 m"),
-        ([[0, 0, 1e-9]], "placements[0][2]", "must be >= 0.001 m and <= 100 m"),
-        ([[0, 0, 1e6]], "placements[0][2]", "must be >= 0.001 m and <= 100 m"),
+        ([[0, 0, 0.1], [0, math.nan, 0.1]], "placements[1][1]", "must be a finite number"),
+        ([[-math.inf, 0, 0.1]], "placements[0][0]", "must be a finite number"),
+        ([[0, 0, 0.0]], "placements[0][2]", "must be >= 0.0001 m and <= 100 m"),
+        ([[0, 0, 1e-9]], "placements[0][2]", "must be >= 0.0001 m and <= 100 m"),
+        ([[0, 0, 1e6]], "placements[0][2]", "must be >= 0.0001 m and <= 100 m"),
     ],
 )
 def test_placements_that_make_no_wheels_are_refused(placements: Any, path: str, rule: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,8 +25,9 @@ class Table(Mapping[str, "NDArray[Any]"]):
 
     Parameters
     ----------
-    columns : mapping of str to array_like
+    columns : mapping of str to array_like, or callable
         The columns in order; a list becomes an array of strings, or of objects if it holds tuples.
+        A callable makes them when they are first used.
 
     Examples
     --------
@@ -35,14 +36,21 @@ class Table(Mapping[str, "NDArray[Any]"]):
     (2, ['x', 'kind'], [0.0, 0.5])
     """
 
-    __slots__ = ("_columns",)
+    __slots__ = ("_given", "_made")
 
     # As with arrays, comparing columns has no single answer: a table equals only itself.
     __eq__ = object.__eq__
     __hash__ = object.__hash__
 
-    def __init__(self, columns: Mapping[str, Any]) -> None:
-        self._columns = {name: read_only(_column(values)) for name, values in columns.items()}
+    def __init__(self, columns: Mapping[str, Any] | Callable[[], Mapping[str, Any]]) -> None:
+        self._given = columns
+        self._made = None if callable(columns) else _frozen(columns)
+
+    @property
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        if self._made is None:
+            self._made = _frozen(self._given() if callable(self._given) else self._given)
+        return self._made
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Return one column, shape (n,)."""
@@ -93,6 +101,10 @@ class Table(Mapping[str, "NDArray[Any]"]):
         )
         more = f"<p>{len(self)} rows, first {_SHOWN} shown</p>" if len(self) > _SHOWN else ""
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
+
+
+def _frozen(columns: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+    return {name: read_only(_column(values)) for name, values in columns.items()}
 
 
 def _column(values: Any) -> NDArray[Any]:

@@ -707,6 +707,6 @@ def _plus_arms(robot: Robot, flippers: Flippers, sign: float) -> Robot:
 def _size(value: float, name: str) -> float:
     """Reject sizes with which `Robot.simple` cannot compute; validation is stricter."""
     number = real_number(value, name)
-    if not 1e-9 <= number <= 1e9:
+    if not 1e-30 <= number <= 1e30:
         raise ScenarioError(name, value, "must be > 0")
     return number

@@ -45,7 +45,7 @@ class State:
     contacts : Table
         Contacts at this instant, with the forces of the last step.
     outcome : Outcome or None
-        The outcome, once it is certain.
+        The outcome, once it is certain; whatever is commanded then does not change it.
     """
 
     time: float
@@ -145,7 +145,7 @@ class Simulation(TakesKeywords):
         ------
         ScenarioError
             If a value is not a number, `speed` exceeds the drivetrain's, an angle exceeds a full
-            turn or its end has no flippers, or `push` exceeds 1e6 N. Then no command changes.
+            turn or its end has no flippers, or `push` exceeds 1e15 N. Then no command changes.
         """
         given = {
             "drive.speed": speed,
@@ -238,7 +238,7 @@ class Simulation(TakesKeywords):
         state = self._core.state()
         for name in ("position", "velocity", "flipper_angles"):
             state[name] = read_only(state[name])
-        state["contacts"] = Table(state["contacts"])
+        state["contacts"] = Table(state["contacts"].columns)
         state["outcome"] = None if state["outcome"] is None else Outcome(state["outcome"])
         return State(**state)
 

@@ -2,8 +2,8 @@
 
 use super::Vector;
 
-/// In any SI unit.
-const MOST: f64 = 1e9;
+/// In any SI unit: a thousand times the weight of the heaviest robot. What is formed of such numbers is finite.
+const MOST: f64 = 1e18;
 
 /// Whether a run can have produced these numbers; NaN is implausible.
 pub(crate) fn plausible(numbers: &[f64]) -> bool {

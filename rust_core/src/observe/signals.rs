@@ -226,8 +226,10 @@ impl Summed {
     }
 
     fn new(l: &LoadedContact, dt: f64) -> Self {
-        // A contact without a force has a position all the same.
-        let weight = l.normal_force.max(1e-9) * dt;
+        /// [N] Less than any force that counts: a contact without one has a position all the same.
+        const FAINT: f64 = 1e-30;
+
+        let weight = l.normal_force.max(FAINT) * dt;
         Self {
             last: l.contact,
             normal_force: l.normal_force * dt,

@@ -2,13 +2,18 @@
 //!
 //! Where possible, bounds are lengths of the robot itself, and lie far beyond what anyone builds or drives over.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use super::fields::joined;
 use super::{CircumferentialWheels, Flippers, Gait, LineOfWheels, Robot, Scenario, Terrain, Track};
 
 /// Obstacles larger than this many robot lengths are doubtful; so is a goal this many times farther than a run gets.
 const FAR: f64 = 3.0;
+/// Share of the robot's length by which it sinks visibly into the ground.
+const SUNK: f64 = 1e-3;
+/// [kg/m^3] Densities that no robot comes near.
+const AIR: f64 = 1.2;
+const GOLD: f64 = 19_300.0;
 
 /// A doubt about a field; the scenario is accepted all the same.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +79,7 @@ impl Scenario {
             most,
             "more than on any planet",
         );
+        self.add_doubts_of_softness(&mut doubts);
         doubts.0
     }
 
@@ -86,6 +92,21 @@ impl Scenario {
                 "cannot be cleared: beyond {last:.3} m the robot leaves the ground, which ends at {end:.3} m"
             );
             doubts.add("goal", goal, reason);
+        }
+    }
+
+    /// Doubts contacts in which the robot sinks visibly under its own weight.
+    ///
+    /// A contact is a spring of the stiffness m (2 pi f)^2, with m the robot's mass: its weight on one presses it in by
+    /// g / (2 pi f)^2, whatever it weighs, and how long that takes is for its damper. The contacts of shoes are softer.
+    fn add_doubts_of_softness(&self, doubts: &mut Doubts) {
+        let frequency = self.solver.contact_frequency;
+        let sinkage = self.gravity / (TAU * frequency).powi(2);
+        if sinkage > SUNK * self.robot.length() {
+            let reason = format!(
+                "is so low that the robot sinks up to {sinkage:.2e} m into rigid ground under its own weight, gravity / (2 pi f)^2"
+            );
+            doubts.add("solver.contact_frequency", frequency, reason);
         }
     }
 
@@ -151,6 +172,17 @@ impl Robot {
         for (i, value) in self.center_of_mass.into_iter().enumerate() {
             let path = format!("robot.center_of_mass[{i}]");
             doubts.at_most(path, value, (length, "m"), "the robot's length");
+        }
+        // Limits of mass are those of the arithmetic; a robot in grams or tonnes is told by its density.
+        let box_round = length * 2.0 * o.largest_radius() * length.max(self.gauge);
+        let [least, most] = [AIR, GOLD].map(|density| density * box_round);
+        let what = "what gold of its length and height would weigh";
+        doubts.at_most("robot.mass".into(), self.mass, (most, "kg"), what);
+        if self.mass < least {
+            let reason = format!(
+                "is usually at least {least:.3} kg, what air of its length and height weighs"
+            );
+            doubts.add("robot.mass", self.mass, reason);
         }
         let most = (self.mass * length * length, "kg m^2");
         let what = "mass x the square of the robot's length";

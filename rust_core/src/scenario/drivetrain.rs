@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::fields::{Fields, Range};
+use super::fields::{Fields, Range, TORQUE};
 use super::{ScenarioError, TrackOutline};
 
 /// What drives the tracks, and its limits.
@@ -47,7 +47,7 @@ impl Drivetrain {
             max_speed: f.number("max_speed", Range::above(0.0, 100.0, "m/s"))?,
             max_acceleration: f.number("max_acceleration", Range::above(0.0, 1e6, "m/s^2"))?,
             max_deceleration: f.number("max_deceleration", Range::above(0.0, 1e6, "m/s^2"))?,
-            max_torque: f.number("max_torque", Range::between(0.0, 1e6, "N m"))?,
+            max_torque: f.number("max_torque", TORQUE)?,
             torque_sharing: f.choice("torque_sharing", &sharing)?,
         };
         f.finish()?;

@@ -50,15 +50,48 @@ impl Range {
         } else {
             format!(" {}", self.unit)
         };
-        format!(
-            "must be {sign} {}{unit} and <= {}{unit}",
-            self.low, self.high
-        )
+        let [low, high] = [self.low, self.high].map(shown);
+        format!("must be {sign} {low}{unit} and <= {high}{unit}")
     }
 }
 
-/// [kg] Plausible masses of a tracked robot and its arms.
-pub(super) const MASS: Range = Range::between(1e-3, 1e6, "kg");
+/// [kg] Lightest and heaviest mass.
+///
+/// Masses have no size of their own in the equations of motion: robots whose masses, forces and torques all differ by
+/// the same power of two move alike to the last bit, until a number leaves float64. Of the numbers with a mass in them
+/// the largest is then a stiffness, 1e22: it takes a product of fourteen to reach 1e308, and no formula has nearly as
+/// many. `tests/physics/test_scale.py` has robots near both ends.
+const LIGHTEST: f64 = 1e-12;
+const HEAVIEST: f64 = 1e12;
+/// [m/s^2] Strongest gravity.
+const STRONGEST: f64 = 1e3;
+/// [m] Smallest and largest size of a part, and where it may be.
+///
+/// Contacts overlap by a fraction of a micrometre, and a step may be off by 0.3 um at the default accuracy: for parts of
+/// less than some hundred times that, shape means nothing.
+pub(super) const SMALLEST: f64 = 1e-4;
+const LARGEST: f64 = 100.0;
+
+pub(super) const MASS: Range = Range::between(LIGHTEST, HEAVIEST, "kg");
+pub(super) const SIZE: Range = Range::between(SMALLEST, LARGEST, "m");
+pub(super) const SIZE_OR_ZERO: Range = Range::between(0.0, LARGEST, "m");
+pub(super) const COORDINATE: Range = Range::between(-LARGEST, LARGEST, "m");
+pub(super) const GRAVITY: Range = Range::between(0.0, STRONGEST, "m/s^2");
+/// [N] Up to the weight of the heaviest mass.
+pub(super) const FORCE: Range = Range::above(0.0, HEAVIEST * STRONGEST, "N");
+/// [N m] Up to that weight on the longest lever.
+pub(super) const TORQUE: Range = Range::between(0.0, HEAVIEST * STRONGEST * LARGEST, "N m");
+/// [kg m^2] From the lightest mass on the shortest lever to the heaviest on the longest.
+pub(super) const INERTIA: Range = Range::between(
+    LIGHTEST * SMALLEST * SMALLEST,
+    HEAVIEST * LARGEST * LARGEST,
+    "kg m^2",
+);
+/// [N/m], [N s/m] Up to a spring on the heaviest mass that swings once, or a damper that stops it, in the shortest step.
+pub(super) const STIFFNESS: Range = Range::above(0.0, HEAVIEST / (SHORTEST * SHORTEST), "N/m");
+pub(super) const DAMPING: Range = Range::between(0.0, HEAVIEST / SHORTEST, "N s/m");
+/// [s] Shortest step.
+pub(super) const SHORTEST: f64 = 1e-5;
 
 /// A JSON object being read: every known field is read once; the others are errors.
 pub(crate) struct Fields<'a> {
@@ -297,7 +330,7 @@ fn in_range(path: &str, value: &Value, range: Range) -> Result<f64, ScenarioErro
     // JSON has no non-finite numbers; they are passed as strings, so that the error can name the field.
     let x = match value {
         Value::String(text) if matches!(text.as_str(), "NaN" | "Infinity" | "-Infinity") => {
-            return Err(ScenarioError::new(path, text, range.rule()));
+            return Err(ScenarioError::new(path, text, "must be a finite number"));
         }
         other => other
             .as_f64()
@@ -345,6 +378,15 @@ fn edit_distance(a: &str, b: &str) -> usize {
         }
     }
     row[b.len()]
+}
+
+/// A number in few characters.
+fn shown(x: f64) -> String {
+    if x == 0.0 || (1e-4..1e9).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
+    }
 }
 
 /// Path of a field of the object at `path`.

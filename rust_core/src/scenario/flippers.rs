@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, MASS, Range};
-use super::outline::{LENGTH, TrackOutline};
+use super::fields::{Fields, MASS, Range, SIZE, TORQUE};
+use super::outline::TrackOutline;
 use super::track::Track;
 
 /// [rad] Angle of an arm relative to the chassis: up to a full turn either way.
@@ -72,14 +72,14 @@ impl Flippers {
             ("both", Ends::Both),
         ];
         let flippers = Self {
-            length: f.number("length", LENGTH)?,
-            root_radius: f.number("root_radius", LENGTH)?,
-            tip_radius: f.number("tip_radius", LENGTH)?,
+            length: f.number("length", SIZE)?,
+            root_radius: f.number("root_radius", SIZE)?,
+            tip_radius: f.number("tip_radius", SIZE)?,
             mass: f.number("mass", MASS)?,
             ends: f.choice("ends", &ends)?,
             angle: f.number("angle", ANGLE)?,
             rate_limit: f.number("rate_limit", Range::above(0.0, 100.0, "rad/s"))?,
-            torque_limit: f.number("torque_limit", Range::between(0.0, 1e6, "N m"))?,
+            torque_limit: f.number("torque_limit", TORQUE)?,
             track: if f.value("track")?.is_null() {
                 None
             } else {

@@ -14,7 +14,7 @@ mod text;
 mod track;
 mod wheel;
 
-use fields::{Fields, Range};
+use fields::{Fields, GRAVITY, Range};
 use serde::Serialize;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -96,7 +96,7 @@ impl Scenario {
             drive: Drive::read(f.child("drive")?)?,
             start: Start::read(f.child("start")?)?,
             goal: f.optional_number("goal", Range::between(-1e7, 1e7, "m"))?,
-            gravity: f.number("gravity", Range::between(0.0, 1e3, "m/s^2"))?,
+            gravity: f.number("gravity", GRAVITY)?,
             duration: f.number("duration", Range::between(0.0, 1e5, "s"))?,
             solver: Solver::read(f.child("solver")?)?,
             criteria: SeizureCriteria::read(f.child("criteria")?)?,

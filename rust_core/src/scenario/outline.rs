@@ -4,14 +4,8 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use serde_json::{Value, json};
 
 use super::ScenarioError;
-use super::fields::{Fields, Range};
+use super::fields::{COORDINATE, Fields, SIZE, SIZE_OR_ZERO, SMALLEST};
 
-/// [m] Plausible sizes of a tracked robot; a micrometre or a kilometre is a mistake of units.
-pub(super) const LENGTH: Range = Range::between(1e-3, 100.0, "m");
-const LENGTH_OR_ZERO: Range = Range::between(0.0, 100.0, "m");
-const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
-/// [m] Least distance of the end axles along the chassis: the least that `LENGTH` has.
-const LEAST_DISTANCE: f64 = 1e-3;
 /// What texts have in place of two discs.
 const SHORT: [&str; 3] = ["axle_distance", "front_radius", "rear_radius"];
 /// Largest number of discs.
@@ -179,9 +173,9 @@ impl TrackOutline {
         };
         let outline = Self {
             discs,
-            grouser_height: f.number("grouser_height", LENGTH_OR_ZERO)?,
-            grouser_pitch: f.number("grouser_pitch", LENGTH)?,
-            grouser_thickness: f.number("grouser_thickness", LENGTH_OR_ZERO)?,
+            grouser_height: f.number("grouser_height", SIZE_OR_ZERO)?,
+            grouser_pitch: f.number("grouser_pitch", SIZE)?,
+            grouser_thickness: f.number("grouser_thickness", SIZE_OR_ZERO)?,
         };
         let smallest = outline.smallest_radius();
         if outline.grouser_height >= smallest {
@@ -217,9 +211,9 @@ impl TrackOutline {
     /// Checks that it has two ends, with the origin of the chassis frame between them.
     fn check_ends(&self, f: &Fields) -> Result<(), ScenarioError> {
         let [rear, front] = self.end_discs().map(|disc| disc[0]);
-        if self.axle_distance() < LEAST_DISTANCE {
+        if self.axle_distance() < SMALLEST {
             let rule = format!(
-                "must have its rearmost and its foremost disc, those that reach farthest, at least {LEAST_DISTANCE} m apart along x"
+                "must have its rearmost and its foremost disc, those that reach farthest, at least {SMALLEST} m apart along x"
             );
             let value = format!("discs at x = {rear} and {front} m");
             return Err(f.error("discs", value, rule));
@@ -235,15 +229,15 @@ impl TrackOutline {
 
 /// Reads the short form of two discs.
 fn read_ends(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
-    let axle_distance = f.number("axle_distance", LENGTH)?;
-    let front = f.number("front_radius", LENGTH)?;
-    let rear = f.number("rear_radius", LENGTH)?;
+    let axle_distance = f.number("axle_distance", SIZE)?;
+    let front = f.number("front_radius", SIZE)?;
+    let rear = f.number("rear_radius", SIZE)?;
     Ok(TrackOutline::two_discs(axle_distance, [rear, front]))
 }
 
 /// Reads discs of which none lies in another.
 fn read_discs(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
-    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", LENGTH)];
+    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", SIZE)];
     let discs = f.rows("discs", columns, MOST)?;
     if discs.len() < 2 {
         let value = format!("{} discs", discs.len());

@@ -4,12 +4,10 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
-use super::fields::{Fields, MASS, Range};
+use super::fields::{COORDINATE, Fields, INERTIA, MASS, SIZE};
 use super::flippers::Flippers;
-use super::outline::{LENGTH, TrackOutline};
+use super::outline::TrackOutline;
 use super::track::Track;
-
-const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
 /// A tracked robot with both tracks and with its arms at angle 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -44,8 +42,7 @@ impl Robot {
             name: f.text("name")?.to_owned(),
             mass: f.number("mass", MASS)?,
             center_of_mass: f.point("center_of_mass", COORDINATE)?,
-            moment_of_inertia: f
-                .number("moment_of_inertia", Range::between(1e-9, 1e9, "kg m^2"))?,
+            moment_of_inertia: f.number("moment_of_inertia", INERTIA)?,
             track_mass: f.number("track_mass", MASS)?,
             outline: TrackOutline::read(f.child("outline")?)?,
             belly: read_belly(&mut f)?,
@@ -54,7 +51,7 @@ impl Robot {
             } else {
                 Some(Flippers::read(f.child("flippers")?)?)
             },
-            gauge: f.number("gauge", LENGTH)?,
+            gauge: f.number("gauge", SIZE)?,
             drivetrain: Drivetrain::read(f.child("drivetrain")?)?,
             track: Track::read(f.child("track")?)?,
         };

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, Range};
+use super::fields::{Fields, Range, SHORTEST};
 
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -156,7 +156,7 @@ impl Solver {
                 ],
             )?,
             accuracy: f.optional_number("accuracy", Range::between(1e-10, 1e-2, "m"))?,
-            time_step: f.optional_number("time_step", Range::between(1e-5, 1.0 / 30.0, "s"))?,
+            time_step: f.optional_number("time_step", Range::between(SHORTEST, 1.0 / 30.0, "s"))?,
             iterations: f.optional_integer("iterations", 1, 1000)?,
             contact_frequency: f.number("contact_frequency", Range::between(1.0, 1e5, "Hz"))?,
             contact_damping_ratio: f

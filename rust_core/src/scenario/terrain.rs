@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, Range, one_of};
+use super::fields::{Fields, Range, SIZE, SMALLEST, one_of};
 
 /// Largest number of points of one profile; 100,000 are built in well under a second.
 pub const MAX_POINTS: usize = 200_000;
@@ -13,7 +13,7 @@ const EDGE_RADIUS: Range = Range::between(0.0, 10.0, "m");
 const HEIGHT: Range = Range::above(0.0, 100.0, "m");
 /// 80 degrees; with more, a barrier would lie along the track.
 const YAW: Range = Range::between(-1.396_263, 1.396_263, "rad");
-const LENGTH: Range = Range::between(1e-3, 1e4, "m");
+const LENGTH: Range = Range::between(SMALLEST, 1e4, "m");
 
 /// One terrain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -233,7 +233,7 @@ impl Terrain {
                 friction: f.number("friction", FRICTION)?,
             },
             "half_round" => Self::HalfRound {
-                radius: f.number("radius", Range::between(1e-3, 100.0, "m"))?,
+                radius: f.number("radius", SIZE)?,
                 friction: f.number("friction", FRICTION)?,
             },
             "diagonal_barrier" => Self::DiagonalBarrier {

@@ -4,19 +4,13 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::TorqueSharing;
-use super::fields::{Fields, Range, joined, one_of};
+use super::fields::{COORDINATE, DAMPING, FORCE, Fields, Range, SIZE, STIFFNESS, joined, one_of};
 use super::wheel::{MAX_GROUSERS, Wheel};
 
 /// Largest number of wheels per side.
 pub(crate) const MAX_WHEELS: u32 = 200;
 /// Largest number of shoes of a chain.
 pub(crate) const MAX_SHOES: u32 = 400;
-const PLATE: Range = Range::between(1e-4, 1.0, "m");
-const PRE_TENSION: Range = Range::between(1e-3, 1e6, "N");
-const STIFFNESS: Range = Range::between(1e-3, 1e9, "N/m");
-const DAMPING: Range = Range::between(0.0, 1e9, "N s/m");
-const RADIUS: Range = Range::between(1e-3, 100.0, "m");
-const COORDINATE: Range = Range::between(-100.0, 100.0, "m");
 
 /// A track model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -183,13 +177,13 @@ impl Track {
         let track = match f.text("kind")? {
             "line" => Self::Line(LineOfWheels {
                 count: f.integer("count", 2, MAX_WHEELS)?,
-                wheel_radius: f.optional_number("wheel_radius", RADIUS)?,
+                wheel_radius: f.optional_number("wheel_radius", SIZE)?,
                 wheel: Wheel::read(f.child("wheel")?)?,
                 as_track: f.flag("as_track")?,
             }),
             "circumferential" => Self::Circumferential(CircumferentialWheels {
                 count: f.integer("count", 3, MAX_WHEELS)?,
-                wheel_radius: f.optional_number("wheel_radius", RADIUS)?,
+                wheel_radius: f.optional_number("wheel_radius", SIZE)?,
                 wheel: Wheel::read(f.child("wheel")?)?,
             }),
             "hybrid" => Self::Hybrid(HybridWheels {
@@ -346,8 +340,8 @@ fn read_segmental(f: &mut Fields) -> Result<SegmentalTrack, ScenarioError> {
         shoe_count: f.optional_integer("shoe_count", 3, MAX_SHOES)?,
         mechanism: f.choice("mechanism", &mechanisms)?,
         shoe_shape: f.choice("shoe_shape", &shapes)?,
-        plate_thickness: f.optional_number("plate_thickness", PLATE)?,
-        pre_tension: f.optional_number("pre_tension", PRE_TENSION)?,
+        plate_thickness: f.optional_number("plate_thickness", SIZE)?,
+        pre_tension: f.optional_number("pre_tension", FORCE)?,
         tensioner_stiffness: f.optional_number("tensioner_stiffness", STIFFNESS)?,
         tensioner_damping: f.optional_number("tensioner_damping", DAMPING)?,
         road_wheel_count: f.optional_integer("road_wheel_count", 0, MAX_WHEELS)?,
@@ -368,7 +362,7 @@ fn read_segmental(f: &mut Fields) -> Result<SegmentalTrack, ScenarioError> {
 }
 
 fn read_placements(f: &mut Fields) -> Result<Vec<[f64; 3]>, ScenarioError> {
-    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", RADIUS)];
+    let columns = [("x", COORDINATE), ("y", COORDINATE), ("radius", SIZE)];
     let placements = f.rows("placements", columns, MAX_WHEELS as usize)?;
     if placements.is_empty() {
         return Err(f.error("placements", "[]", "must place at least one wheel"));

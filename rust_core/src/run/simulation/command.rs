@@ -147,7 +147,7 @@ impl Simulation {
     /// Sets the push at the centre of mass to a force [N] along x, from now on.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N.
+    /// [`Error::Scenario`] if the force is not finite or exceeds 1e15 N.
     pub fn set_push(&mut self, force: f64) -> Result<(), Error> {
         self.raise_push(force, 0.0)
     }
@@ -155,10 +155,10 @@ impl Simulation {
     /// Lets the push rise evenly to a force [N] in a time [s], from now on.
     ///
     /// # Errors
-    /// [`Error::Scenario`] if the force is not finite or exceeds 1e6 N, or the time is negative or exceeds 1e5 s.
+    /// [`Error::Scenario`] if the force is not finite or exceeds 1e15 N, or the time is negative or exceeds 1e5 s.
     pub fn raise_push(&mut self, force: f64, rise_time: f64) -> Result<(), Error> {
         if !Push::may_be(force) {
-            let rule = "must be >= -1e6 N and <= 1e6 N";
+            let rule = "must be >= -1e15 N and <= 1e15 N";
             return Err(ScenarioError::new("push", force, rule).into());
         }
         if !(0.0..=1e5).contains(&rise_time) {

@@ -15,8 +15,8 @@ pub(super) struct Push {
 }
 
 impl Push {
-    /// [N] Largest force that can be asked for.
-    const MOST: f64 = 1e6;
+    /// [N] Largest force that can be asked for: the weight of the heaviest robot.
+    const MOST: f64 = 1e15;
 
     /// A push that rises from what it is now to a force [N].
     pub(super) fn raised(self, force: f64, now: f64, rise: f64) -> Self {

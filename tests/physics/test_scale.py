@@ -1,0 +1,131 @@
+"""Copies of a robot of another size or mass: none is refused, all move as the original does."""
+
+import copy
+import json
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.common.units import unit_of
+from crawler2d.parameters.plain import to_plain
+from crawler2d.parameters.scenario import Scenario
+from crawler2d.parameters.track import Track
+
+POWERS = {  # of length, mass and time
+    "1": (0, 0, 0),
+    "rad": (0, 0, 0),
+    "m": (1, 0, 0),
+    "s": (0, 0, 1),
+    "kg": (0, 1, 0),
+    "rad/s": (0, 0, -1),
+    "Hz": (0, 0, -1),
+    "m/s": (1, 0, -1),
+    "m/s^2": (1, 0, -2),
+    "N": (1, 1, -2),
+    "N m": (2, 1, -2),
+    "N/m": (0, 1, -2),
+    "N s/m": (0, 1, -1),
+    "kg m^2": (2, 1, 0),
+}
+BARE = c2d.robots.engineer(flippers=None)
+GEARS = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
+TRACKS: dict[str, Track] = {
+    "belt": c2d.BeltTrack(),
+    "belt with grousers": c2d.GrouserBeltTrack(),
+    "wheels": c2d.LineOfWheels(4, wheel_radius=0.0608),
+    "gears": GEARS,
+    "small wheels": c2d.CircumferentialWheels(24),
+    "chain": c2d.SegmentalTrack(),
+    "chain on a sprocket": c2d.SegmentalTrack(mechanism="sprocket"),
+    "force": c2d.ForceTrack(),
+}
+STEPS = {
+    (name, height): Scenario(BARE.with_track(track), c2d.terrains.step(height))
+    for name, track in TRACKS.items()
+    for height in (0.05, 0.1)
+}
+CLIMB = Scenario(c2d.robots.engineer(), c2d.terrains.step(0.2), drive=c2d.Drive(gait=c2d.Climb()))
+CASES: dict[tuple[str, Any], Scenario] = {
+    **STEPS,
+    ("wheels", "knife edge"): Scenario(
+        BARE.with_track(TRACKS["wheels"]), c2d.terrains.knife_edge(0.04)
+    ),
+    ("flippers", 0.2): CLIMB,
+}
+ids = pytest.mark.parametrize("case", CASES, ids=[f"{a}, {b}" for a, b in CASES])
+# A doubt says that nobody builds such robots.
+any_mass = pytest.mark.filterwarnings("ignore:robot.mass:crawler2d.ScenarioWarning")
+
+
+def scaled(scenario: Scenario, length: float, mass: float, time: float) -> Scenario:
+    """Multiply every number of a scenario with the factors of its unit."""
+
+    def of(value: Any, path: str) -> Any:
+        if isinstance(value, dict):
+            return {k: of(v, f"{path}.{k}".removeprefix(".")) for k, v in value.items()}
+        if isinstance(value, list):
+            return [of(v, f"{path}[{i}]") for i, v in enumerate(value)]
+        unit = unit_of(path)
+        if unit is None or isinstance(value, (bool, str)) or value is None:
+            return value
+        of_length, of_mass, of_time = POWERS[unit]
+        factor = length**of_length * mass**of_mass * time**of_time
+        return value if factor == 1.0 else value * factor
+
+    return Scenario.from_json(json.dumps(of(to_plain(scenario), "")))
+
+
+@pytest.mark.parametrize("size", [10.0, 1.0 / 16.0])
+@ids
+def test_a_copy_of_another_size_runs_and_ends_as_the_original(
+    case: tuple[str, Any], size: float
+) -> None:
+    """By Froude: where speeds and times grow with the root of the size, gravity stays the same."""
+    time = math.sqrt(size)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", c2d.ScenarioWarning)
+        run = c2d.simulate(CASES[case])
+        other = c2d.simulate(scaled(CASES[case], size, size**3, time))
+    assert other.outcome == run.outcome
+    metrics = {name: value for name, value in other.metrics.items() if name != "time_to_clear"}
+    assert np.isfinite(list(metrics.values())).all()
+    # Lengths and times of the solver itself, such as those of its shortest step, are not scaled.
+    assert other.metrics["time"] / time == pytest.approx(run.metrics["time"], rel=0.05)
+    assert other.metrics["final_x"] / size == pytest.approx(run.metrics["final_x"], abs=0.03)
+
+
+@any_mass
+@pytest.mark.parametrize("factor", [2.0**35, 2.0**-37], ids=["near the most", "near the least"])
+@ids
+def test_robots_of_any_mass_move_alike_to_the_last_bit(
+    case: tuple[str, Any], factor: float
+) -> None:
+    """Limits of mass are those of float64: nothing is lost near them."""
+    run = c2d.simulate(CASES[case])
+    heavy = scaled(CASES[case], 1.0, factor, 1.0)
+    other = c2d.simulate(heavy)
+    assert other.outcome == run.outcome
+    assert np.array_equal(other.time, run.time)
+    assert np.array_equal(other.position, run.position)
+    assert np.array_equal(other.drive_force, factor * run.drive_force)
+
+
+@any_mass
+@pytest.mark.parametrize("factor", [2.0**35, 2.0**-37])
+def test_a_stop_of_any_mass_is_told_and_tried_alike(factor: float) -> None:
+    base = STEPS["wheels", 0.1]
+    run, other = c2d.simulate(base), c2d.simulate(scaled(base, 1.0, factor, 1.0))
+    assert [t.freed for t in other.trials()] == [t.freed for t in run.trials()]
+    held, moved = run.escape_force()
+    assert other.escape_force() == pytest.approx((factor * held, factor * moved), rel=1e-12)
+    sim = c2d.Simulation(other.scenario)
+    sim.advance(2.0)
+    twin = copy.deepcopy(sim)  # by a snapshot, whose numbers must be plausible
+    for each in (sim, twin):
+        each.command(push=factor)
+        each.advance(0.5)
+    assert np.array_equal(sim.state().position, twin.state().position)
