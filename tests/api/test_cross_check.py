@@ -1,12 +1,18 @@
 """The same scenario in both engines: how they end, when they part, what statics says."""
 
 import math
+import time
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.parameters.track import Track
 from crawler2d.results.balance import Balance, Pull
+from crawler2d.runs import cross_check
+from crawler2d.runs.agreement import STUDY, agreement_of
 from crawler2d.runs.cross_check import CrossCheck, cross_checked
 from tests.shared import ROBOT, refused
 
@@ -22,7 +28,7 @@ def seized() -> c2d.Run:
 
 @pytest.fixture(scope="module")
 def check(seized: c2d.Run) -> CrossCheck[c2d.Run]:
-    return seized.cross_check()
+    return seized.cross_check(announce=False)
 
 
 def test_round_wheels_stop_in_the_same_place(check: CrossCheck[c2d.Run]) -> None:
@@ -86,7 +92,9 @@ def test_on_level_ground_paths_do_not_part() -> None:
 
 
 def test_a_run_that_did_not_stop_has_neither_balance_nor_forces(seized: c2d.Run) -> None:
-    check = cross_checked(seized, lambda other: c2d.simulate(other.replace({"duration": 1.0})))
+    check = cross_checked(
+        seized, lambda other: c2d.simulate(other.replace({"duration": 1.0})), announce=False
+    )
     assert not check.same_outcome
     assert check.balances[0] is not None
     assert check.balances[1] is None
@@ -168,3 +176,91 @@ def test_a_pose_that_is_no_equilibrium_is_said_to_be_none() -> None:
     assert str(later).endswith("it would be one from 1.40 times the friction on")
     both = Balance(imbalance=0.0, tolerance=1e-3, holds_between=(0.0, math.inf), pulls=())
     assert str(both) == "an equilibrium at any friction tried"
+
+
+ROUND = c2d.CircumferentialWheels(24)
+GEARED = c2d.GearWheel(grouser_count=12)
+
+
+@pytest.mark.parametrize(
+    ("track", "models", "figures"),
+    [
+        (c2d.LineOfWheels(6), 4, (512, 512, 344, 344)),
+        (c2d.LineOfWheels(4, wheel=GEARED), 2, (256, 252, 160, 162)),
+        (ROUND, 1, (128, 102, 60, 60)),
+        (c2d.CircumferentialWheels(24, wheel=c2d.GearWheel()), 1, (128, 93, 49, 70)),
+        (c2d.CircumferentialWheels(16, wheel_radius=0.012), 1, (128, 128, 16, 16)),
+        (c2d.HybridWheels(((0.0, 0.0, 0.06),)), 1, (128, 126, 18, 16)),
+        (c2d.ForceTrack(), 2, (256, 256, 64, 64)),
+        (c2d.CircumferentialWheels(16, wheel_radius=0.012, wheel=GEARED), 0, (0, 0, 0, 0)),
+    ],
+)
+def test_a_check_says_how_often_both_engines_ended_alike_with_such_a_model(
+    track: Track, models: int, figures: tuple[int, ...]
+) -> None:
+    found = agreement_of(ROBOT.with_track(track))
+    assert len(found.models) == models
+    assert (found.runs, found.alike, found.own, found.rapier) == figures
+    said = f"{found.alike} of {found.runs} runs" if models else "not studied"
+    assert said in str(found)
+
+
+def test_figures_of_the_agreement_are_those_of_its_page() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "studies" / "agreement.md").read_text("utf-8")
+    table = page.partition("<!-- study -->")[2].partition("<!-- end of study -->")[0]
+    rows = [
+        [cell.strip() for cell in row.split("|")[1:-1]] for row in table.split("\n") if "|" in row
+    ]
+    found = {
+        row[0]: (int(row[1]), int(row[2]), *map(int, row[4].split(",")))
+        for row in rows[2:]
+        if row[0] != "all"
+    }
+    assert found == STUDY
+
+
+def test_a_check_ends_with_what_it_is_worth(check: CrossCheck[c2d.Run]) -> None:
+    assert str(check).endswith("344 got over in crawler2d's own dynamics, 344 in rapier.")
+
+
+def test_a_check_says_before_it_starts_how_long_it_will_take(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """24 round wheels that took 0.02 s here took rapier 23 s, without a word."""
+    run = c2d.simulate(STEADY.replace({"robot.track": ROUND, "duration": 30.0}), goal=0.0)
+    told: list[tuple[float, float]] = []
+
+    def stop(likely: float, most: float) -> None:
+        told.append((likely, most))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run.cross_check(announce=stop)
+    ((likely, most),) = told
+    assert most == pytest.approx(likely * 30.0 / run.metrics["time"])
+    # What rapier needs for a fifth of a second, judged by a tenth; others use the machine, too.
+    begin = time.perf_counter()
+    c2d.simulate(run.scenario.replace({"solver": c2d.Solver(engine="rapier"), "duration": 0.2}))
+    took = time.perf_counter() - begin
+    assert took / 4.0 < most * 0.2 / 30.0 < took * 4.0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(("most", "is_told"), [(1.0, False), (20.0, True)])
+def test_only_what_takes_long_is_announced(
+    most: float, is_told: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cross_check._say("rapier", 1.0, most)
+    said = capsys.readouterr().err
+    assert said == (
+        "cross_check: rapier will take about 1 s if its run ends when this one did,"
+        " up to about 20 s if it lasts\n"
+        if is_told
+        else ""
+    )
+
+
+def test_what_is_no_announcement_is_refused_by_name(seized: c2d.Run) -> None:
+    wrong: Any = "yes"
+    with pytest.raises(c2d.ScenarioError, match=r"^announce must be"):
+        seized.cross_check(announce=wrong)

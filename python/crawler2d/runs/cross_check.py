@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import sys
+import time
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.table import Table
+from crawler2d.errors import ScenarioError
 from crawler2d.parameters.settings import Solver
 from crawler2d.results.balance import Balance
 from crawler2d.results.record import Record
 from crawler2d.results.sentence import body_name
+from crawler2d.runs.agreement import Agreement, agreement_of
 from crawler2d.runs.branch import refuse_without_result
+from crawler2d.runs.simulation import Simulation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -26,6 +32,11 @@ __all__ = ["CrossCheck", "cross_checked"]
 
 _PARTED = 1e-3
 """[m] Distance from which on two paths count as parted."""
+
+_TRIED = 0.1
+"""[s] Simulated time whose cost is measured beforehand."""
+_LONG = 2.0
+"""[s] What takes longer is announced."""
 
 _NAMES = {"own": "crawler2d's own dynamics", "rapier": "rapier"}
 
@@ -58,6 +69,9 @@ class CrossCheck(Generic[R]):
         friction; None for a run that did not end in a stop.
     forces : Table
         Forces of the ground on each body that bears in a stop, see below.
+    agreement : Agreement
+        How often both engines ended alike with such a model in a study, and which way they differ:
+        what this second opinion is worth.
 
     Notes
     -----
@@ -81,6 +95,7 @@ class CrossCheck(Generic[R]):
     parted_at: float | None
     balances: tuple[Balance | None, Balance | None]
     forces: Table
+    agreement: Agreement
 
     @property
     def same_outcome(self) -> bool:
@@ -120,10 +135,21 @@ def _engine(run: Record) -> str:
     return _NAMES[run.scenario.solver.engine]
 
 
-def cross_checked(run: R, simulate: Callable[[Scenario], R]) -> CrossCheck[R]:
-    """Simulate a run's scenario in the other engine, with its history, and compare."""
+def cross_checked(
+    run: R, simulate: Callable[[Scenario], R], *, announce: bool | Callable[[float, float], None]
+) -> CrossCheck[R]:
+    """Simulate a run's scenario in the other engine, with its history, and compare.
+
+    `announce` is told how many seconds that will take: see `Run.cross_check`.
+    """
     refuse_without_result(run)
-    other = simulate(_in_the_other_engine(run.scenario))
+    if not (callable(announce) or isinstance(announce, bool)):
+        raise ScenarioError("announce", announce, "must be True, False or a callable")
+    scenario = _in_the_other_engine(run.scenario)
+    if announce:
+        tell = announce if callable(announce) else partial(_say, _NAMES[scenario.solver.engine])
+        tell(*_expected(run, scenario))
+    other = simulate(scenario)
     first = run if run.has_history else simulate(run.scenario)
     (x, y, angle), (other_x, other_y, other_angle) = _last_pose(first), _last_pose(other)
     return CrossCheck(
@@ -134,7 +160,30 @@ def cross_checked(run: R, simulate: Callable[[Scenario], R]) -> CrossCheck[R]:
         parted_at=_parted_at(first, other),
         balances=(_balance(first), _balance(other)),
         forces=_forces(first, other),
+        agreement=agreement_of(run.scenario.robot),
     )
+
+
+def _expected(run: Record, scenario: Scenario) -> tuple[float, float]:
+    """[s] How long a scenario will take if it ends when a run did, and if it lasts to the end.
+
+    By the time of its first steps, here and now: costs of models differ by a factor of a hundred.
+    """
+    simulation = Simulation(scenario)
+    begin = time.perf_counter()
+    simulation.advance(_TRIED)
+    pace = (time.perf_counter() - begin) / _TRIED
+    return pace * run.metrics["time"], pace * max(scenario.duration, run.metrics["time"])
+
+
+def _say(engine: str, likely: float, most: float) -> None:
+    """Tell on stderr how long it will take, if it is worth the words."""
+    if most >= _LONG:
+        sys.stderr.write(
+            f"cross_check: {engine} will take about {likely:.2g} s if its run ends when this one"
+            f" did, up to about {most:.2g} s if it lasts\n"
+        )
+        sys.stderr.flush()
 
 
 def _in_the_other_engine(scenario: Scenario) -> Scenario:
@@ -221,6 +270,7 @@ def _sentences(check: CrossCheck[R]) -> Iterator[str]:
         yield f"By statics each stop is {next(iter(stops.values()))}"
     else:
         yield from (f"By statics the stop in {name} is {said}" for name, said in stops.items())
+    yield str(check.agreement)
 
 
 def _ended(run: Record) -> str:

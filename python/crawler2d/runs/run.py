@@ -399,7 +399,10 @@ class Run(Record):
             raise ScenarioError("run", self, f"must have tipped over, but ended as {self.outcome}")
         return found
 
-    def cross_check(self) -> CrossCheck[Run]:
+    @takes_keywords
+    def cross_check(
+        self, *, announce: bool | Callable[[float, float], None] = True
+    ) -> CrossCheck[Run]:
         """Simulate the same scenario in the other engine, and compare.
 
         What crawler2d's own dynamics moved is moved by rapier, and the other way round, at that
@@ -408,11 +411,18 @@ class Run(Record):
         wheels are chaotic: of these compare rates, by a `sweep` or `compare` over
         ``solver.engine``.
 
+        Parameters
+        ----------
+        announce : bool or callable
+            rapier may take a thousand times as long. True says beforehand on stderr how long, if
+            that may be more than 2 s; a callable is given the time [s] if its run ends when this
+            one did, and if it lasts to the end of the scenario.
+
         Returns
         -------
         CrossCheck
-            Both runs, when their paths part, how far apart they end, the forces at the stops, and
-            the `Balance` of each.
+            Both runs, when their paths part, how far apart they end, the forces at the stops, the
+            `Balance` of each, and how often both ended alike with such a model in a study.
 
         Raises
         ------
@@ -433,7 +443,7 @@ class Run(Record):
         >>> bool(check.distance < 1e-3)
         True
         """
-        return cross_checked(self, _with_history)
+        return cross_checked(self, _with_history, announce=announce)
 
     def to_xarray(self) -> xarray.Dataset:
         """Copy the history to a labelled dataset.
