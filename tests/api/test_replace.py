@@ -10,7 +10,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.parameters.paths import read_path
 from crawler2d.parameters.scenario import Scenario
-from tests.shared import ROBOT, VARIANTS
+from tests.shared import ROBOT, VARIANTS, with_flippers
 
 
 def test_a_path_replaces_one_field_and_nothing_else() -> None:
@@ -197,3 +197,19 @@ def test_another_track_is_the_same_robot() -> None:
     other = ROBOT.with_track(c2d.LineOfWheels(3))
     assert other.track == c2d.LineOfWheels(3)
     assert other.with_track(ROBOT.track) == ROBOT
+
+
+def test_what_is_of_another_type_is_refused_by_the_path_that_was_given() -> None:
+    robot = with_flippers(c2d.BeltTrack(), c2d.LineOfWheels(3))
+    lanes = c2d.terrains.lanes(c2d.terrains.step(0.05), c2d.terrains.flat())
+    scenario = Scenario(robot, lanes)
+    for path, value in (
+        ("robot.flippers.track.count", "4"),
+        ("robot.flippers.track", "belt"),
+        ("terrain.left.height", "high"),
+        ("duration", "long"),
+        ("robot.outline.front_radius", "thick"),
+    ):
+        with pytest.raises(c2d.ScenarioError) as caught:
+            scenario.replace({path: value})
+        assert caught.value.path == path

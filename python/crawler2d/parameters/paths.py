@@ -103,7 +103,7 @@ def _replaced(root: P, path: str, value: Any) -> P:
     for depth in reversed(range(len(steps))):
         step, node, held = steps[depth], nodes[depth], nodes[depth + 1]
         if isinstance(step, str):
-            value = dataclasses.replace(node, **{step: value})
+            value = _with(node, step, value, path)
             continue
         if depth + 1 == len(steps) and isinstance(held, tuple):
             value = frozen_rows(value, path, rows=False, columns=len(held))
@@ -111,6 +111,16 @@ def _replaced(root: P, path: str, value: Any) -> P:
             value = real_number(value, path)
         value = (*node[:step], value, *node[step + 1 :])
     return cast("P", value)
+
+
+def _with(node: Any, name: str, value: Any, path: str) -> Any:
+    """Replace a field; an object does not know where it is, and names the usual place in errors."""
+    try:
+        return dataclasses.replace(node, **{name: value})
+    except ScenarioError as error:
+        before = path.rpartition(name)[0]
+        field = error.path.removeprefix(f"{node.place}.")
+        raise type(error)(f"{before}{field}", error.value, error.rule) from None
 
 
 def _nodes(root: Parameters, path: str, value: Any) -> list[Any]:
