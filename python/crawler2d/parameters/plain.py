@@ -93,23 +93,38 @@ class Parameters(TakesKeywords):
         ScenarioError
             If a field has something of another type, such as a text in place of a number.
         """
-        for name, hint in field_hints(type(self)).items():
+        for name, hint, path, shape, whole in _forms(type(self)):
             value = getattr(self, name)
-            path = f"{self.place}.{name}" if self.place else name
-            shape = shape_of_rows(hint)
             if shape is not None:
                 rows, columns = shape
                 value = frozen_rows(value, path, rows=rows is not None, columns=columns)
             else:
-                value = frozen_scalar(value, whole=float not in alternatives(hint))
+                value = frozen_scalar(value, whole=whole)
             _check_type(value, hint, path)
             object.__setattr__(self, name, value)
+
+
+_Form = tuple[str, Any, str, tuple[str | None, int] | None, bool]
+_FORMS: dict[type[Parameters], list[_Form]] = {}
+
+
+def _forms(cls: type[Parameters]) -> list[_Form]:
+    """List name, annotation, path and shape of each field, and whether it takes whole numbers."""
+    if cls not in _FORMS:
+        _FORMS[cls] = [
+            (
+                *(name, hint, f"{cls.place}.{name}" if cls.place else name),
+                *(shape_of_rows(hint), float not in alternatives(hint)),
+            )
+            for name, hint in field_hints(cls).items()
+        ]
+    return _FORMS[cls]
 
 
 def _check_type(value: Any, hint: Any, path: str) -> None:
     """Refuse a value of a type that a field does not have."""
     kinds = alternatives(hint)
-    if value is None and type(None) in kinds:
+    if type(value) in kinds and not isinstance(value, (str, int)):  # numbers, objects, None
         return
     if isinstance(value, str) and any(kind is str or _names(kind) for kind in kinds):
         if not value.isascii() and any("\ud800" <= each <= "\udfff" for each in value):
