@@ -129,3 +129,22 @@ def test_a_stop_of_any_mass_is_told_and_tried_alike(factor: float) -> None:
         each.command(push=factor)
         each.advance(0.5)
     assert np.array_equal(sim.state().position, twin.state().position)
+
+
+@pytest.mark.parametrize("name", ["belt", "wheels", "force"])
+def test_tracks_as_light_as_may_be_move_as_others_do(name: str) -> None:
+    heavy = STEPS[name, 0.1].replace({"robot.track_mass": 1e-3 * BARE.mass})
+    light = heavy.replace({"robot.track_mass": 1.01e-5 * BARE.mass})
+    runs = c2d.simulate(heavy), c2d.simulate(light)
+    assert runs[0].outcome == runs[1].outcome
+    assert runs[1].metrics["unresolved_solves"] == 0
+    final = [run.metrics["final_x"] for run in runs]
+    assert final[0] == pytest.approx(final[1], abs=1e-3)
+
+
+def test_parts_too_light_beside_the_robot_are_refused() -> None:
+    for path, robot in (("track_mass", BARE), ("flippers.mass", CLIMB.robot)):
+        scenario = Scenario(robot, c2d.terrains.flat())
+        with pytest.raises(c2d.ScenarioError, match=r"hundred-thousandth of robot\.mass") as caught:
+            scenario.replace({f"robot.{path}": 0.99e-5 * robot.mass}).validate()
+        assert caught.value.path == f"robot.{path}"

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::ScenarioError;
 use super::drivetrain::Drivetrain;
-use super::fields::{COORDINATE, Fields, INERTIA, MASS, SIZE};
+use super::fields::{COORDINATE, Fields, INERTIA, LEAST_SHARE, MASS, SIZE};
 use super::flippers::Flippers;
 use super::outline::TrackOutline;
 use super::track::Track;
@@ -76,6 +76,11 @@ impl Robot {
                 format!("must be less than robot.mass = {} kg", self.mass),
             ));
         }
+        let least = LEAST_SHARE * self.mass;
+        if self.track_mass < least {
+            let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
+            return Err(f.error("track_mass", self.track_mass, rule));
+        }
         let radius = self.outline.largest_radius();
         let circulating = self.track_mass * radius * radius;
         if circulating >= self.moment_of_inertia {
@@ -99,6 +104,11 @@ impl Robot {
         if smallest <= height {
             let rule = format!("must exceed robot.outline.grouser_height = {height} m");
             return error("tip_radius", smallest, rule);
+        }
+        let least = LEAST_SHARE * self.mass;
+        if flippers.mass < least {
+            let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
+            return error("mass", flippers.mass, rule);
         }
         let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
         if of_arms + self.track_mass >= self.mass {
