@@ -332,7 +332,7 @@ def test_the_speed_goes_with_the_size_and_the_limit() -> None:
         ((SEIZING, STEP), {"seed": -1}, "seed"),
         ((SEIZING, STEP), {"drive": 0.4}, "drive"),
         ((SEIZING, STEP), {"duration": -1.0}, "duration"),
-        ((FILES / "cart.urdf",), {"engines": "gz"}, "audit"),
+        ((FILES / "cart.urdf",), {"engines": "gz"}, "engines"),
         ((FILES / "cart.urdf",), {"engine": "ode"}, "engine"),
         (("no_such_file.sdf",), {}, ""),
     ],
