@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 import crawler2d as c2d
+from crawler2d.results.row import diagnosis_json, read_diagnosis
 from crawler2d.sweeps.store import Store, stored_rows
 from tests.sweeps.small import BASE, MODELS, quiet
 from tests.sweeps.stores import as_version_1, change, opened
@@ -233,3 +234,24 @@ def _count(path: Path) -> int:
 
 def _figures(path: Path) -> dict[str, tuple[str, str]]:
     return {row.identity: (row.outcome, repr(row.metrics)) for row, *_ in stored_rows(path)}
+
+
+def test_the_diagnosis_of_a_seizure_comes_back_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "seized.sqlite"
+    wheels = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+    base = c2d.Scenario(wheels, c2d.terrains.step(0.1))
+    quiet(base, {}, repeats=1, vary={}, store=path, trials="all")
+    ((row, _, _),) = stored_rows(path)
+    assert row.diagnosis is not None
+    again = c2d.Diagnosis.from_core(row.diagnosis)
+    run = c2d.simulate(base, trials="all", record="summary")
+    assert run.diagnosis is not None
+    assert again.trials == run.diagnosis.trials
+    assert any(tried.intrusion for tried in again.trials)
+    assert len(set(again.trials)) == len(again.trials)  # they have hashes
+    assert str(again) == str(run.diagnosis)
+    # What a former build said of ground that only the belly rests on.
+    text = diagnosis_json(again.to_plain()).replace(
+        '"mechanism":"straddled"', '"mechanism":"bellied"'
+    )
+    assert read_diagnosis(text)["mechanism"] is None

@@ -106,7 +106,10 @@ def read_diagnosis(text: str) -> dict[str, Any]:
     plain["position"] = tuple(plain["position"])
     for tried in plain["trials"]:
         tried.update({name: tuple(tried[name]) for name in ("position", "flipper_angles")})
-    if plain["intrusion"] is not None:
-        inside = plain["intrusion"]
-        inside.update({name: tuple(inside[name]) for name in ("edges", "bodies", "body_kinds")})
+    for found in (plain, *plain["trials"]):
+        if inside := found.get("intrusion"):
+            inside.update({name: tuple(inside[name]) for name in ("edges", "bodies", "body_kinds")})
+    if plain["mechanism"] == "bellied":
+        # Builds that called it so counted ground that only the belly rests on.
+        plain["mechanism"] = None
     return plain
