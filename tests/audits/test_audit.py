@@ -152,6 +152,16 @@ def test_a_store_keeps_the_runs(tmp_path: Path) -> None:
     assert len(c2d.table(tmp_path / "runs.sqlite")["outcome"]) == 4
 
 
+def test_each_of_300_runs_on_a_step_field_meets_a_field_of_its_own_as_does_the_belt() -> None:
+    fields = {"step field": c2d.terrains.random_stepfield(0)}
+    how: Any = {"samples": 150, "repeats": 2, "duration": 0.1, "repair": False}
+    table = c2d.audit(SEIZING, fields, **how, **QUIET).table
+    seeds = table["drawn_terrain_seed"]
+    own, belt = (seeds.sel(model=name).values.ravel() for name in ("model", "belt"))
+    assert len(set(own.tolist())) == 300
+    assert own.tolist() == belt.tolist()
+
+
 # Standard obstacles
 
 

@@ -80,6 +80,21 @@ def test_several_dimensions_can_be_counted_over() -> None:
     assert alone["count"].equals(TABLE["outcome"].isin([str(o) for o in c2d.Outcome]).astype(int))
 
 
+def test_runs_that_share_a_draw_are_one_cluster_of_an_interval() -> None:
+    ends = np.array([[["cleared"] * 10, ["seized"] * 10]] * 2)  # by height, sample and repeat
+    table = xr.Dataset({"outcome": (("height", "sample", "repeat"), ends)})
+    alone = rate(table)  # the repeats of a sample are independent
+    assert (alone["low"].values[:, 0] == c2d.wilson(10, 10).low).all()
+    both = rate(table, dim=["sample", "repeat"])
+    assert both["count"].values.tolist() == [20, 20]
+    for cell in (both.isel(height=0), rate(table, dim=["height", "sample", "repeat"])):
+        assert (cell["low"].item(), cell["high"].item()) == pytest.approx(c2d.wilson(1, 2)[1:])
+    # One draw in several cells tells no more than one run; what was not drawn, as a list, counts.
+    heights = rate(table, dim="height").isel(sample=0, repeat=0)
+    assert (heights["low"].item(), heights["count"].item()) == (c2d.wilson(1, 1).low, 2)
+    assert rate(["cleared"] * 9)["low"].item() == c2d.wilson(9, 9).low
+
+
 @pytest.mark.parametrize("missing", [np.nan, None, "", "not made"])
 def test_runs_that_were_never_made_are_not_counted(missing: Any) -> None:
     table = TABLE.astype(object)

@@ -1,6 +1,7 @@
 """Intervals: published values, an independent implementation where it is there, and the limits."""
 
 import math
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d import newcombe, wilson
-from crawler2d.sweeps.statistics import bootstrap_mean, mcnemar, newcombe_paired
+from crawler2d.sweeps.statistics import bootstrap_mean, clustered, mcnemar, newcombe_paired
 
 # Newcombe (1998), Two-sided confidence intervals for the single proportion, table I, method 3.
 PUBLISHED_RATES = [
@@ -70,8 +71,6 @@ def test_newcombe_is_as_published(a: int, n: int, b: int, m: int, low: float, hi
 
 @pytest.mark.parametrize("confidence", [0.5, 0.9, 0.95, 0.999])
 def test_wilson_bounds_solve_the_score_equation(confidence: float) -> None:
-    from statistics import NormalDist  # noqa: PLC0415
-
     z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
     rate, low, high = wilson(7, 20, confidence)
     for bound in (low, high):
@@ -165,6 +164,90 @@ def test_newcombe_paired_covers_the_true_difference_as_often_as_it_claims(
     assert 0.935 < covered / 20_000 < 0.985
 
 
+def drawn_clusters(count: int, size: int, rate: float, alike: float) -> np.ndarray:
+    """Successes of 2,000 audits, shape (2000, count): the chances of clusters are beta."""
+    rng = np.random.default_rng([count, size, round(10 * rate), round(10 * alike)])
+    chances = np.full((2000, count), rate)
+    if alike > 0.0:
+        scale = 1.0 / alike - 1.0
+        chances = rng.beta(rate * scale, (1.0 - rate) * scale, chances.shape)
+    return rng.binomial(size, chances)
+
+
+@pytest.mark.parametrize(("count", "size"), [(80, 2), (40, 2), (20, 5)])
+@pytest.mark.parametrize("rate", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("alike", [0.0, 0.3, 0.8])
+def test_the_interval_of_an_audit_holds_the_rate_and_is_nearly_as_narrow_as_the_ideal(
+    count: int, size: int, rate: float, alike: float
+) -> None:
+    audits = drawn_clusters(count, size, rate, alike)
+    found = [clustered(audit, np.full(count, size)) for audit in audits]
+    covered = np.mean([low <= rate <= high for _, low, high in found])
+    assert covered >= 0.93
+    # The ideal knows the correlation, and so how many independent runs tell as much.
+    worth = count * size / (1.0 + (size - 1.0) * alike)
+    shares = audits.sum(axis=1) / (count * size)
+    z = NormalDist().inv_cdf(0.975)
+    half = z * np.sqrt(shares * (1.0 - shares) / worth + z**2 / (4.0 * worth**2))
+    ideal = 2.0 * half / (1.0 + z**2 / worth)
+    assert np.mean([high - low for _, low, high in found]) <= 1.3 * ideal.mean()
+
+
+def test_clusters_of_unequal_sizes_hold_the_rate() -> None:
+    """As where the belt clears only some of the repeats."""
+    rng = np.random.default_rng(0)
+    covered = 0
+    for _ in range(2000):
+        sizes = rng.integers(0, 4, 60)
+        found = clustered(rng.binomial(sizes, rng.beta(0.3, 2.7, 60)), sizes)
+        covered += found.low <= 0.1 <= found.high
+    assert covered >= 0.93 * 2000
+
+
+def test_clusters_of_one_run_have_wilsons_interval() -> None:
+    for hits in (0, 1, 7, 20):
+        ones = [1] * hits + [0] * (20 - hits)
+        assert clustered(ones, [1] * 20, 0.9) == wilson(hits, 20, 0.9)
+
+
+def test_where_all_runs_agree_each_cluster_counts_once() -> None:
+    assert clustered([0] * 12, [5] * 12) == wilson(0, 12)
+    assert clustered([5] * 12, [5] * 12) == wilson(12, 12)
+    assert clustered([5, 0, 5], [5, 0, 5]) == wilson(2, 2)  # a cluster without runs tells nothing
+    assert clustered([7], [10])[1:] == pytest.approx(
+        [0.7 + side for side in scored(0.7, 1.0)], abs=1e-12
+    )
+    assert clustered([], [])[1:] == clustered([0], [0])[1:] == (0.0, 1.0)
+
+
+def scored(rate: float, count: float) -> tuple[float, float]:
+    """The roots of the score equation about a rate."""
+    z = NormalDist().inv_cdf(0.975)
+    roots = np.roots([1.0 + z**2 / count, -(2.0 * rate + z**2 / count), rate**2])
+    return roots.min() - rate, roots.max() - rate
+
+
+def test_the_correlation_within_clusters_is_that_of_an_analysis_of_variance() -> None:
+    """Snedecor and Cochran's moments by hand: 4 clusters of 1 to 4 runs."""
+    hits, runs = np.array([1, 2, 0, 1]), np.array([1, 2, 3, 4])
+    each = [[1.0] * h + [0.0] * (n - h) for h, n in zip(hits, runs, strict=True)]
+    mean = np.concatenate(each).mean()
+    between = sum(n * (np.mean(x) - mean) ** 2 for n, x in zip(runs, each, strict=True)) / 3
+    within = sum(((np.array(x) - np.mean(x)) ** 2).sum() for x in each) / 6
+    size = (10 - 30 / 10) / 3
+    found = (between - within) / (between + (size - 1) * within)
+    alike = (2 * found + 1) / 3  # two clusters hold a failure, three a success
+    worth = 10 / (1 + (30 / 10 - 1) * alike)
+    low, high = scored(0.4, worth)
+    assert clustered(hits, runs)[1:] == pytest.approx((0.4 + low, 0.4 + high))
+
+
+@pytest.mark.parametrize(("hits", "runs"), [([3], [2]), ([-1], [2]), ([1, 1], [2])])
+def test_clusters_out_of_range_are_refused(hits: list[int], runs: list[int]) -> None:
+    with pytest.raises(ValueError, match="successes must be from 0 to counts"):
+        clustered(hits, runs)
+
+
 def test_newcombe_paired_of_a_million_pairs_does_not_overflow() -> None:
     pairs = np.array([500_000, 100_000, 100_000, 300_000])
     difference = newcombe_paired(*pairs.tolist())
@@ -198,8 +281,6 @@ def test_mcnemar_is_the_exact_binomial_test(first: int, second: int, p: float) -
 
 
 def test_mcnemar_of_many_pairs_is_the_normal_test() -> None:
-    from statistics import NormalDist  # noqa: PLC0415
-
     z = (1000 - 1) / math.sqrt(200_000)  # with continuity correction
     assert mcnemar(99_500, 100_500) == pytest.approx(2 * NormalDist().cdf(-z), rel=1e-3)
 

