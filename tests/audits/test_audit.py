@@ -18,8 +18,9 @@ from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.population import unknown_of_file
 from crawler2d.audits.runs import raised, scenario_of
+from crawler2d.audits.share import share_of
 from crawler2d.audits.verdicts import least_samples
-from crawler2d.audits.words import wheels_a_side
+from crawler2d.audits.words import repair_sentence, wheels_a_side, worst
 from crawler2d.sweeps.statistics import wilson
 from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
@@ -385,6 +386,20 @@ def test_a_belt_is_no_count_of_wheels(found: c2d.Audit) -> None:
         expected = "belt" if each.kind == "belt" else f"{each.wheels} wheels a side"
         assert wheels_a_side(each) == expected
     assert any(each.kind == "belt" for each in found.repairs)
+
+
+def test_a_repair_that_no_run_of_the_belt_was_there_for_says_so(found: c2d.Audit) -> None:
+    repair = found.repairs[0]
+    none = share_of(np.zeros((20, 1), bool), np.zeros((20, 1), bool))
+    alone = replace(repair, cleared_beside={**repair.cleared_beside, "gap 90 mm": none})
+    assert worst(alone)[0] == none
+    text = repair_sentence(alone)
+    assert "the belt clears none of the fresh runs on gap 90 mm (0 to compare with)" in text
+    assert "nan" not in text
+    assert found.repaired is not None
+    changed = replace(found, repaired=found.repaired._replace(repairs=(alone,)))
+    assert "none of the fresh runs on gap 90 mm" in changed.in_words
+    assert "none of the fresh runs on gap 90 mm" in changed.to_html()
 
 
 def test_too_few_runs_to_show_that_it_does_not_seize_are_said_to_be(found: c2d.Audit) -> None:

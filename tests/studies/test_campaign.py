@@ -119,6 +119,14 @@ def test_the_highest_obstacle_its_gaps_and_its_limit_are_those_of_the_rates() ->
     assert (none["gaps"] == 0).all()
 
 
+def test_a_height_is_certain_where_only_the_width_of_the_interval_was_asked_for() -> None:
+    belt = {"belt": c2d.BeltTrack()}
+    found = found_of(models=belt, heights=[0.03, 0.2], until=c2d.Until(width=0.3))
+    assert found["rate"].values.tolist() == [[1.0, 0.0]]
+    assert found["certain"].item() == 0.03
+    assert found["side"].values.tolist() == [[1, -1]]
+
+
 def test_slopes_and_gaps_are_climbed_up_to_their_limit() -> None:
     slope = BASE.replace({"terrain": c2d.terrains.ramp(0.3)})
     steep = c2d.studies.max_slope(slope, angles=[0.3, 0.6, 1.2], progress=False)

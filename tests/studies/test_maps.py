@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.studies.campaign import Tally, counting, is_cleared
 from crawler2d.studies.refined import Grid
 from crawler2d.sweeps.statistics import Interval
 from tests.shared import ROBOT, refused
@@ -34,7 +35,11 @@ def grid_of(truth: Any, levels: int) -> Grid:
             [SimpleNamespace(interval=truth(j / (size - 1), i / (size - 1)))] for _, j, i in places
         ]
 
-    grid = Grid((1, size, size), simulate)
+    def judge(tallies: Any) -> tuple[float, int]:
+        rate, low, high = tallies[0].interval
+        return rate, 1 * (low > 0.5) + 2 * (high < 0.5)
+
+    grid = Grid((1, size, size), simulate, judge)
     for level in range(levels + 1):
         grid.refine(2 ** (levels - level), whole=level == 0)
     return grid
@@ -46,8 +51,8 @@ ABOVE, BELOW, BETWEEN = Interval(1.0, 0.8, 1.0), Interval(0.0, 0.0, 0.2), Interv
 def test_a_boundary_is_followed_and_the_rest_is_left_out() -> None:
     grid = grid_of(lambda y, x: ABOVE if x + 0.3 * math.sin(6.0 * y) > 0.5 else BELOW, 4)
     at = np.linspace(0.0, 1.0, 33)
-    truth = np.where(at[None, :] + 0.3 * np.sin(6.0 * at[:, None]) > 0.5, 1.0, -1.0)
-    assert (grid.sides[0] == truth).all()
+    truth = np.where(at[None, :] + 0.3 * np.sin(6.0 * at[:, None]) > 0.5, 1.0, 2.0)
+    assert (grid.kinds[0] == truth).all()
     assert grid.tried.mean() < 0.35
     # Both sides of the boundary have been simulated wherever it passes between two cells.
     changes = truth[:, 1:] != truth[:, :-1]
@@ -93,9 +98,65 @@ def test_with_unknowns_the_median_decides_and_the_band_says_where_it_is_not_sure
     tried = found["count"].to_numpy().max(axis=-1) > 0
     assert tried[::2, ::2].all()
     straddles = (found["band_low"] <= 0.5) & (found["band_high"] >= 0.5)
-    assert found["unsure"].equals(straddles & tried)
+    assert (found["unsure"].to_numpy() == (straddles.to_numpy() & tried)).all()
+    median = found["band_median"].to_numpy()
+    tied = median == 0.5
+    assert ((found["ending"].to_numpy() == "cleared") == (median > 0.5))[tried & ~tied].all()
     assert found["unsure"].any()
     assert found["unknown_friction"].notnull().to_numpy()[tried].all()
+
+
+def colors_of(ax: Any) -> dict[str, Any]:
+    """Colours, hatching and opacity by what the legend says of them."""
+    legend = ax.get_legend()
+    texts = (text.get_text() for text in legend.get_texts())
+    return dict(zip(texts, legend.get_patches(), strict=True))
+
+
+def test_where_all_slip_the_map_has_another_colour_than_where_all_clear() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    found = map_of(outcome="seized", refine=0).squeeze("model")
+    assert (found["rate"] == 0.0).all()  # nothing seizes: it slips, or clears
+    ends = found["outcome"].isel(repeat=0).transpose("angle", "friction").to_numpy()
+    expected = np.where(ends == "cleared", "cleared", "otherwise")
+    assert set(expected.ravel()) == {"cleared", "otherwise"}
+    assert found["ending"].values.tolist() == expected.tolist()
+    ax = found.plot()
+    own = colors_of(ax)
+    assert list(own) == ["most runs fail otherwise", "most runs clear"]
+    slips, clears = (each.get_facecolor() for each in own.values())
+    assert slips != clears
+    (mesh,) = (each for each in ax.collections if each.get_array().count())
+    wanted = [clears if end == "cleared" else slips for end in expected.ravel()]
+    assert np.allclose(mesh.to_rgba(mesh.get_array().ravel()), wanted)
+    assert "intervals of a rate up to 0." in ax.get_title(loc="left")
+    plt.close("all")
+
+
+def test_what_is_not_certain_is_hatched_and_the_legend_says_so() -> None:
+    from matplotlib import pyplot as plt  # noqa: PLC0415
+
+    few = c2d.Until(threshold=0.5, least=3, most=3)  # three that agree prove nothing
+    found = map_of(refine=0, until=few).squeeze("model")
+    assert found["unsure"].all()
+    ax = found.plot()
+    (mesh,) = (each for each in ax.collections if each.get_array().count())
+    assert mesh.get_hatch() == "////"
+    marks = [patch.get_hatch() for text, patch in colors_of(ax).items() if "not certain" in text]
+    assert marks == ["////"]
+    plt.close("all")
+
+
+def test_a_cell_is_simulated_until_it_is_known_whether_most_clear_or_fail_otherwise() -> None:
+    """Of ten runs none seizes; five clear and five slip."""
+    rows: Any = [SimpleNamespace(outcome=end, error=None) for end in ["cleared", "slipping"] * 5]
+    world: Any = None
+    until = c2d.Until(threshold=0.5)
+    seized, others = counting("seized"), [is_cleared, counting("slipping")]
+    assert Tally(world, until, seized, rows=rows).wants == 0
+    assert Tally(world, until, seized, others, rows=rows).wants == 5
+    assert Tally(world, until, seized, others, rows=rows[::2] * 2).wants == 0
 
 
 def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:
@@ -110,10 +171,11 @@ def test_a_map_draws_one_model_with_its_unit_and_its_populations() -> None:
     assert found.sel(model="weak").plot(ax) is ax
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("friction", "angle [deg]")
     assert ax.get_ylim()[1] > math.degrees(0.6)
-    assert ax.get_title(loc="left").splitlines()[:2] == ["weak", "rates over track phase"]
+    assert ax.get_title(loc="left").splitlines()[:2] == [
+        "weak",
+        "how most runs end, over track phase",
+    ]
     assert any("not simulated" in text.get_text() for text in ax.get_legend().get_texts())
-    labels = [each.get_ylabel() for each in ax.figure.axes]
-    assert "rate of cleared" in labels
     assert found.isel(model=[0]).plot().get_title(loc="left").startswith("as it is")
     assert refused(found.isel(model=0, angle=0).plot).path == "plot"
     plt.close("all")

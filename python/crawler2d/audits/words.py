@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = [
     "JAM_HEAD",
     "VERDICT_HEAD",
+    "beside",
     "calls",
     "conclusion",
     "confirmed",
@@ -182,21 +183,32 @@ def hopeless(kind: str) -> str:
 
 
 def worst(repair: Repair) -> tuple[Share, Share, str]:
-    """Return how often a repair clears at worst where the belt does, seizes at worst, and where."""
-    cleared = min(repair.cleared_beside.values(), key=lambda share: share.rate)
+    """Return how often a repair clears at worst where the belt does, seizes at worst, and where.
+
+    Worst of all is to have nothing to be held against: the belt clears none of the fresh runs.
+    """
+    cleared = min(repair.cleared_beside.values(), key=lambda share: (share.runs > 0, share.rate))
     name, seized = max(repair.seized.items(), key=lambda item: (item[1].low, item[1].rate))
     return cleared, seized, name if seized.rate > 0.0 else ""
 
 
 def repair_sentence(repair: Repair) -> str:
     """Say what a repair changes, and what came of it."""
-    cleared, seized, name = worst(repair)
+    _, seized, name = worst(repair)
     where = f", most on {name}" if name else ""
     return (
-        f"{confirmed(repair)}: {repair.what}; clears at least {share(cleared)} of the runs that the"
-        f" belt clears where it seized; seizes at most {share(seized)}{where};"
-        f" {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
+        f"{confirmed(repair)}: {repair.what}; {beside(repair)}; seizes at most"
+        f" {share(seized)}{where}; {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
     )
+
+
+def beside(repair: Repair) -> str:
+    """Say how a repair compares with the belt where it seized, also where there is no telling."""
+    cleared, _, _ = worst(repair)
+    if cleared.runs:
+        return f"clears at least {share(cleared)} of the runs that the belt clears where it seized"
+    alone = [name for name, each in repair.cleared_beside.items() if not each.runs]
+    return f"the belt clears none of the fresh runs on {', '.join(alone)} (0 to compare with)"
 
 
 def wheels_a_side(repair: Repair) -> str:

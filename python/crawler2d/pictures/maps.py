@@ -1,4 +1,4 @@
-"""A rate over two fields: what `Found.plot` draws of `studies.seizure_map`."""
+"""How runs end over two fields: what `Found.plot` draws of `studies.seizure_map`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from crawler2d.common.extras import extra
 from crawler2d.drawings.canvas import checked_axes
-from crawler2d.drawings.palette import BLACK
+from crawler2d.drawings.palette import BLACK, GRAY, GREEN, RED
 from crawler2d.errors import ScenarioError
 from crawler2d.pictures.labels import populations, readable
 
@@ -18,79 +18,92 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_map"]
 
-_COLORS = "cividis"
-"""A map of equal steps of lightness, the same to the colour-blind."""
+_CLEARED, _OTHERWISE = "cleared", "otherwise"
+_FAINT = 0.45
+"""[-] Opacity of what was not simulated."""
 
-_FAINT, _HATCH = 0.35, "////"
-"""[-] Opacity, and hatching, of what was not simulated."""
-
-_GRAY = "#A5AEBD"
-"""Of the legend's patch: a faint middle of the map of colours."""
+_HATCH = "////"
+"""Hatching of what is not certain."""
 
 _BELOW = -46.0
 """[point] From the axes to the legend, past ticks and label."""
 
 
 def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
-    """Draw the rate of every cell; those that were not simulated are faint and hatched."""
+    """Draw how most runs of every cell end: hatched if not certain, faint if not simulated."""
     if found.sizes.get("model", 1) > 1:
         models = ", ".join(map(str, found["model"].to_numpy()))
         rule = "must have one model: found.sel(model=...).plot()"
         raise ScenarioError("plot", models, rule)
     found = found.squeeze("model") if "model" in found.dims else found
-    banded = "band_low" in found
-    shown = found["band_median"] if banded else found["rate"]
-    if shown.ndim != 2:
-        raise ScenarioError("plot", str(shown.dims), "must have both fields of the map")
-    y, x = map(str, shown.dims)
+    ending = found["ending"]
+    if ending.ndim != 2:
+        raise ScenarioError("plot", str(ending.dims), "must have both fields of the map")
+    y, x = map(str, ending.dims)
     if ax is None:
         pyplot = extra("matplotlib.pyplot", "plot")
         _, ax = pyplot.subplots(figsize=(8.0, 6.0), layout="constrained")
     else:
         checked_axes(ax, "ax")
     (scale_x, label_x), (scale_y, label_y) = readable(found[x]), readable(found[y])
-    at_x, at_y = scale_x * found[x].to_numpy(), scale_y * found[y].to_numpy()
-    scale: dict[str, Any] = {"cmap": _COLORS, "vmin": 0.0, "vmax": 1.0}
-    drawn = ax.pcolormesh(at_x, at_y, shown.to_numpy(), shading="nearest", **scale)
-    around = found["around"].to_numpy()
-    guessed = np.isfinite(around).any()
-    if guessed:
-        faint = np.ma.masked_invalid(around)
-        style: dict[str, Any] = {
-            "alpha": _FAINT,
-            "hatch": _HATCH,
-            "edgecolor": "white",
-            "linewidth": 0.0,
-        }
-        ax.pcolor(at_x, at_y, faint, shading="nearest", **scale, **style)
-    rows, columns = np.nonzero(found["unsure"].to_numpy())
-    ax.scatter(at_x[columns], at_y[rows], s=22.0, facecolor="white", edgecolor=BLACK, zorder=3)
-    name = found["rate"].attrs["long_name"]
-    text = f"median {name} over the unknowns" if banded else name
-    ax.figure.colorbar(drawn, ax=ax, label=text)
+    at = scale_x * found[x].to_numpy(), scale_y * found[y].to_numpy()
+    colors = {_OTHERWISE: GRAY, found.attrs["outcome"]: RED, _CLEARED: GREEN}
+    kinds = list(colors)
+    numbers = np.vectorize(kinds.index)(ending.to_numpy())
+    guessed = np.isfinite(found["around"].to_numpy())
+    unsure = found["unsure"].to_numpy()
+    scale: dict[str, Any] = {
+        "cmap": extra("matplotlib.colors", "plot").ListedColormap(list(colors.values())),
+        "vmin": -0.5,
+        "vmax": len(kinds) - 0.5,
+        "shading": "nearest",
+    }
+    hatched: dict[str, Any] = {"hatch": _HATCH, "edgecolor": BLACK, "linewidth": 0.0}
+    for chosen, style in (
+        (~guessed & ~unsure, {}),
+        (guessed, {"alpha": _FAINT}),
+        (unsure, hatched),
+    ):
+        ax.pcolor(*at, np.ma.masked_array(numbers, ~chosen), **scale, **style)
     ax.set(xlabel=label_x, ylabel=label_y)
-    title = populations(found.attrs, banded=banded)
+    banded = "band_low" in found
+    title = populations(found.attrs, banded=banded, what="how most runs end,")
     label = f"{found['model'].item()}\n" if "model" in found.coords else ""
-    ax.set_title(f"{label}{title}", loc="left", fontsize="small", parse_math=False)
-    _legend(ax, guessed=bool(guessed), unsure=rows.size > 0, banded=banded)
+    text = f"{label}{title}\n{_known(found, banded=banded)}"
+    ax.set_title(text, loc="left", fontsize="small", parse_math=False)
+    own = {name: color for name, color in colors.items() if (ending == name).any()}
+    _legend(ax, own, guessed=bool(guessed.any()), unsure=bool(unsure.any()), banded=banded)
     return ax
 
 
-def _legend(ax: Axes, *, guessed: bool, unsure: bool, banded: bool) -> None:
-    """Explain the marks, below the axes."""
-    patches = extra("matplotlib.patches", "plot")
-    lines = extra("matplotlib.lines", "plot")
-    handles = []
+def _known(found: xarray.Dataset, *, banded: bool) -> str:
+    """Say how many runs stand behind a cell, and how well its rate is known."""
+    counts = found["count"].to_numpy()
+    counts = counts[counts > 0]
+    least, most = int(counts.min()), int(counts.max())
+    each = "of each sample " if banded else ""
+    runs = f"{least} runs" if least == most else f"{least} to {most} runs"
+    widths = (found["high"] - found["low"]).to_numpy()
+    widest = float(np.nanmax(np.where(found["count"].to_numpy() > 0, widths, np.nan)))
+    return f"{runs} {each}a cell; intervals of a rate up to {widest:.2f} wide"
+
+
+def _legend(ax: Axes, colors: dict[str, str], *, guessed: bool, unsure: bool, banded: bool) -> None:
+    """Explain the colours and marks, below the axes."""
+    patch = extra("matplotlib.patches", "plot").Patch
+    said = {_CLEARED: "most runs clear", _OTHERWISE: "most runs fail otherwise"}
+    handles = [
+        patch(facecolor=color, label=said.get(name, f"most runs end {name.replace('_', ' ')}"))
+        for name, color in colors.items()
+    ]
     if unsure:
-        kind = "5 to 95 % of the unknowns" if banded else "its interval"
-        dot: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": BLACK}
-        text = f"on either side of one half: {kind}"
-        handles.append(lines.Line2D([], [], linestyle="", **dot, label=text))
+        why = "of some samples half of the runs or fewer end so"
+        text = why if banded else "not certain, half of the runs or fewer may end so"
+        text = f"hatched: {text}"
+        handles.append(patch(facecolor="white", edgecolor=BLACK, hatch=_HATCH, label=text))
     if guessed:
-        text = "not simulated: all around it are on one side of one half"
-        handles.append(patches.Patch(hatch=_HATCH, edgecolor="white", facecolor=_GRAY, label=text))
-    if not handles:
-        return
+        text = f"faint: not simulated, all around it {'' if banded else 'certainly '}end so"
+        handles.append(patch(facecolor=GRAY, alpha=_FAINT, label=text))
     # Ticks and label of the axis take the same height, however large the map is.
     move = extra("matplotlib.transforms", "plot").ScaledTranslation
     down = move(0.0, _BELOW / 72.0, ax.figure.dpi_scale_trans)

@@ -141,6 +141,8 @@ class Tally:
         When that is enough.
     counts : callable
         Which runs are successes.
+    others : sequence of callable
+        Other ends of runs: enough are made where the rate of the commonest end of all is known.
     rows : list of Row
         One a repeat.
     drawn : list of mapping of str to ndarray
@@ -152,6 +154,7 @@ class Tally:
     world: World
     until: Until
     counts: Counts = is_cleared
+    others: Sequence[Counts] = ()
     rows: list[Row] = field(default_factory=list)
     drawn: list[Mapping[str, NDArray[np.float64]]] = field(default_factory=list)
     planner: Planner | None = None
@@ -169,18 +172,19 @@ class Tally:
     @property
     def interval(self) -> Interval:
         """The rate with its interval, which holds however often one looked."""
-        return sequential(self.successes, len(self.made), self.until.confidence)
+        return self.interval_of(self.counts)
 
-    @property
-    def side(self) -> int:
-        """-1 or 1 if the rate certainly lies below or above the threshold, else 0."""
-        return self.until.side(self.successes, len(self.made))
+    def interval_of(self, counts: Counts) -> Interval:
+        """Return the rate of an end of runs, with its interval."""
+        made = self.made
+        return sequential(sum(map(counts, made)), len(made), self.until.confidence)
 
     @property
     def wants(self) -> int:
         """How many runs are still to be made: half as many again, so that few rounds are needed."""
-        count = len(self.rows)
-        if count >= self.until.most or self.until.is_done(self.successes, len(self.made)):
+        count, made = len(self.rows), self.made
+        commonest = max(sum(map(each, made)) for each in (self.counts, *self.others))
+        if count >= self.until.most or self.until.is_done(commonest, len(made)):
             return 0
         return min(max(self.until.least - count, count // 2, 5), self.until.most - count)
 
@@ -194,6 +198,8 @@ class Campaign:
         What all cells share.
     until : Until
         When a cell has been simulated often enough.
+    threshold : float, optional
+        [-] On which side of it a rate lies is what the study, or its `until`, asks.
     trials : tuple of str
         What is tried at every stop.
     planner : Planner
@@ -203,17 +209,29 @@ class Campaign:
     """
 
     def __init__(
-        self, base: Scenario, how: How, planner: Planner, collector: Collector, report: Reporter
+        self,
+        base: Scenario,
+        how: How,
+        planner: Planner,
+        collector: Collector,
+        report: Reporter,
+        *,
+        threshold: float | None,
     ) -> None:
         self.base = base
         self.until = how["until"]
+        self.threshold = threshold if self.until.threshold is None else self.until.threshold
         self.trials = trial_names(how.get("trials"))
         self.planner = planner
         self.settings = 0
         self._collector, self._report = collector, report
 
     def repeat(
-        self, cells: Sequence[Cell], counts: Counts = is_cleared, until: Until | None = None
+        self,
+        cells: Sequence[Cell],
+        counts: Counts = is_cleared,
+        until: Until | None = None,
+        others: Sequence[Counts] = (),
     ) -> list[list[Tally]]:
         """Simulate cells until each is known well enough.
 
@@ -225,6 +243,8 @@ class Campaign:
             Which runs are successes.
         until : Until, optional
             Instead of the study's own.
+        others : sequence of callable
+            Other ends of runs; see `Tally`.
 
         Returns
         -------
@@ -242,7 +262,7 @@ class Campaign:
         for each in cells:
             planner = multiplied(self.planner, each.factors)
             worlds = planner.worlds(each.scenario, each.names)
-            found.append([Tally(world, rule, counts, planner=planner) for world in worlds])
+            found.append([Tally(world, rule, counts, others, planner=planner) for world in worlds])
         everyone = [tally for tallies in found for tally in tallies]
         raise_first(tally.world.checked for tally in everyone)
         while due := [(tally, tally.wants) for tally in everyone if tally.wants]:
@@ -293,7 +313,7 @@ def campaign(
     swept : sequence of str
         Paths that the study sets itself.
     threshold : float, optional
-        [-] Where a rate decides, unless `until` is given.
+        [-] Where a rate decides, unless `until` has another threshold.
     repeats : int, optional
         Runs of every cell, of a study that measures: then there is no `until`.
 
@@ -331,7 +351,7 @@ def campaign(
             ) as collector,
             reporter(how.get("progress", True), 0) as report,
         ):
-            yield Campaign(base, given, planner, collector, report)
+            yield Campaign(base, given, planner, collector, report, threshold=threshold)
     except RowsInterrupted as interrupt:
         kept = "" if store is None else str(store)
         raise BatchInterrupted(runs_of(interrupt.rows), kept) from None

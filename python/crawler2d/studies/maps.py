@@ -1,7 +1,8 @@
-"""A rate over two fields: a grid that is made finer where the rate passes one half."""
+"""How runs end over two fields: a grid that is made finer where one end meets another."""
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
@@ -13,11 +14,12 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import is_whole, read_path
 from crawler2d.parameters.scenario import Scenario
-from crawler2d.studies.campaign import Cell, How, Tally, campaign, counting
+from crawler2d.studies.campaign import Cell, Counts, How, Tally, campaign, counting, is_cleared
 from crawler2d.studies.models import Models, read_models
 from crawler2d.studies.refined import Grid
 from crawler2d.studies.tables import found_of
 from crawler2d.sweeps.axes import field_attributes, short_names
+from crawler2d.sweeps.rates import BAND
 
 if TYPE_CHECKING:
     from crawler2d.sweeps.found import Found
@@ -36,10 +38,11 @@ def seizure_map(
     refine: int = 1,
     **how: Unpack[How],
 ) -> Found:
-    """Map how often an outcome occurs over two fields, such as height and friction.
+    """Map how runs end over two fields, such as height and friction, and how often.
 
-    Every cell of the grid is simulated; then the grid is halved, and of the new cells only those
-    are simulated whose neighbours do not all lie, for certain, on one side of one half.
+    A run clears, has the outcome that is asked for, or ends otherwise. Every cell of the grid is
+    simulated; then the grid is halved, and of the new cells only those are simulated around which
+    not all cells end, for certain, in the same way.
 
     Parameters
     ----------
@@ -54,21 +57,24 @@ def seizure_map(
     refine : int
         How often the grid is halved, 0 to 6.
     **how
-        See `crawler2d.studies`. Each cell is simulated until its rate is known to lie on one side
-        of one half, or within 0.2, unless `until` says otherwise.
+        See `crawler2d.studies`. Each cell is simulated until the rate of its commonest end is known
+        to lie on one side of one half, or within 0.2, unless `until` says otherwise.
 
     Returns
     -------
     Found
         Dimensions `model`, y, x (by the last part of their paths), `sample` if there are unknowns,
-        and `repeat`; the columns of `sweep`, `rate` and its interval; and for each cell:
+        and `repeat`; the columns of `sweep`, `rate` of the outcome and its interval; and for each
+        cell:
 
-        - `unsure`: whether the interval, or with unknowns the band, holds one half;
-        - `around`: where a cell was not simulated (`count` is 0), the mean of the rates next to
-          it, which all lie on one side of one half; nan elsewhere.
+        - `ending`: the commonest end: "cleared", the outcome, or "otherwise"; where a cell was not
+          simulated (`count` is 0), that of all cells next to it;
+        - `unsure`: whether it is not certain that more than half of the runs end so: the interval
+          of their rate, or with unknowns the band over the samples, begins at one half or below;
+        - `around`: where a cell was not simulated, the mean of the rates next to it; nan elsewhere.
 
-        With unknowns, the median of a cell's band says on which side it lies. `plot` draws one
-        model: ``found.sel(model="belt").plot()``.
+        With unknowns, the end with the largest median over the samples is the commonest. `plot`
+        draws one model: ``found.sel(model="belt").plot()``.
 
     Raises
     ------
@@ -91,8 +97,10 @@ def seizure_map(
     ... )
     >>> found["rate"].sel(angle=0.5).values.tolist()
     [[1.0, 0.0]]
+    >>> found["ending"].sel(angle=0.5).values.tolist()
+    [['slipping', 'cleared']]
     """
-    counts = counting(outcome)
+    counts, ends = counting(outcome), _ends(outcome)
     halvings = whole_number(refine, "refine", 0, 6)
     (path_x, coarse_x), (path_y, coarse_y) = _axis(scenario, x, "x"), _axis(scenario, y, "y")
     if path_x == path_y:
@@ -110,9 +118,15 @@ def seizure_map(
                 label, at = list(bases)[model], {path_x: values_x[i], path_y: values_y[j]}
                 text = [f"{names[path]}={value:g}" for path, value in at.items()]
                 cells.append(Cell((f"model={label}", *text), bases[label].replace(at)))
-            return study.repeat(cells, counts)
+            return study.repeat(cells, counts, others=list(ends.values()))
 
-        grid = Grid((len(fields), len(values_y), len(values_x)), simulate)
+        def judge(tallies: Sequence[Tally]) -> tuple[float, int]:
+            number, certain = _commonest(tallies, list(ends.values()))
+            rates = [tally.interval.rate for tally in tallies if tally.made]
+            rate = float(np.median(rates)) if rates else math.nan
+            return rate, number + 1 if certain or len(tallies) > 1 else 0
+
+        grid = Grid((len(fields), len(values_y), len(values_x)), simulate, judge)
         for level in range(halvings + 1):
             grid.refine(2 ** (halvings - level), whole=level == 0)
         dims: dict[str, Any] = {
@@ -123,26 +137,49 @@ def seizure_map(
         with warnings.catch_warnings():  # a cell that was not simulated has no band
             warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
             found = found_of(study, "seizure_map", grid.tallies, dims)
-    return _with_sides(found, grid, tuple(dims), outcome)
+    found["rate"].attrs["long_name"] = f"rate of {outcome}"
+    return _with_ends(found, grid, tuple(dims), ends).assign_attrs(outcome=outcome)
 
 
-def _with_sides(found: Found, grid: Grid, dims: tuple[str, ...], outcome: str) -> Found:
-    banded = "band_low" in found
-    low, high = ("band_low", "band_high") if banded else ("low", "high")
-    tried = grid.tried
-    unsure = ((found[low] <= 0.5) & (found[high] >= 0.5)).transpose(*dims).to_numpy() & tried
-    kind = "band" if banded else "interval"
+def _ends(outcome: str) -> dict[str, Counts]:
+    """Return the ends that are told apart, by name."""
+    named = {"cleared": is_cleared, outcome: counting(outcome)}
+    return {**named, "otherwise": lambda row: not any(each(row) for each in named.values())}
+
+
+def _commonest(tallies: Sequence[Tally], ends: Sequence[Counts]) -> tuple[int, bool]:
+    """Return the number of the commonest end of a cell, and whether most runs certainly end so."""
+    intervals = [[tally.interval_of(each) for tally in tallies] for each in ends]
+    rates = [[each.rate for each in own if not math.isnan(each.rate)] for own in intervals]
+    if not rates[0]:  # no run has a result
+        return len(ends) - 1, False
+    number = int(np.argmax([np.median(own) for own in rates]))
+    if len(tallies) == 1:
+        return number, intervals[number][0].low > 0.5
+    return number, bool(np.quantile(rates[number], BAND["band_low"]) > 0.5)
+
+
+def _with_ends(
+    found: Found, grid: Grid, dims: tuple[str, ...], ends: Mapping[str, Counts]
+) -> Found:
+    names, tried = list(ends), grid.tried
+    shape = tried.shape
+    ending, unsure = np.empty(shape, object), np.zeros(shape, bool)
+    for place, tallies in zip(np.ndindex(shape), grid.tallies, strict=True):
+        number, certain = int(grid.kinds[place]) - 1, True
+        if tried[place]:
+            number, certain = _commonest(tallies, list(ends.values()))
+        ending[place], unsure[place] = names[number], not certain
     columns: Mapping[str, Any] = {
-        "unsure": (dims, unsure, {"long_name": f"the {kind} holds one half"}),
+        "ending": (dims, ending.astype(str), {"long_name": "commonest end"}),
+        "unsure": (dims, unsure, {"long_name": "not certain that more than half end so"}),
         "around": (
             dims,
             np.where(tried, np.nan, grid.rates),
             {"units": "1", "long_name": "mean rate of the cells around one that was not simulated"},
         ),
     }
-    found = found.assign(columns).assign_attrs(outcome=outcome)
-    found["rate"].attrs["long_name"] = f"rate of {outcome}"
-    return found
+    return found.assign(columns)
 
 
 def _axis(scenario: Scenario, given: object, place: str) -> tuple[str, list[float]]:

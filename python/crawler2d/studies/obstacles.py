@@ -159,7 +159,7 @@ def _ladder(
     others = tuple(str(dim) for dim in found["rate"].dims if dim != name)
     rates = found["rate"].transpose(*others, name)
     often = (rates >= 0.5).to_numpy()
-    sure = (found["side"].transpose(*others, name) > 0).to_numpy()
+    sure = (found["low"].transpose(*others, name) > 0.5).to_numpy()
     shape = often.shape[:-1]
     columns: dict[str, Any] = {
         "highest": _greatest(often, rungs),

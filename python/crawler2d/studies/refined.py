@@ -1,4 +1,4 @@
-"""A grid of cells that is made finer, and simulated only where a rate may pass one half."""
+"""A grid of cells that is made finer, and simulated only where one kind may meet another."""
 
 from __future__ import annotations
 
@@ -28,45 +28,48 @@ class Grid:
         Of the finest grid.
     simulate : callable
         Given the places of cells, returns the tallies of each by sample.
+    judge : callable
+        Given the tallies of a cell, returns its rate and the number of its kind, 0 where that is
+        not certain.
 
     Attributes
     ----------
-    rates, sides : ndarray, shape (models, y, x)
-        [-] The rate, or the median of the band, of a cell; and -1 where it lies below one half, 1
-        where above it, 0 where that is not certain. Of a cell that is not simulated they are taken
-        from those around it; nan where nothing is known yet.
+    rates, kinds : ndarray, shape (models, y, x)
+        [-] What `judge` says of a cell. Of a cell that is not simulated they are taken from those
+        around it; nan where nothing is known yet.
     """
 
     def __init__(
         self,
         shape: tuple[int, int, int],
         simulate: Callable[[Sequence[tuple[int, ...]]], list[list[Tally]]],
+        judge: Callable[[Sequence[Tally]], tuple[float, int]],
     ) -> None:
         self.rates = np.full(shape, np.nan)
-        self.sides = np.full(shape, np.nan)
+        self.kinds = np.full(shape, np.nan)
         self._tallies: dict[tuple[int, ...], list[Tally]] = {}
-        self._simulate = simulate
+        self._simulate, self._judge = simulate, judge
 
     def refine(self, stride: int, *, whole: bool) -> None:
         """Simulate, of every so many cells, the whole grid, or what is not clear from the rest."""
         part = np.s_[:, ::stride, ::stride]
         if whole:
-            self._add(np.ones(self.sides[part].shape, bool), stride)
+            self._add(np.ones(self.kinds[part].shape, bool), stride)
             return
-        # What was not simulated before stays open: it may get neighbours on the other side.
+        # What was not simulated before stays open: it may get neighbours of another kind.
         while (due := self._open(stride) & ~self._agrees(stride)).any():
             self._add(due, stride)
-        fill = np.isnan(self.sides[part])
+        fill = np.isnan(self.kinds[part])
         around = _neighbours(self.rates[part])
         known = np.isfinite(around)
         mean = np.where(known, around, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
         self.rates[part][fill] = mean[fill]
-        self.sides[part][fill] = np.fmax.reduce(_neighbours(self.sides[part]))[fill]
+        self.kinds[part][fill] = np.fmax.reduce(_neighbours(self.kinds[part]))[fill]
 
     @property
     def tried(self) -> NDArray[np.bool_]:
         """Which cells have been simulated, shape (models, y, x)."""
-        found = np.zeros(self.sides.shape, bool)
+        found = np.zeros(self.kinds.shape, bool)
         found[tuple(np.array(list(self._tallies)).T)] = True
         return found
 
@@ -75,14 +78,14 @@ class Grid:
         """The tallies of all cells by sample; those of one that was not simulated are empty."""
         some = next(iter(self._tallies.values()))
         none = [Tally(replace(t.world, own={}, sampled={}), t.until, t.counts) for t in some]
-        return [self._tallies.get(place, none) for place in np.ndindex(self.sides.shape)]
+        return [self._tallies.get(place, none) for place in np.ndindex(self.kinds.shape)]
 
     def _open(self, stride: int) -> NDArray[np.bool_]:
         return ~self.tried[:, ::stride, ::stride]
 
     def _agrees(self, stride: int) -> NDArray[np.bool_]:
-        """Tell where all that is known of a cell and its neighbours is one certain side."""
-        own = self.sides[:, ::stride, ::stride]
+        """Tell where all that is known of a cell and its neighbours is one certain kind."""
+        own = self.kinds[:, ::stride, ::stride]
         around = np.concatenate([_neighbours(own), own[None]])
         low, high = np.fmin.reduce(around), np.fmax.reduce(around)
         agree: NDArray[np.bool_] = (low == high) & (low != 0.0)
@@ -92,7 +95,7 @@ class Grid:
         places = [(m, stride * j, stride * i) for m, j, i in np.argwhere(due).tolist()]
         for place, tallies in zip(places, self._simulate(places), strict=True):
             self._tallies[place] = tallies
-            self.rates[place], self.sides[place] = _rate_and_side(tallies)
+            self.rates[place], self.kinds[place] = self._judge(tallies)
 
 
 def _neighbours(grid: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -100,11 +103,3 @@ def _neighbours(grid: NDArray[np.float64]) -> NDArray[np.float64]:
     _, rows, columns = grid.shape
     padded = np.pad(grid, ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
     return np.stack([padded[:, 1 + j : 1 + j + rows, 1 + i : 1 + i + columns] for j, i in _AROUND])
-
-
-def _rate_and_side(tallies: Sequence[Tally]) -> tuple[float, float]:
-    if len(tallies) == 1:
-        rate, low, high = tallies[0].interval
-        return rate, float(low > 0.5) - float(high < 0.5)
-    median = float(np.nanmedian([tally.interval.rate for tally in tallies]))
-    return median, 1.0 if median >= 0.5 else -1.0

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from crawler2d.studies.campaign import Campaign, Tally
     from crawler2d.sweeps.found import Found
+    from crawler2d.sweeps.statistics import Interval
 
 __all__ = ["Dims", "Measure", "found_of", "measured_of", "summary"]
 
@@ -73,7 +74,7 @@ def found_of(
         "low": (np.array([each.low for each in intervals]), {}),
         "high": (np.array([each.high for each in intervals]), {}),
         "count": (np.array([len(tally.made) for tally in flat]), {}),
-        "side": (np.array([tally.side for tally in flat]), {}),
+        "side": (np.array([_side(each, campaign.threshold) for each in intervals]), {}),
     }
     by_cell |= _sampled(campaign, flat)
     rates = dataset_of(by_cell, sizes, coordinates)
@@ -204,6 +205,13 @@ def _frame(campaign: Campaign, dims: Dims) -> tuple[dict[str, int], dict[str, An
         sizes["sample"] = campaign.planner.samples
         coordinates["sample"] = np.arange(campaign.planner.samples)
     return sizes, coordinates
+
+
+def _side(interval: Interval, threshold: float | None) -> int:
+    """-1 or 1 if a rate certainly lies below or above the threshold, else 0."""
+    if threshold is None:
+        return 0
+    return (interval.low > threshold) - (interval.high < threshold)
 
 
 def _runs(

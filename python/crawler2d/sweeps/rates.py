@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from crawler2d.sweeps.found import Found
 
-__all__ = ["banded", "rate", "rates_of"]
+__all__ = ["BAND", "banded", "rate", "rates_of"]
 
 _STOPPED = "stopped"
 """Any outcome that is a stop."""
@@ -44,7 +44,7 @@ _SPOKEN = {
     "band_high": "95th percentile of the rates over the unknowns",
 }
 
-_BAND = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
+BAND = {"band_low": 0.05, "band_median": 0.5, "band_high": 0.95}
 """[-] Quantiles of a band of rates."""
 
 _FEW = 4
@@ -203,8 +203,8 @@ def _clusters(outcomes: xarray.DataArray, dims: Sequence[str]) -> tuple[list[str
 
 def banded(rates: xarray.DataArray) -> dict[str, xarray.DataArray]:
     """Return the band of rates over the samples of the unknowns, without that dimension."""
-    band = rates.quantile(list(_BAND.values()), _SAMPLE, skipna=True)
-    parts = {name: band.sel(quantile=part, drop=True) for name, part in _BAND.items()}
+    band = rates.quantile(list(BAND.values()), _SAMPLE, skipna=True)
+    parts = {name: band.sel(quantile=part, drop=True) for name, part in BAND.items()}
     spoken = {name: {"units": "1", "long_name": _SPOKEN[name]} for name in parts}
     return {name: part.assign_attrs(spoken[name]) for name, part in parts.items()}
 

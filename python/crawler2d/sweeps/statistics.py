@@ -146,7 +146,7 @@ def clustered(successes: ArrayLike, counts: ArrayLike, confidence: float = 0.95)
     (0.299, 0.701, 0.299)
     >>> rate, low, high = clustered([2] * 20, [4] * 20)
     >>> round(low, 3), round(high, 3)
-    (0.382, 0.618)
+    (0.386, 0.614)
     """
     z = _normal_quantile(confidence)
     hits, runs = (np.asarray(each, dtype=np.float64).ravel() for each in (successes, counts))

@@ -138,7 +138,7 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
             (
                 escaped(each.what),
                 f'<strong class="{kind}">{words.confirmed(each)}</strong>',
-                words.share(cleared),
+                words.share(cleared) if cleared.runs else escaped(words.beside(each)),
                 words.share(seized),
                 escaped(where),
                 str(each.wheels or "belt"),
