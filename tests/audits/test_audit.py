@@ -11,6 +11,7 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.audits import audit as audit_module
+from crawler2d.audits import words
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
 from crawler2d.audits.names import names_of
@@ -70,6 +71,65 @@ def test_the_runs_are_there(found: c2d.Audit) -> None:
     assert "start.approach" in found.table.attrs["vary"]
     ends = found.table["outcome"].sel(model="model")
     assert (ends == "seized").mean().item() == found.verdicts[0].seized.rate
+
+
+def test_runs_take_a_tenth_a_third_and_all_of_the_speed_in_turn(found: c2d.Audit) -> None:
+    assert found.repaired is not None
+    top = 0.2 * math.sqrt(9.81 * 0.365)
+    for table in (found.table, found.repaired.table):
+        speeds = np.unique(table["speed"].values, return_counts=True)
+        assert speeds[0] == pytest.approx([0.1 * top, top / 3.0, top], abs=1e-3)
+        assert speeds[1].tolist() == [7, 7, 6]
+        own = table.isel(model=0, terrain=0)
+        assert own["drawn_speed"].values == pytest.approx(own["speed"].values, rel=0.03)
+        slow = top / own["speed"].values
+        assert own["drawn_duration"].values == pytest.approx(
+            scenario_of(SEIZING, STEP["step of 75 mm"], None, None).duration * slow, rel=0.02
+        )
+        heights = own["drawn_height"].values
+        assert 0.95 * 0.075 <= heights.min() < 0.97 * 0.075
+        assert 1.03 * 0.075 < heights.max() <= 1.05 * 0.075
+    said = "0.038, 0.126 and 0.378 m/s in turn, obstacles times 0.95 to 1.05"
+    text = " ".join(repr(found).split())
+    assert f"Verdicts: 20 runs, at {said}" in text
+    assert f"in fresh runs at {said}" in text
+    assert found.repairs[0].seized_at["step of 75 mm"][0.038].rate == 0.0
+
+
+def test_a_robot_that_seizes_only_when_it_is_slow_is_found_to_seize() -> None:
+    edge = {"knife edge": c2d.terrains.barrier(0.0256, 0.0064)}
+    how: Any = {"unknown": {}, "repeats": 12, "repair": False, **QUIET}
+    (verdict,) = c2d.audit(SEIZING, edge, **how).verdicts
+    assert [share.rate for share in verdict.seized_at.values()] == [1.0, 1.0, 0.0]
+    assert verdict.word == "seizes"
+    fast = c2d.variability.of_start() | c2d.variability.of_contact()
+    (alone,) = c2d.audit(SEIZING, edge, vary=fast, **how).verdicts
+    assert list(alone.seized_at) == [0.378]
+    assert alone.seized.rate == 0.0
+
+
+def test_a_schedule_of_speeds_is_driven_as_it_is() -> None:
+    drive = c2d.Drive(speed=0.3, schedule=((1.0, 0.2),))
+    found = c2d.audit(SEIZING, STEP, samples=3, repeats=1, repair=False, drive=drive, **QUIET)
+    assert np.unique(found.table["speed"].values).tolist() == [0.3]
+    assert "drawn_duration" not in found.table
+
+
+def test_an_error_of_lint_stands_above_the_verdict() -> None:
+    outline = replace(SEIZING.outline, axle_distance=3.65, front_radius=0.64, rear_radius=0.64)
+    large = replace(SEIZING, outline=outline, moment_of_inertia=30.0, belly=None)
+    large = large.with_track(c2d.LineOfWheels(4))
+    how: Any = {"samples": 2, "repeats": 1, "repair": False, "duration": 0.1}
+    found = c2d.audit(large, STEP, **how, **QUIET)
+    said = "Lint has errors (size): the verdict holds for the robot as it is given"
+    lines = found.in_words.splitlines()
+    assert lines[1].startswith(said)
+    assert words.conclusion(found)[0].startswith(said)
+    assert said in found.to_html()
+
+
+def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Audit) -> None:
+    assert "Lint has errors" not in found.in_words
 
 
 def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:

@@ -221,7 +221,7 @@ def test_verdicts_are_those_of_the_audit(of_file: c2d.Audit, file_page: Page) ->
     assert len(rows) == len(of_file.verdicts) == 2
     for row, each in zip(rows, of_file.verdicts, strict=True):
         assert tuple(row[:6]) == words.verdict(each)
-        assert row[10] == ("replay" if each.where else "")
+        assert row[11] == ("replay" if each.where else "")
     assert rows[0][6] == f"{of_file.verdicts[0].where} of the chassis"
     assert f"{100 * of_file.verdicts[0].seized.rate:.0f} %" in rows[0][2]
 

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import crawler2d as c2d
+from crawler2d.audits.candidates import Candidate
+from crawler2d.audits.repairs import LEVEL, judged
 from crawler2d.audits.share import Share, share_of
 from crawler2d.audits.verdicts import (
     BELT,
@@ -15,6 +18,7 @@ from crawler2d.audits.verdicts import (
     verdict_word,
     verdicts_of,
 )
+from crawler2d.audits.words import repair_sentence, worst
 from crawler2d.sweeps.statistics import wilson
 
 SAMPLES, REPEATS = 40, 2
@@ -37,7 +41,8 @@ def table(own: list[str], belt: list[str], **columns: Any) -> xr.Dataset:
         "freed_by_friction_x2": True,
     }
     filled = {name: (dims, np.full(ends.shape, value)) for name, value in usual.items()}
-    coordinates = {"model": [OWN, BELT], "terrain": ["step"]}
+    speeds = (("sample", "repeat"), np.resize([0.04, 0.4], (SAMPLES, REPEATS)))
+    coordinates: Any = {"model": [OWN, BELT], "terrain": ["step"], "speed": speeds}
     return xr.Dataset({"outcome": (dims, ends), **filled, **columns}, coordinates)
 
 
@@ -133,6 +138,42 @@ def test_a_verdict_tells_on_which_floors() -> None:
     low, high = verdicts_of(rows, ["step"])[0].friction
     assert low == 0.5
     assert high == pytest.approx(0.5 + 0.5 * 9 / 39)
+
+
+def test_a_verdict_tells_at_which_speeds() -> None:
+    found = verdict(ends(seized=20, cleared=20), CLEARED)
+    slow, fast = found.seized_at.values()
+    assert list(found.seized_at) == [0.04, 0.4]
+    assert (slow.runs, fast.runs, slow.rate, fast.rate) == (40, 40, 0.5, 0.5)
+
+
+@pytest.mark.parametrize(("slow", "confirmed"), [(2, True), (3, False)])
+def test_a_repair_that_seizes_at_one_of_the_speeds_is_not_confirmed(
+    slow: int, confirmed: bool
+) -> None:
+    """Of 13 slow runs 3 seize, of 26 fast ones none: fewer than a tenth of all."""
+    speeds = np.array([0.04] * 13 + [0.4] * 26)[:, None]
+    outcomes = np.full((2, 3, 39, 1), "cleared", dtype="<U7")
+    outcomes[0, 1, :slow] = "seized"
+    dims = ("model", "terrain", "sample", "repeat")
+    ones = (dims, np.ones(outcomes.shape))
+    fresh = xr.Dataset(
+        {"outcome": (dims, outcomes), "time": ones, "wall_time": ones},
+        {
+            "model": ["five", OWN],
+            "terrain": ["step", "gap", LEVEL],
+            "speed": (("sample", "repeat"), speeds),
+        },
+    )
+    robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(5))
+    five = Candidate(what="five", kind="wheels", robot=robot, change=1)
+    seizing = [verdict(ends(seized=20, cleared=20), CLEARED)]
+    repair = judged(fresh, five, ["step", "gap"], seizing, OWN)
+    assert repair.confirmed is confirmed
+    assert repair.seized["gap"].low < 0.05
+    assert repair.seized_at["gap"][0.04].rate == slow / 13
+    assert worst(repair)[2] == "gap at 0.04 m/s"
+    assert "most on gap at 0.04 m/s" in repair_sentence(repair)
 
 
 def test_without_a_seizure_there_is_no_place() -> None:

@@ -11,8 +11,9 @@ import crawler2d as c2d
 from crawler2d._core import Passed
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
+from crawler2d.studies.multiplied import multiplied
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
-from crawler2d.variation.distributions import scaled, shifted, uniform, uniform_int
+from crawler2d.variation.distributions import Levels, scaled, shifted, uniform, uniform_int
 from crawler2d.variation.draws import Variation, uniform_numbers
 from tests.shared import ROBOT, VARIANTS
 
@@ -157,6 +158,34 @@ def test_another_path_draws_numbers_that_know_nothing_of_those_of_the_first() ->
     # Nor does the next number, or the previous one.
     ahead = np.corrcoef(np.vstack([drawn[:, 1:], drawn[:, :-1]]))
     assert np.abs(ahead - np.diag(np.diag(ahead))).max() < 4.5 / math.sqrt(count)
+
+
+def test_levels_are_taken_in_turn_and_what_is_slow_takes_long() -> None:
+    base = Scenario(ROBOT, c2d.terrains.step(0.05), duration=3.0)
+    vary = {
+        "drive.speed": Levels((0.1, 0.5, 1.0), spread=0.02),
+        "duration": Levels((10.0, 2.0, 1.0), along="drive.speed"),
+    }
+    variation = Variation.of(base, vary, [])
+    plan = planned(base, variation, 12)
+    speeds, durations = plan.drawn["drive.speed"] / base.drive.speed, plan.drawn["duration"]
+    assert speeds == pytest.approx(np.tile([0.1, 0.5, 1.0], 4), rel=0.02)
+    assert len(set(speeds.tolist())) == 12  # each with a scatter of its own
+    assert durations.tolist() == [30.0, 6.0, 3.0] * 4
+    # Whatever was planned before, the next runs go on in turn; samples begin one further each.
+    planner = Planner(variation, Variation.of(base, {"gravity": uniform(9.0, 10.0)}, []), 0, 3)
+    for k, world in enumerate(planner.worlds(base, [])):
+        whole = planner.runs(world, 0, 5).drawn["duration"]
+        assert whole.tolist() == ([30.0, 6.0, 3.0] * 3)[k : k + 5]
+        assert planner.runs(world, 2, 5).drawn["duration"].tolist() == whole[2:].tolist()
+
+
+def test_what_a_study_doubles_is_doubled_at_every_level() -> None:
+    fast = Scenario(ROBOT, c2d.terrains.step(0.05), drive=c2d.Drive(speed=0.8))
+    variation = Variation.of(fast, {"drive.speed": Levels((0.1, 1.0))}, [])
+    planner = multiplied(Planner(variation, Variation({}), 0), {"drive.speed": 2.0})
+    (world,) = planner.worlds(fast, [])
+    assert planner.runs(world, 0, 2).drawn["drive.speed"].tolist() == pytest.approx([0.08, 0.8])
 
 
 @pytest.mark.parametrize("path", ["start.approach", "terrain.seed", "a"])

@@ -47,8 +47,9 @@ class Audited:
         What the search for repairs came to; None if there was none.
     table : xarray.Dataset
         The runs behind the verdicts, as from `sweep`: dimensions `model` ("model", "belt"),
-        `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. Its
-        attributes `vary` and `unknown` name what the rates are rates over.
+        `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. The
+        coordinate `speed` [m/s] is that of each run, without its scatter. Its attributes `vary` and
+        `unknown` name what the rates are rates over.
     vary, unknown : mapping of str to distribution
         What differed from run to run, and what was not known.
     drive : Drive

@@ -39,6 +39,10 @@ def plain_of(audit: Audited) -> dict[str, Any]:
                     "robot": to_plain(each.robot),
                     "cleared": {k: dataclasses.asdict(v) for k, v in each.cleared.items()},
                     "seized": {k: dataclasses.asdict(v) for k, v in each.seized.items()},
+                    "seized_at": {
+                        k: {speed: dataclasses.asdict(v) for speed, v in own.items()}
+                        for k, own in each.seized_at.items()
+                    },
                     "cleared_beside": {
                         k: dataclasses.asdict(v) for k, v in each.cleared_beside.items()
                     },

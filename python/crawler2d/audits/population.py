@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.settings import Drive
 from crawler2d.presets.unknowns import of_ground, of_robot
 from crawler2d.reading.reading import Reading
-from crawler2d.variation.distributions import Distribution, scaled, shifted, uniform
+from crawler2d.variation.distributions import Distribution, Levels, scaled, shifted, uniform
 from crawler2d.variation.ranges import Ranges
 from crawler2d.variation.variability import of_contact, of_field, of_start
 
-__all__ = ["FLOORS", "unknown_of", "vary_of"]
+__all__ = ["FLOORS", "SPEEDS", "unknown_of", "vary_of"]
 
 FLOORS = (0.5, 1.0)
 """[-] Coefficients of the floor's own surface between which a floor that nobody named may lie."""
@@ -25,9 +26,41 @@ _ROUNDED = 0.1
 """[-] By which share a friction or a torque that is written down may be off."""
 
 
-def vary_of() -> Ranges:
-    """Return what differs from run to run by default: start, contact, and the step field."""
-    return of_start() | of_contact() | of_field()
+SPEEDS = (0.1, 1.0 / 3.0, 1.0)
+"""[-] Shares of the speed of an audit: what a fast robot jumps over, a slow one may not."""
+
+_SIZE = 0.05
+"""[-] By which share an obstacle may be larger or smaller than its measures say."""
+
+
+def vary_of(drive: Drive | None = None) -> Ranges:
+    """Return what differs from run to run by default.
+
+    Start, contact and step field; the height, rise, radius or width of the obstacle; and the speed,
+    a tenth, a third and all of it in turn, with as much more time as it is slower, unless a
+    schedule says how fast to drive.
+    """
+    found = of_start() | of_contact() | of_field() | _of_size()
+    return found if drive is not None and drive.schedule else found | _of_speed()
+
+
+def _of_speed() -> Ranges:
+    speeds = {
+        "drive.speed": Levels(SPEEDS, spread=0.02),
+        "duration": Levels(tuple(1.0 / part for part in SPEEDS), along="drive.speed"),
+    }
+    said = {
+        "drive.speed": "a tenth, a third and all of it in turn, each within 2 %",
+        "duration": "the longer the slower",
+    }
+    return Ranges(speeds, said, speeds)
+
+
+def _of_size() -> Ranges:
+    sizes = [f"terrain.{name}" for name in ("height", "rise", "radius", "width")]
+    within = scaled(1.0 - _SIZE, 1.0 + _SIZE)
+    source = "whether a robot gets over must not hang on a millimetre"
+    return Ranges(dict.fromkeys(sizes, within), dict.fromkeys(sizes, source), sizes)
 
 
 def unknown_of(robot: Robot, *, with_friction: bool) -> Ranges:

@@ -13,7 +13,15 @@ from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
 from crawler2d.audits.runs import Runs, raised
 from crawler2d.audits.screen import screened
 from crawler2d.audits.share import Share
-from crawler2d.audits.verdicts import CLEARS, OWN, SEIZES, Verdict, cleared_beside, shares
+from crawler2d.audits.verdicts import (
+    CLEARS,
+    OWN,
+    SEIZES,
+    Verdict,
+    cleared_beside,
+    seized_at,
+    shares,
+)
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat, Terrain
@@ -22,7 +30,7 @@ from crawler2d.studies.search import search
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Repair", "Repaired", "repaired"]
+__all__ = ["LEVEL", "Repair", "Repaired", "judged", "repaired"]
 
 _FIRST = 10  # runs of every candidate on each terrain in the first round of a search
 _GROUNDS = 4  # obstacles of a search: those that seize most
@@ -49,9 +57,11 @@ class Repair:
     confirmed : bool
         Whether it clears, on every obstacle that seized, 95 % or more of those fresh runs that the
         belt clears with the same draws, and the lower bound of its rate of seizing is above 5 % on
-        none of all obstacles.
+        none of all obstacles, neither at all speeds together nor at any of them.
     cleared, seized : mapping of str to Share
         In fresh runs, by obstacle.
+    seized_at : mapping of str to mapping of float to Share
+        In fresh runs, by obstacle and speed [m/s].
     cleared_beside : mapping of str to Share
         How many of the fresh runs that the belt clears it clears, by obstacle that seized.
     speed : float
@@ -67,6 +77,7 @@ class Repair:
     confirmed: bool
     cleared: Mapping[str, Share]
     seized: Mapping[str, Share]
+    seized_at: Mapping[str, Mapping[float, Share]]
     cleared_beside: Mapping[str, Share]
     speed: float
 
@@ -148,7 +159,7 @@ def repaired(
     # Stops that rattle cost most, so what driving costs is measured where nothing stops.
     level = Flat(length=5.0 * robot.outline.axle_distance)
     fresh = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
-    found = [_judged(fresh, each, list(grounds), seizing, beside) for each in chosen]
+    found = [judged(fresh, each, list(grounds), seizing, beside) for each in chosen]
     order = sorted(found, key=lambda each: (not each.confirmed, each.change))
     before = {name: shares(fresh, OWN, name)[1] for name in grounds}
     return Repaired(
@@ -191,7 +202,7 @@ def _searched(
     return next(each for each in space if each.what == found.attrs["winner"])
 
 
-def _judged(
+def judged(
     table: xarray.Dataset,
     chosen: Candidate,
     grounds: list[str],
@@ -203,7 +214,12 @@ def _judged(
     names = [each.obstacle for each in seizing]
     beside = {name: cleared_beside(table, chosen.what, belt, name) for name in names}
     clears = all(share.rate >= CLEARS for share in beside.values())
-    seizes = any(seized.low > SEIZES for _, seized in pairs.values())
+    at = {name: seized_at(table, chosen.what, name) for name in grounds}
+    rates = [
+        *(seized for _, seized in pairs.values()),
+        *(r for own in at.values() for r in own.values()),
+    ]
+    seizes = any(each.low > SEIZES for each in rates)
     return Repair(
         what=chosen.what,
         kind=chosen.kind,
@@ -213,6 +229,7 @@ def _judged(
         confirmed=clears and not seizes,
         cleared={name: cleared for name, (cleared, _) in pairs.items()},
         seized={name: seized for name, (_, seized) in pairs.items()},
+        seized_at=at,
         cleared_beside=beside,
         speed=_speed(table, chosen.what) / _speed(table, OWN),
     )

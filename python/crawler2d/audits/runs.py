@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -20,6 +20,7 @@ from crawler2d.runs.progress import Progress
 from crawler2d.sweeps.axes import Axis
 from crawler2d.sweeps.labels import Label
 from crawler2d.sweeps.tabulate import tabulate
+from crawler2d.variation.distributions import Levels
 
 if TYPE_CHECKING:
     import xarray
@@ -43,7 +44,7 @@ def scenario_of(
 
     Unless `drive` is given, the robot drives at 0.2 sqrt(g L), with L its axle distance (0.4 m/s
     for 0.41 m), so that large and small ones meet their obstacles alike, or at its largest speed if
-    that is less; flippers `Climb`. It has the time in which it would drive ten times its length,
+    that is less; flippers `Climb`. It has the time in which it would drive fifteen times its length,
     flippers not counted, and begins a fifth of its axle distance before the obstacle.
     """
     outline = robot.outline
@@ -90,6 +91,8 @@ class Runs:
     ) -> xarray.Dataset:
         """Simulate every robot on every ground: by `model`, `terrain`, `sample`, `repeat`.
 
+        The coordinate `speed` [m/s] tells the levels of the speed apart.
+
         A confirmation takes half of the samples, once each, and draws that nothing else has had.
         """
         samples, repeats, seed = self.samples, self.repeats, self.seed
@@ -123,9 +126,20 @@ class Runs:
             progress=self.progress,
             on_error="record",
         )
-        if "sample" in table.dims:
-            return table
-        return table.rename(repeat="sample").expand_dims("repeat", -1)
+        if "sample" not in table.dims:
+            table = table.rename(repeat="sample").expand_dims("repeat", -1)
+        return table.assign_coords(speed=(("sample", "repeat"), self._speeds(table.sizes)))
+
+    def _speeds(self, sizes: Mapping[Hashable, int]) -> NDArray[np.float64]:
+        """[m/s] Return the speed of each run without its scatter, shape (samples, repeats).
+
+        Levels are taken in turn, sample by sample and repeat by repeat; see `Variation.numbers`.
+        """
+        levels = self.vary.get("drive.speed")
+        factors = np.array(levels.factors if isinstance(levels, Levels) else (1.0,))
+        turn = np.add.outer(np.arange(sizes["sample"]), np.arange(sizes["repeat"]))
+        speeds = np.round(self.scenario.drive.speed * factors, 3)
+        return np.asarray(speeds[turn % factors.size])
 
 
 def column(table: xarray.Dataset, name: str, **at: str) -> NDArray[Any]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from crawler2d.audits import words
 from crawler2d.variation.ranges import Ranges
@@ -28,6 +28,7 @@ def text_of(audit: Audited) -> str:
 def _robot(audit: Audited) -> Iterator[str]:
     read = audit.reading
     yield words.subject(audit)
+    yield from _wrapped(words.reservation(audit), 0)
     yield from _wrapped(words.robot_sentence(audit))
     if read is not None:
         names = ", ".join(path.removeprefix("robot.") for path in read.sources.estimates)
@@ -71,13 +72,13 @@ def _pockets(audit: Audited) -> Iterator[str]:
 
 
 def _verdicts(audit: Audited) -> Iterator[str]:
-    yield f"Verdicts: {words.population(audit)}"
+    yield from _wrapped(f"Verdicts: {words.population(audit)}", 0)
     yield from _wrapped(f"belt: {audit.belt.reason}")
     yield from _wrapped(words.lost(audit))
     yield from _columns([words.VERDICT_HEAD, *map(words.verdict, audit.verdicts)])
     jammed = [each for each in audit.verdicts if each.where]
     if jammed:
-        yield "  where most of its seizures are, and how many a change frees there:"
+        yield "  where it is jammed, how often at each speed, and how many a change frees there:"
         yield from _columns([words.JAM_HEAD, *map(words.jam, jammed)])
         yield from _wrapped(words.calls(audit))
 
@@ -86,11 +87,11 @@ def _conclusion(audit: Audited) -> Iterator[str]:
     for sentence in words.conclusion(audit):
         yield from _wrapped(sentence, 0)
     if audit.repaired is not None:
-        yield from _repairs(audit.repaired)
+        yield from _repairs(audit.repaired, audit.vary)
 
 
-def _repairs(found: Repaired) -> Iterator[str]:
-    yield f"Repairs: {words.repairs_found(found)}"
+def _repairs(found: Repaired, vary: Mapping[str, Any]) -> Iterator[str]:
+    yield from _wrapped(f"Repairs: {words.repairs_found(found, vary)}", 0)
     for each in found.repairs:
         yield from _wrapped(words.repair_sentence(each))
     for kind in found.hopeless:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -30,6 +30,7 @@ __all__ = [
     "Verdict",
     "cleared_beside",
     "least_samples",
+    "seized_at",
     "verdict_word",
     "verdicts_of",
 ]
@@ -92,6 +93,8 @@ class Verdict:
         What trials came to in the seized runs.
     friction : tuple of float, shape (2,)
         [-] Between which frictions of the drawn floors the runs seized; nan without any.
+    seized_at : mapping of float to Share
+        How often it seizes at each speed [m/s].
     """
 
     obstacle: str
@@ -109,6 +112,7 @@ class Verdict:
     seized_alone: Share
     freed: tuple[Freed, ...]
     friction: tuple[float, float]
+    seized_at: Mapping[float, Share]
 
 
 def verdict_word(cleared: Share, seized: Share, belt: Share, alone: Share) -> str:
@@ -159,6 +163,18 @@ def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Sha
     return share_of(ends == Outcome.CLEARED, made), share_of(ends == Outcome.SEIZED, made)
 
 
+def seized_at(table: xarray.Dataset, model: str, obstacle: str) -> dict[float, Share]:
+    """Return how often a model seizes on an obstacle at each speed [m/s], the slowest first."""
+    ends = column(table, "outcome", model=model, terrain=obstacle)
+    speeds = table["speed"].transpose("sample", "repeat").values
+    made, seized = _has_result(ends), ends == Outcome.SEIZED
+    found = {}
+    for speed in np.unique(speeds).tolist():
+        own = speeds == speed
+        found[speed] = share_of(seized & own, made & own)
+    return found
+
+
 def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) -> Share:
     """Return how often a model clears an obstacle of the runs in which a belt does so.
 
@@ -206,6 +222,7 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
         seized_alone=alone,
         freed=_freed(table, own, jammed),
         friction=_friction(table, own, jammed),
+        seized_at=seized_at(table, OWN, obstacle),
     )
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,9 +12,18 @@ from crawler2d.audits.names import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
 from crawler2d.results.row import NO_RESULT
-from crawler2d.variation.distributions import Distribution, Scaled, Shifted, Uniform, UniformInt
+from crawler2d.variation.distributions import (
+    Distribution,
+    Levels,
+    Scaled,
+    Shifted,
+    Uniform,
+    UniformInt,
+)
 
 if TYPE_CHECKING:
+    import xarray
+
     from crawler2d.audits.audited import Audited
     from crawler2d.audits.repairs import Repair, Repaired
     from crawler2d.audits.share import Share
@@ -28,6 +37,7 @@ __all__ = [
     "calls",
     "conclusion",
     "confirmed",
+    "driven",
     "end",
     "held",
     "hopeless",
@@ -38,6 +48,7 @@ __all__ = [
     "range_of",
     "repair_sentence",
     "repairs_found",
+    "reservation",
     "robot_sentence",
     "share",
     "span",
@@ -51,7 +62,7 @@ VERDICT_HEAD = ("obstacle", "clears", "seizes", "belt clears", "most often", "ve
 _UPRIGHT = 100.0
 """[-] Friction above which a wall is upright but for rounding: no surface has it."""
 
-JAM_HEAD = ("obstacle", "between wheels", "runs", "friction", "freed there by")
+JAM_HEAD = ("obstacle", "between wheels", "runs", "slow to fast", "friction", "freed there by")
 
 
 def subject(audit: Audited) -> str:
@@ -76,11 +87,21 @@ def population(audit: Audited) -> str:
     samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
     each = "1 run" if repeats == 1 else f"{repeats} runs"
     many = f"{samples} robots on floors, {each} each" if audit.unknown else f"{samples} runs"
-    said = f"{many}, at {audit.drive.speed:g} m/s; intervals of 95 %"
+    said = f"{many}, {driven(audit.table, audit.vary)}; intervals of 95 %"
     least = least_samples()
     if samples < least:
         said += f'; "does not seize" takes {least} or more'
     return said
+
+
+def driven(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
+    """Say at which speeds the runs of a table drove, and over which sizes of the obstacles."""
+    *slow, fast = (f"{speed:g}" for speed in np.unique(table["speed"].values).tolist())
+    speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
+    sizes = vary.get("terrain.height")
+    if not isinstance(sizes, Scaled):
+        return f"at {speeds}"
+    return f"at {speeds}, obstacles times {sizes.low:g} to {sizes.high:g}"
 
 
 def lost(audit: Audited) -> str:
@@ -114,7 +135,8 @@ def jam(each: Verdict) -> tuple[str, ...]:
         if trial.freed
     ]
     place = f"{each.where} of the {each.carrier}"
-    return each.obstacle, place, "/".join(map(str, each.there)), at, ", ".join(freed)
+    speeds = "/".join(f"{100 * rate.rate:.0f}" for rate in each.seized_at.values()) + " %"
+    return each.obstacle, place, "/".join(map(str, each.there)), speeds, at, ", ".join(freed)
 
 
 def end(run: Record) -> str:
@@ -132,9 +154,21 @@ def calls(audit: Audited) -> str:
     return f"on the left, wheel {', '.join(called)}" if called else ""
 
 
+def reservation(audit: Audited) -> str:
+    """Say that the verdict is about another robot than is meant; "" without an error of lint."""
+    rules = list(dict.fromkeys(each.rule for each in audit.lint if each.severity == "error"))
+    if not rules:
+        return ""
+    source = "robot as it is given" if audit.reading is None else "file as it is read"
+    return (
+        f"Lint has errors ({', '.join(rules)}): the verdict holds for the {source}, which is hardly"
+        " the robot that is meant."
+    )
+
+
 def conclusion(audit: Audited) -> list[str]:
-    """Say in sentences where it seizes, and what is not certain."""
-    found = []
+    """Say in sentences whether the verdict is void, where it seizes, and what is not certain."""
+    found = [reservation(audit)] if reservation(audit) else []
     seized = [each for each in audit.verdicts if each.word == "seizes"]
     others = [
         f"{each.obstacle} ({each.instead} of {each.there[1]})"
@@ -170,11 +204,12 @@ def _seizing(verdict: Verdict) -> str:
     return f"{verdict.obstacle} ({belt})"
 
 
-def repairs_found(found: Repaired) -> str:
-    """Say what the search for repairs came to."""
+def repairs_found(found: Repaired, vary: Mapping[str, Any]) -> str:
+    """Say what the search for repairs came to, and in which runs."""
+    runs = f"in fresh runs {driven(found.table, vary)}"
     if any(each.confirmed for each in found.repairs):
-        return f"the best of {found.tried} candidates, in fresh runs"
-    return f"none of {found.tried} candidates was confirmed in fresh runs"
+        return f"the best of {found.tried} candidates, {runs}"
+    return f"none of {found.tried} candidates was confirmed {runs}"
 
 
 def hopeless(kind: str) -> str:
@@ -186,9 +221,14 @@ def worst(repair: Repair) -> tuple[Share, Share, str]:
     """Return how often a repair clears at worst where the belt does, seizes at worst, and where.
 
     Worst of all is to have nothing to be held against: the belt clears none of the fresh runs.
+    It seizes at worst over all speeds, or at one of them.
     """
     cleared = min(repair.cleared_beside.values(), key=lambda share: (share.runs > 0, share.rate))
-    name, seized = max(repair.seized.items(), key=lambda item: (item[1].low, item[1].rate))
+    rates = list(repair.seized.items())
+    for obstacle, at in repair.seized_at.items():
+        rates += [(f"{obstacle} at {speed:g} m/s", each) for speed, each in at.items()]
+    made = [(where, each) for where, each in rates if each.runs]
+    name, seized = max(made, key=lambda item: (item[1].low, item[1].rate))
     return cleared, seized, name if seized.rate > 0.0 else ""
 
 
@@ -197,8 +237,8 @@ def repair_sentence(repair: Repair) -> str:
     _, seized, name = worst(repair)
     where = f", most on {name}" if name else ""
     return (
-        f"{confirmed(repair)}: {repair.what}; {beside(repair)}; seizes at most"
-        f" {share(seized)}{where}; {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
+        f"{confirmed(repair)}: {repair.what}; {beside(repair)}; seizes at most {share(seized)}"
+        f"{where}; {wheels_a_side(repair)}; simulated {repair.speed:.2g} times as fast"
     )
 
 
@@ -232,6 +272,8 @@ def range_of(path: str, distribution: Distribution) -> str:
             return f"{low} to {high}"
         case Scaled(low, high):
             return f"times {low:g} to {high:g}"
+        case Levels(factors):
+            return f"times {', '.join(f'{each:.3g}' for each in factors)} in turn"
         case Shifted():
             of = str(distribution.of or "").rpartition(".")[2].replace("_", " ")
             unit = f" of the {of}" if of else own

@@ -121,6 +121,7 @@ class _Given(Variation):
         count: int,
         *,
         kind: str = "",  # noqa: ARG002
+        first: int = 0,  # noqa: ARG002
     ) -> dict[str, NDArray[np.float64]]:
         """Return the first numbers of every path."""
         return {path: each[:count] for path, each in self.given.items()}

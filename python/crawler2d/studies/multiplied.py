@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from crawler2d.sweeps.plan import Planner
-from crawler2d.variation.distributions import Distribution
+from crawler2d.variation.distributions import Distribution, Levels
 from crawler2d.variation.draws import Variation
 
 if TYPE_CHECKING:
@@ -45,7 +45,10 @@ def multiplied(planner: Planner, factors: Mapping[str, float]) -> Planner:
 
 def _of(variation: Variation, factors: Mapping[str, float]) -> Variation:
     found = {
-        path: _Multiplied(each, factors[path]) if path in factors else each
+        path: _Multiplied(each, factors[path])
+        # Levels are of the field's own value, which has the factor already.
+        if path in factors and not isinstance(each, Levels)
+        else each
         for path, each in variation.distributions.items()
     }
     return replace(variation, distributions=found)

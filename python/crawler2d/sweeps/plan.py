@@ -146,7 +146,7 @@ class Planner:
         if isinstance(whole, ScenarioError):
             return Plan(world, begin, [whole] * count, {})
         kind = "" if world.sample is None else f"sample {world.sample} "
-        numbers = self.variation.numbers(self.seed, end, kind=kind)
+        numbers = self.variation.numbers(self.seed, end, kind=kind, first=world.sample or 0)
         with _named(_place(world.labels)):
             some = {path: each[begin:] for path, each in numbers.items()}
             drawn = self.variation.draw(world.cell, some, world.own)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Distribution",
     "Frozen",
+    "Levels",
     "Scaled",
     "Shifted",
     "Uniform",
@@ -242,6 +243,60 @@ class Shifted(_Bounded):
 
 
 @dataclass(frozen=True, slots=True)
+class Levels:
+    """The scenario's own value times each of some factors in turn: run by run the next one.
+
+    So every factor has the same number of runs, give or take one.
+
+    Parameters
+    ----------
+    factors : tuple of float
+        [-] One or more.
+    spread : float
+        [-] Each value varies by this share either way, all equally likely.
+    along : str, optional
+        Path of another field of levels, whose draws these are, too: what is slow takes long.
+
+    Examples
+    --------
+    >>> Levels((0.1, 1.0), spread=0.02).values(np.array([0.0, 0.25, 0.75]), own=0.5).tolist()
+    [0.049, 0.05, 0.5]
+    """
+
+    factors: tuple[float, ...]
+    spread: float = 0.0
+    along: str | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it gives whole numbers."""
+        return False
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return True
+
+    def in_turn(self, numbers: NDArray[np.float64], first: int) -> NDArray[np.float64]:
+        """Move numbers from 0 to 1 so that they take the factors in turn, from the first run on."""
+        count = len(self.factors)
+        return ((first + np.arange(numbers.size)) % count + numbers) / count
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:
+        """Map numbers from 0 to 1 to values."""
+        count = len(self.factors)
+        level = np.minimum((count * numbers).astype(int), count - 1)
+        within = count * numbers - level
+        scatter = _between(1.0 - self.spread, 1.0 + self.spread, within)
+        values: NDArray[np.float64] = float(own) * np.array(self.factors)[level] * scatter
+        return values
+
+    def on(self, scenario: Scenario) -> Levels:  # noqa: ARG002 - others do
+        """Take nothing from the scenario."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
 class Frozen:
     """A frozen distribution of SciPy: ``scipy.stats.norm(0.9, 0.05)``."""
 
@@ -285,7 +340,7 @@ def read_distribution(given: object, place: str) -> Distribution:
     ScenarioError
         If it is neither; `place` names the argument.
     """
-    if isinstance(given, (Uniform, UniformInt, Scaled, Shifted, Frozen)):
+    if isinstance(given, (Uniform, UniformInt, Scaled, Shifted, Levels, Frozen)):
         return given
     if all(hasattr(given, name) for name in ("ppf", "dist", "args", "kwds")):
         return Frozen(given)

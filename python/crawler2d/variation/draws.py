@@ -13,7 +13,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.paths import expand_path, is_whole, json_pointer, read_path
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
-from crawler2d.variation.distributions import Distribution, read_distribution
+from crawler2d.variation.distributions import Distribution, Levels, read_distribution
 from crawler2d.variation.ranges import Ranges
 from crawler2d.variation.variability import of_contact, of_start
 
@@ -123,13 +123,22 @@ class Variation:
             texts.append(f"{path}: {distribution}")
         return cls(found, gives_way, "; ".join(texts))
 
-    def numbers(self, seed: int, count: int, *, kind: str = "") -> dict[str, NDArray[np.float64]]:
+    def numbers(
+        self, seed: int, count: int, *, kind: str = "", first: int = 0
+    ) -> dict[str, NDArray[np.float64]]:
         """Draw the numbers from 0 to 1 of every path, which all cells share.
 
         Another `kind` draws others: it tells samples from repeats, and the repeats of one sample
-        from those of the next.
+        from those of the next. Levels are taken in turn, beginning with the number `first`.
         """
-        return {path: uniform_numbers(path, seed, count, kind=kind) for path in self.distributions}
+        found = {}
+        for path, each in self.distributions.items():
+            if isinstance(each, Levels):
+                numbers = uniform_numbers(each.along or path, seed, count, kind=kind)
+                found[path] = each.in_turn(numbers, first)
+            else:
+                found[path] = uniform_numbers(path, seed, count, kind=kind)
+        return found
 
     def draw(
         self,

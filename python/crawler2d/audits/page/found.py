@@ -22,7 +22,8 @@ __all__ = ["lint", "repairs", "replays", "verdicts"]
 
 _JAMS = (
     "the last columns tell of the runs that seized: between which wheels most are jammed, and how"
-    " many of all; between which frictions of the floor they are; and how many a change frees:"
+    " many of all; how often it seizes at each speed, the slowest first; between which frictions of"
+    " the floor they are; and how many a change frees:"
     " a belt closed round the wheels in this pose, or the same set clear of the ground, twice the"
     " torque, twice the friction"
 )
@@ -57,7 +58,7 @@ def verdicts(audit: Audited, replayed: Sequence[Replayed]) -> str:
     if numbers:
         notes.insert(0, _JAMS)
     below = "".join(f"<p>{escaped(note[0].upper() + note[1:])}.</p>" for note in notes if note)
-    short = (*words.VERDICT_HEAD, "runs", "friction", "replay")
+    short = (*words.VERDICT_HEAD, "runs", "slow to fast", "friction", "replay")
     return grid(head, rows, label="verdicts", short=short) + below
 
 
@@ -145,7 +146,7 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
                 f"{each.speed:.2g} times",
             )
         )
-    said = [words.repairs_found(found), *map(words.hopeless, found.hopeless)]
+    said = [words.repairs_found(found, audit.vary), *map(words.hopeless, found.hopeless)]
     text = "".join(f"<p>{escaped(line[0].upper() + line[1:])}.</p>" for line in said)
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
     table = grid(head, rows, label="repairs", short=head[1:4])

@@ -57,8 +57,8 @@ class Replayed:
 def replayed(audit: Audited, *, threads: int | None = None) -> list[Replayed]:
     """Simulate one run again for each obstacle on which the robot seized.
 
-    It is the first of those that are jammed where most are; if there are any, the first of those
-    that the belt clears with the same draws.
+    It is one of those that are jammed where most are; if there are any, of those that the belt
+    clears with the same draws; and of these the first of the fastest, which is the shortest.
 
     Parameters
     ----------
@@ -102,7 +102,9 @@ def _place(audit: Audited, verdict: Verdict) -> tuple[int, int]:
     there &= column(audit.table, "stop_carrier", **own) == verdict.carrier
     belt = column(audit.table, "outcome", model=BELT, terrain=verdict.obstacle)
     telling = there & (belt == Outcome.CLEARED)
-    sample, repeat = np.argwhere(telling if telling.any() else there)[0].tolist()
+    speeds = audit.table["speed"].transpose("sample", "repeat").values
+    places = np.argwhere(telling if telling.any() else there)
+    sample, repeat = places[np.argmax(np.abs(speeds[tuple(places.T)]))].tolist()
     return sample, repeat
 
 

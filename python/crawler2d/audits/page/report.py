@@ -93,7 +93,7 @@ def _conclusion(audit: Audited) -> list[str]:
     sentences = words.conclusion(audit)
     confirmed = [each for each in audit.repairs if each.confirmed]
     if audit.repaired is not None:
-        sentences.append(f"Repairs: {words.repairs_found(audit.repaired)}.")
+        sentences.append(f"Repairs: {words.repairs_found(audit.repaired, audit.vary)}.")
     if confirmed:
         text = words.repair_sentence(confirmed[0])
         sentences.append(f"{text[0].upper()}{text[1:]}.")
