@@ -44,8 +44,8 @@ def scenario_of(
 
     Unless `drive` is given, the robot drives at 0.2 sqrt(g L), with L its axle distance (0.4 m/s
     for 0.41 m), so that large and small ones meet their obstacles alike, or at its largest speed if
-    that is less; flippers `Climb`. It has the time in which it would drive fifteen times its length,
-    flippers not counted, and begins a fifth of its axle distance before the obstacle.
+    that is less; flippers `Climb`. It has the time in which it would drive fifteen times its
+    length, flippers not counted, and begins a fifth of its axle distance before the obstacle.
     """
     outline = robot.outline
     if drive is None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crawler2d.results.outcome import Outcome
-from crawler2d.sweeps.statistics import wilson
+from crawler2d.sweeps.statistics import clustered
 from crawler2d.sweeps.stops import short_name
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class Against:
     """Runs with a result."""
     rate: float
     low: float
-    """[-] Lower bound of Wilson's 95 % interval."""
+    """[-] Lower bound of the 95 % interval, of which the repeats are the clusters."""
     high: float
 
 
@@ -142,18 +142,20 @@ def gear_against_round(
     list of Against
         Round and gear wheels of each pair, and of all pairs together.
     """
-    rows = {row.model: row for row in stops(table, obstacle, belt)}
-    groups = [(name, [rows[name]]) for gear, plain in pairs.items() for name in (plain, gear)]
-    groups += [
-        ("all of these", [rows[name] for name in names]) for names in (pairs.values(), pairs.keys())
+    # Runs of one repeat share their draws, at all heights and of all models: a cluster.
+    repeats = [
+        {row.model: row for row in stops(table.isel(repeat=[k]), obstacle, belt)}
+        for k in range(table.sizes["repeat"])
     ]
+    groups = [(name, [name]) for gear, plain in pairs.items() for name in (plain, gear)]
+    groups += [("all of these", list(names)) for names in (pairs.values(), pairs.keys())]
     wheels = ("round", "gear") * (len(pairs) + 1)
     found = []
     for (name, own), wheel in zip(groups, wheels, strict=True):
-        count = sum(row.count for row in own)
+        counts = [sum(rows[each].count for each in own) for rows in repeats]
         for figure in FIGURES:
-            times = sum(getattr(row, figure) for row in own)
-            rate, low, high = wilson(times, count)
+            times = [sum(getattr(rows[each], figure) for each in own) for rows in repeats]
+            rate, low, high = clustered(times, counts)
             found.append(
                 Against(
                     robot=robot,
@@ -161,8 +163,8 @@ def gear_against_round(
                     model=name,
                     wheel=wheel,
                     figure=figure,
-                    found=times,
-                    count=count,
+                    found=sum(times),
+                    count=sum(counts),
                     rate=rate,
                     low=low,
                     high=high,

@@ -67,7 +67,7 @@ def against_text(against: Sequence[Against]) -> str:
     obstacle = against[0].obstacle
     return (
         f"Gear wheels beside round ones on {obstacle}s, all heights together: shares of all runs\n"
-        "[%], with Wilson's 95 % intervals. Freed by: twice the torque, twice the friction.\n"
+        "[%], with 95 % intervals of repeats. Freed by: twice the torque, twice the friction.\n"
         "Unnatural: stops that a closed track leaves, passes where the belt does not get over.\n\n"
     ) + aligned(
         head,
