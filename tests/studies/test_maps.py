@@ -35,9 +35,10 @@ def grid_of(truth: Any, levels: int) -> Grid:
             [SimpleNamespace(interval=truth(j / (size - 1), i / (size - 1)))] for _, j, i in places
         ]
 
-    def judge(tallies: Any) -> tuple[float, int]:
+    def judge(tallies: Any) -> tuple[float, int, bool]:
         rate, low, high = tallies[0].interval
-        return rate, 1 * (low > 0.5) + 2 * (high < 0.5)
+        kind = 1 * (low > 0.5) + 2 * (high < 0.5)
+        return rate, kind, kind > 0
 
     grid = Grid((1, size, size), simulate, judge)
     for level in range(levels + 1):
@@ -98,7 +99,13 @@ def test_with_unknowns_the_median_decides_and_the_band_says_where_it_is_not_sure
     tried = found["count"].to_numpy().max(axis=-1) > 0
     assert tried[::2, ::2].all()
     straddles = (found["band_low"] <= 0.5) & (found["band_high"] >= 0.5)
-    assert (found["unsure"].to_numpy() == (straddles.to_numpy() & tried)).all()
+    assert (found["unsure"].to_numpy() == straddles.to_numpy())[tried].all()
+    # What was not simulated is as certain as the least certain cell next to it.
+    unsure = np.pad(found["unsure"].to_numpy() & tried, 1)
+    rows, columns = tried.shape
+    steps = [(j, i) for j in range(3) for i in range(3)]
+    beside = np.any([unsure[j : j + rows, i : i + columns] for j, i in steps], axis=0)
+    assert (found["unsure"].to_numpy() == beside)[~tried].all()
     median = found["band_median"].to_numpy()
     tied = median == 0.5
     assert ((found["ending"].to_numpy() == "cleared") == (median > 0.5))[tried & ~tied].all()

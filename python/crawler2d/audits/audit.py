@@ -224,8 +224,8 @@ def audit(
         that is less; flippers `Climb`, and are raised before the obstacle. `vary` takes shares of
         its speed.
     duration : float, optional
-        [s] Longest simulated time at that speed; slower runs have as much longer. None takes that
-        in which the robot would drive fifteen times its own length.
+        [s] Longest simulated time at that speed; at a third of it runs have 5/3 of that, at a tenth
+        4 times. None takes that in which the robot would drive fifteen times its own length.
     store : str or path-like, optional
         A file that keeps every run: the same call goes on where it was; see `sweep`.
     executor, threads, progress

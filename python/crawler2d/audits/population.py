@@ -29,6 +29,10 @@ _ROUNDED = 0.1
 SPEEDS = (0.1, 1.0 / 3.0, 1.0)
 """[-] Shares of the speed of an audit: what a fast robot jumps over, a slow one may not."""
 
+_TIMES = tuple((1.0 / part + 2.0) / 3.0 for part in SPEEDS)
+"""[-] Times the longest time: at the slowest speed enough to drive six lengths of the robot. It is
+less than the speed asks for, because what rattles until the end costs most."""
+
 _SIZE = 0.05
 """[-] By which share an obstacle may be larger or smaller than its measures say."""
 
@@ -37,8 +41,8 @@ def vary_of(drive: Drive | None = None) -> Ranges:
     """Return what differs from run to run by default.
 
     Start, contact and step field; the height, rise, radius or width of the obstacle; and the speed,
-    a tenth, a third and all of it in turn, with as much more time as it is slower, unless a
-    schedule says how fast to drive.
+    a tenth, a third and all of it in turn, with the longer time the slower, unless a schedule says
+    how fast to drive.
     """
     found = of_start() | of_contact() | of_field() | _of_size()
     return found if drive is not None and drive.schedule else found | _of_speed()
@@ -47,11 +51,11 @@ def vary_of(drive: Drive | None = None) -> Ranges:
 def _of_speed() -> Ranges:
     speeds = {
         "drive.speed": Levels(SPEEDS, spread=0.02),
-        "duration": Levels(tuple(1.0 / part for part in SPEEDS), along="drive.speed"),
+        "duration": Levels(_TIMES, along="drive.speed"),
     }
     said = {
         "drive.speed": "a tenth, a third and all of it in turn, each within 2 %",
-        "duration": "the longer the slower",
+        "duration": "4, 5/3 and 1 times: the slowest has time for six of its lengths",
     }
     return Ranges(speeds, said, speeds)
 

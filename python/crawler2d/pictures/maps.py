@@ -59,10 +59,12 @@ def plot_map(found: xarray.Dataset, ax: Axes | None) -> Axes:
         "shading": "nearest",
     }
     hatched: dict[str, Any] = {"hatch": _HATCH, "edgecolor": BLACK, "linewidth": 0.0}
+    faint: dict[str, Any] = {"alpha": _FAINT}
     for chosen, style in (
         (~guessed & ~unsure, {}),
-        (guessed, {"alpha": _FAINT}),
-        (unsure, hatched),
+        (guessed & ~unsure, faint),
+        (~guessed & unsure, hatched),
+        (guessed & unsure, faint | hatched),
     ):
         ax.pcolor(*at, np.ma.masked_array(numbers, ~chosen), **scale, **style)
     ax.set(xlabel=label_x, ylabel=label_y)

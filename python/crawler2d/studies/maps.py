@@ -70,7 +70,8 @@ def seizure_map(
         - `ending`: the commonest end: "cleared", the outcome, or "otherwise"; where a cell was not
           simulated (`count` is 0), that of all cells next to it;
         - `unsure`: whether it is not certain that more than half of the runs end so: the interval
-          of their rate, or with unknowns the band over the samples, begins at one half or below;
+          of their rate, or with unknowns the band over the samples, begins at one half or below; of
+          a cell that was not simulated, whether one next to it is unsure;
         - `around`: where a cell was not simulated, the mean of the rates next to it; nan elsewhere.
 
         With unknowns, the end with the largest median over the samples is the commonest. `plot`
@@ -120,11 +121,11 @@ def seizure_map(
                 cells.append(Cell((f"model={label}", *text), bases[label].replace(at)))
             return study.repeat(cells, counts, others=list(ends.values()))
 
-        def judge(tallies: Sequence[Tally]) -> tuple[float, int]:
+        def judge(tallies: Sequence[Tally]) -> tuple[float, int, bool]:
             number, certain = _commonest(tallies, list(ends.values()))
             rates = [tally.interval.rate for tally in tallies if tally.made]
             rate = float(np.median(rates)) if rates else math.nan
-            return rate, number + 1 if certain or len(tallies) > 1 else 0
+            return rate, number + 1 if certain or len(tallies) > 1 else 0, certain
 
         grid = Grid((len(fields), len(values_y), len(values_x)), simulate, judge)
         for level in range(halvings + 1):
@@ -166,10 +167,10 @@ def _with_ends(
     shape = tried.shape
     ending, unsure = np.empty(shape, object), np.zeros(shape, bool)
     for place, tallies in zip(np.ndindex(shape), grid.tallies, strict=True):
-        number, certain = int(grid.kinds[place]) - 1, True
+        number = int(grid.kinds[place]) - 1
         if tried[place]:
-            number, certain = _commonest(tallies, list(ends.values()))
-        ending[place], unsure[place] = names[number], not certain
+            number, _ = _commonest(tallies, list(ends.values()))
+        ending[place], unsure[place] = names[number], not grid.certain[place]
     columns: Mapping[str, Any] = {
         "ending": (dims, ending.astype(str), {"long_name": "commonest end"}),
         "unsure": (dims, unsure, {"long_name": "not certain that more than half end so"}),

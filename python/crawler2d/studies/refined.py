@@ -29,24 +29,23 @@ class Grid:
     simulate : callable
         Given the places of cells, returns the tallies of each by sample.
     judge : callable
-        Given the tallies of a cell, returns its rate and the number of its kind, 0 where that is
-        not certain.
+        Given the tallies of a cell, returns its rate, the number of its kind, 0 for one that is not
+        to be taken for its neighbours, and whether that is certain.
 
     Attributes
     ----------
-    rates, kinds : ndarray, shape (models, y, x)
+    rates, kinds, certain : ndarray, shape (models, y, x)
         [-] What `judge` says of a cell. Of a cell that is not simulated they are taken from those
-        around it; nan where nothing is known yet.
+        around it, and certain if all of these are; nan where nothing is known yet.
     """
 
     def __init__(
         self,
         shape: tuple[int, int, int],
         simulate: Callable[[Sequence[tuple[int, ...]]], list[list[Tally]]],
-        judge: Callable[[Sequence[Tally]], tuple[float, int]],
+        judge: Callable[[Sequence[Tally]], tuple[float, int, bool]],
     ) -> None:
-        self.rates = np.full(shape, np.nan)
-        self.kinds = np.full(shape, np.nan)
+        self.rates, self.kinds, self.certain = (np.full(shape, np.nan) for _ in range(3))
         self._tallies: dict[tuple[int, ...], list[Tally]] = {}
         self._simulate, self._judge = simulate, judge
 
@@ -65,6 +64,7 @@ class Grid:
         mean = np.where(known, around, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
         self.rates[part][fill] = mean[fill]
         self.kinds[part][fill] = np.fmax.reduce(_neighbours(self.kinds[part]))[fill]
+        self.certain[part][fill] = np.fmin.reduce(_neighbours(self.certain[part]))[fill]
 
     @property
     def tried(self) -> NDArray[np.bool_]:
@@ -95,7 +95,8 @@ class Grid:
         places = [(m, stride * j, stride * i) for m, j, i in np.argwhere(due).tolist()]
         for place, tallies in zip(places, self._simulate(places), strict=True):
             self._tallies[place] = tallies
-            self.rates[place], self.kinds[place] = self._judge(tallies)
+            found = self._judge(tallies)
+            self.rates[place], self.kinds[place], self.certain[place] = found
 
 
 def _neighbours(grid: NDArray[np.float64]) -> NDArray[np.float64]:
