@@ -147,6 +147,18 @@ def test_a_verdict_tells_at_which_speeds() -> None:
     assert (slow.runs, fast.runs, slow.rate, fast.rate) == (40, 40, 0.5, 0.5)
 
 
+@pytest.mark.parametrize(("clears", "word"), [(40, "seizes"), (30, "belt fails, too")])
+def test_a_model_that_seizes_at_one_of_the_speeds_seizes(clears: int, word: str) -> None:
+    """At one speed 4 of 20 robots seize, of all 40 too few to tell; the belt clears, or fails."""
+    own = ends(seized=4, slipping=36)
+    rows = table(own, ends(slipping=SAMPLES - clears, cleared=clears))
+    slow = np.repeat(np.arange(SAMPLES)[:, None] < 20, REPEATS, axis=1)
+    rows = rows.assign_coords(speed=(("sample", "repeat"), np.where(slow, 0.04, 0.4)))
+    (found,) = verdicts_of(rows, ["step"])
+    assert found.seized.low < 0.05 < found.seized_at[0.04].low
+    assert found.word == word
+
+
 @pytest.mark.parametrize(("slow", "confirmed"), [(2, True), (3, False)])
 def test_a_repair_that_seizes_at_one_of_the_speeds_is_not_confirmed(
     slow: int, confirmed: bool
@@ -218,8 +230,8 @@ def test_the_rule_asks_in_the_order_of_its_words() -> None:
 
     often, never = of(0.5, 0.3, 0.7), of(0.0, 0.0, 0.09)
     always = of(1.0, 0.9, 1.0)
-    assert verdict_word(often, often, always, often) == "seizes"
-    assert verdict_word(often, often, often, often) == "seizes"
-    assert verdict_word(often, often, often, never) == "belt fails, too"
-    assert verdict_word(always, never, often, never) == "does not seize"
-    assert verdict_word(often, of(0.06, 0.02, 0.2), always, never) == "not certain"
+    assert verdict_word(often, [often], always, [often]) == "seizes"
+    assert verdict_word(often, [often], often, [often]) == "seizes"
+    assert verdict_word(often, [often], often, [never]) == "belt fails, too"
+    assert verdict_word(always, [never], often, [never]) == "does not seize"
+    assert verdict_word(often, [of(0.06, 0.02, 0.2)], always, [never]) == "not certain"

@@ -115,29 +115,35 @@ class Verdict:
     seized_at: Mapping[float, Share]
 
 
-def verdict_word(cleared: Share, seized: Share, belt: Share, alone: Share) -> str:
+def verdict_word(
+    cleared: Share, seized: Sequence[Share], belt: Share, alone: Sequence[Share]
+) -> str:
     """Judge an obstacle.
 
-    "seizes": the lower bound of the rate of seizing is above 5 %, and the belt clears in 95 % of
-    its runs or more; or, where it clears in fewer, as on floors that may be slippery, the lower
-    bound of the rate of seizing while the belt clears with the same draws is. "belt fails, too":
+    "seizes": the lower bound of the rate of seizing, at all speeds together or at one of them, is
+    above 5 %, and the belt clears in 95 % of its runs or more; or, where it clears in fewer, as on
+    floors that may be slippery, the lower bound of the rate of seizing while the belt clears with
+    the same draws is. "belt fails, too":
     the belt clears in fewer, and so does the model. "does not seize": the upper bound of the rate
     of seizing is below 10 %. "not certain": anything else.
 
     Parameters
     ----------
-    cleared, seized : Share
-        Of the model.
+    cleared : Share
+        How often the model clears.
+    seized : sequence of Share
+        How often it seizes: at all speeds together, then at each.
     belt : Share
         How often the belt clears.
-    alone : Share
-        How often the model seizes while the belt clears.
+    alone : sequence of Share
+        How often the model seizes while the belt clears, likewise.
     """
-    if (seized.low > SEIZES and belt.rate >= CLEARS) or alone.low > SEIZES:
+    counted = [*alone, *(seized if belt.rate >= CLEARS else ())]
+    if any(each.low > SEIZES for each in counted):
         return "seizes"
     if belt.rate < CLEARS and cleared.rate < CLEARS:
         return "belt fails, too"
-    return "does not seize" if seized.high < _SELDOM else "not certain"
+    return "does not seize" if seized[0].high < _SELDOM else "not certain"
 
 
 def least_samples() -> int:
@@ -166,13 +172,17 @@ def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Sha
 def seized_at(table: xarray.Dataset, model: str, obstacle: str) -> dict[float, Share]:
     """Return how often a model seizes on an obstacle at each speed [m/s], the slowest first."""
     ends = column(table, "outcome", model=model, terrain=obstacle)
+    return _by_speed(table, ends == Outcome.SEIZED, _has_result(ends))
+
+
+def _by_speed(
+    table: xarray.Dataset,
+    happened: np.ndarray[tuple[int, int]],
+    made: np.ndarray[tuple[int, int]],
+) -> dict[float, Share]:
     speeds = table["speed"].transpose("sample", "repeat").values
-    made, seized = _has_result(ends), ends == Outcome.SEIZED
-    found = {}
-    for speed in np.unique(speeds).tolist():
-        own = speeds == speed
-        found[speed] = share_of(seized & own, made & own)
-    return found
+    levels = {speed: speeds == speed for speed in np.unique(speeds).tolist()}
+    return {speed: share_of(happened & own, made & own) for speed, own in levels.items()}
 
 
 def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) -> Share:
@@ -205,10 +215,14 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
     belt_ends = column(table, "outcome", model=BELT, terrain=obstacle)
     where, carrier, there = _where(table, own, jammed)
     instead = jammed & (belt_ends == Outcome.CLEARED)
-    alone = share_of(instead, _has_result(column(table, "outcome", **own)))
+    made = _has_result(column(table, "outcome", **own))
+    alone, at = share_of(instead, made), seized_at(table, OWN, obstacle)
+    alone_at = _by_speed(table, instead, made)
     return Verdict(
         obstacle=obstacle,
-        word=verdict_word(cleared, seized, belt_cleared, alone),
+        word=verdict_word(
+            cleared, [seized, *at.values()], belt_cleared, [alone, *alone_at.values()]
+        ),
         cleared=cleared,
         seized=seized,
         belt_cleared=belt_cleared,
@@ -222,7 +236,7 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
         seized_alone=alone,
         freed=_freed(table, own, jammed),
         friction=_friction(table, own, jammed),
-        seized_at=seized_at(table, OWN, obstacle),
+        seized_at=at,
     )
 
 
