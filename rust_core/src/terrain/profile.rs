@@ -74,6 +74,8 @@ pub struct Edge {
     pub radius: f64,
     /// [m] Centre of the arc, or the corner itself if sharp.
     pub center: Vector,
+    /// Its first and its last point; an arc that takes up a whole face shares one with the edge at its other end.
+    pub(crate) span: [u32; 2],
 }
 
 impl Profile {
@@ -155,7 +157,11 @@ impl Profile {
             } else {
                 0.0
             };
-            let room = ((corner - before).length() - spare).min((behind - corner).length());
+            let (to_last, to_next) = (
+                (corner - before).length() - spare,
+                (behind - corner).length(),
+            );
+            let room = to_last.min(to_next);
             if tangent > room * (1.0 + 1e-12) {
                 let rule = format!(
                     "must fit the edge at ({}, {}), whose arc needs {tangent} m of {room} m",
@@ -167,11 +173,32 @@ impl Profile {
                     rule,
                 ));
             }
+            // What an arc leaves of a face has no direction if it is no longer than this.
+            let is_joined = spare + tangent > 0.0 && to_last - tangent < COLLINEAR;
             spare = tangent;
             let outward = left_of(d1);
             let start = corner - d1 * tangent;
             let radius = if rounded { radius } else { 0.0 };
             let center = start - outward * radius;
+            let facets = if rounded { facets(angle) } else { 0.0 };
+            let point = |k: usize| {
+                if !rounded {
+                    return corner;
+                }
+                if k == facets as usize && to_next - tangent < COLLINEAR {
+                    return behind;
+                }
+                let (s, c) = libm::sincos(-angle * k as f64 / facets);
+                let spoke =
+                    Vector::new(c * outward.x - s * outward.y, s * outward.x + c * outward.y);
+                center + spoke * radius
+            };
+            let first = if is_joined {
+                self.points.len() as u32 - 1
+            } else {
+                self.push(point(0), id)
+            };
+            let last = (1..=facets as usize).fold(first, |_, k| self.push(point(k), id));
             self.edges.push(Edge {
                 side: self.side,
                 id,
@@ -180,34 +207,21 @@ impl Profile {
                 angle,
                 radius,
                 center,
+                span: [first, last],
             });
-            if rounded {
-                let facets = facets(angle);
-                for k in 0..=facets as usize {
-                    let (s, c) = libm::sincos(-angle * k as f64 / facets);
-                    let spoke =
-                        Vector::new(c * outward.x - s * outward.y, s * outward.x + c * outward.y);
-                    self.push(center + spoke * radius, id);
-                }
-            } else {
-                self.push(corner, id);
-            }
         }
         self.push(corners[corners.len() - 1], -1);
         Ok(())
     }
 
-    fn push(&mut self, point: Vector, edge: i32) {
-        // An arc may begin where the previous one ended.
-        if self
-            .points
-            .last()
-            .is_some_and(|last| (*last - point).length() < 1e-12)
-        {
-            return;
+    /// Adds a point and returns its index; one of two edges that meet in a point is enough.
+    fn push(&mut self, point: Vector, edge: i32) -> u32 {
+        let is_it = |last: &Vector| (*last - point).length() < 1e-12;
+        if !self.points.last().is_some_and(is_it) {
+            self.points.push(point);
+            self.edge_of_point.push(edge);
         }
-        self.points.push(point);
-        self.edge_of_point.push(edge);
+        self.points.len() as u32 - 1
     }
 
     /// The same profile under another part of the robot.

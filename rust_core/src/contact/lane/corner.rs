@@ -4,13 +4,11 @@
 
 use super::{On, ROUNDING, Touch};
 use crate::geometry::{Vector, cross, left_of};
-use crate::terrain::Profile;
+use crate::terrain::{Edge, Profile};
 
 /// Sine of the angle by which a side of the robot may turn in a step: beyond its last normal by this angle, the arc of
 /// a rounded corner reaches out of the ground by less than 4 um.
 const NEARLY: f64 = 0.02;
-/// [m] A point this close to an arc is on it.
-const SHARED: f64 = 1e-10;
 
 /// Where two faces meet.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +30,11 @@ pub(crate) struct Corner {
 }
 
 impl Corner {
+    /// [m] Length of its arc.
+    pub(super) fn arc_length(&self) -> f64 {
+        self.radius * turn(self.normals[0], self.normals[1])
+    }
+
     /// Whether a direction is a normal of the ground at the corner, within rounding.
     pub(crate) fn faces(&self, direction: Vector) -> bool {
         self.is_normal(direction, ROUNDING)
@@ -57,8 +60,7 @@ impl Corner {
             return self.facet;
         }
         let [from, to] = self.normals;
-        let angle = |a: Vector, b: Vector| libm::atan2(cross(b, a), a.dot(b));
-        let share = angle(from, normal) / angle(from, to);
+        let share = turn(from, normal) / turn(from, to);
         self.facet + ((share * self.facets as f64).max(0.0) as usize).min(self.facets - 1)
     }
 
@@ -75,54 +77,79 @@ impl Corner {
     }
 }
 
-/// The corners of a profile, both ends included; the points of one arc are one corner.
+/// [rad] Clockwise turn from one direction to another.
+fn turn(from: Vector, to: Vector) -> f64 {
+    libm::atan2(cross(to, from), from.dot(to))
+}
+
+/// The corners of a profile from left to right, both ends included. Two that share a point have no face between them.
 pub(super) fn corners_of(profile: &Profile) -> Vec<Corner> {
     let bends = profile.bends();
-    let point = |i: usize| profile.points[bends[i] as usize];
-    let edge_of = |i: usize| profile.edge_of_point[bends[i] as usize];
-    let last = bends.len() - 1;
+    let mut edges = profile.edges.iter().peekable();
     let mut corners = Vec::new();
-    let mut i = 0;
-    while i <= last {
-        let edge = edge_of(i);
-        let rounded = usize::try_from(edge)
-            .ok()
-            .map(|e| &profile.edges[e])
-            .filter(|e| e.radius > 0.0);
-        // An arc adjacent to the last one shares its end point.
-        let shares_point = rounded.is_some_and(|e| {
-            let on_arc = |p: Vector| ((p - e.center).length() - e.radius).abs() < SHARED;
-            i > 0 && edge != edge_of(i - 1) && on_arc(point(i - 1))
-        });
-        let first = i - usize::from(shares_point);
-        while rounded.is_some() && i < last && edge_of(i + 1) == edge {
-            i += 1;
+    for (i, bend) in bends.iter().enumerate() {
+        // On straight ground, edges do not bend it.
+        while edges.next_if(|edge| edge.span[0] < *bend).is_some() {}
+        if profile.edge_of_point[*bend as usize] < 0 {
+            corners.push(sharp(profile, i, -1));
         }
-        let normal_of = |a: usize, b: usize| left_of((point(b) - point(a)).normalize());
-        let (center, normals) = match rounded {
-            Some(e) => {
-                let normal = |p: Vector| (p - e.center) / e.radius;
-                (e.center, [normal(point(first)), normal(point(i))])
-            }
-            // Each end of the ground has one normal only.
-            None => (
-                point(i),
-                [
-                    normal_of(i.saturating_sub(1), i.max(1)),
-                    normal_of(i.min(last - 1), (i + 1).min(last)),
-                ],
-            ),
-        };
-        corners.push(Corner {
-            center,
-            radius: rounded.map_or(0.0, |e| e.radius),
-            stands_out: 0 < first && i < last && cross(normals[1], normals[0]) > 0.0,
-            normals,
-            edge,
-            facet: bends[first] as usize,
-            facets: i - first,
-        });
-        i += 1;
+        while let Some(edge) = edges.next_if(|edge| edge.span[0] == *bend) {
+            corners.push(if edge.radius > 0.0 {
+                rounded(profile, edge)
+            } else {
+                sharp(profile, i, edge.id)
+            });
+        }
+    }
+    // An arc leaves a point that it shares along its own tangent, not along its first facet.
+    for i in 1..corners.len() {
+        let (before, behind) = (corners[i - 1], corners[i]);
+        if before.facet + before.facets < behind.facet {
+            continue;
+        }
+        if before.radius > 0.0 && behind.radius <= 0.0 {
+            corners[i].normals[0] = before.normals[1];
+        } else if behind.radius > 0.0 && before.radius <= 0.0 {
+            corners[i - 1].normals[1] = behind.normals[0];
+        }
     }
     corners
+}
+
+/// A sharp corner at a bend of the profile.
+fn sharp(profile: &Profile, bend: usize, edge: i32) -> Corner {
+    let bends = profile.bends();
+    let last = bends.len() - 1;
+    let point = |i: usize| profile.points[bends[i] as usize];
+    let normal_of = |a: usize, b: usize| left_of((point(b) - point(a)).normalize());
+    // Each end of the ground has one normal only.
+    let normals = [
+        normal_of(bend.saturating_sub(1), bend.max(1)),
+        normal_of(bend.min(last - 1), (bend + 1).min(last)),
+    ];
+    Corner {
+        center: point(bend),
+        radius: 0.0,
+        stands_out: 0 < bend && bend < last && cross(normals[1], normals[0]) > 0.0,
+        normals,
+        edge,
+        facet: bends[bend] as usize,
+        facets: 0,
+    }
+}
+
+/// The corner of a rounded edge.
+fn rounded(profile: &Profile, edge: &Edge) -> Corner {
+    let [first, last] = edge.span.map(|i| i as usize);
+    let normal = |i: usize| (profile.points[i] - edge.center) / edge.radius;
+    let normals = [normal(first), normal(last)];
+    Corner {
+        center: edge.center,
+        radius: edge.radius,
+        stands_out: cross(normals[1], normals[0]) > 0.0,
+        normals,
+        edge: edge.id,
+        facet: first,
+        facets: last - first,
+    }
 }

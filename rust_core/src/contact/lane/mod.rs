@@ -62,6 +62,7 @@ impl Lane {
                     along: Vector::new(normal.y, -normal.x),
                     normal,
                     length,
+                    extent: ends[0].arc_length() + length + ends[1].arc_length(),
                     facets,
                     edges: [ends[0].edge, ends[1].edge],
                 }
@@ -147,7 +148,7 @@ impl Lane {
     }
 
     /// Whether a point is in the ground below a concave corner, past the ends of both its faces and by less
-    /// than their lengths: it is then behind both.
+    /// than they extend: it is then behind both.
     fn is_under(&self, i: usize, point: Vector) -> bool {
         if i == 0 || i == self.faces.len() {
             return false;
@@ -159,7 +160,7 @@ impl Lane {
             && cross(before, spoke) <= 0.0
             && cross(behind, spoke) >= 0.0
             && spoke.dot(before + behind) < 0.0
-            && spoke.length() < self.faces[i - 1].length.min(self.faces[i].length)
+            && spoke.length() < self.faces[i - 1].extent.min(self.faces[i].extent)
             && self.holds(point)
     }
 

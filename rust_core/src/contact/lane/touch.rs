@@ -18,8 +18,10 @@ pub(super) struct Face {
     pub along: Vector,
     /// Unit vector out of the ground.
     pub normal: Vector,
-    /// [m] Length; 0 between two adjacent arcs.
+    /// [m] Length; 0 where an arc takes up all of it.
     pub length: f64,
+    /// [m] The same with the arcs that take up the rest of the described face.
+    pub extent: f64,
     /// Facets of the profile that make it up.
     pub facets: Range<usize>,
     /// Edge ids at both ends.

@@ -21,7 +21,8 @@ pub(super) struct Ground {
 pub(super) const KINDS: usize = 11;
 
 impl Ground {
-    pub(super) fn random(kind: usize, draw: &mut Draw) -> Self {
+    /// One whose arcs take up a whole face, or all but a share of it, if that is given.
+    pub(super) fn random(kind: usize, left: Option<f64>, draw: &mut Draw) -> Self {
         let corners = corners(kind, draw);
         let rounded = draw.chance(0.5);
         let mut radius = if rounded {
@@ -29,6 +30,9 @@ impl Ground {
         } else {
             0.0
         };
+        if let Some(left) = left {
+            radius = largest_radius(&corners) * (1.0 - left);
+        }
         loop {
             if let Some(ground) = Self::new(&corners, radius) {
                 return ground;
@@ -167,6 +171,22 @@ fn corners(kind: usize, draw: &mut Draw) -> Vec<Vector> {
     all.iter()
         .map(|p| Vector::new(p[0], p[1] + slope * p[0]))
         .collect()
+}
+
+/// [m] The radius at which arcs take up the whole of a face; 0 if there is none below a metre.
+pub(super) fn largest_radius(corners: &[Vector]) -> f64 {
+    // Length of an arc's tangent, in units of its radius.
+    let tangents: Vec<f64> = corners
+        .windows(3)
+        .map(|c| {
+            let (d1, d2) = (c[1] - c[0], c[2] - c[1]);
+            (0.5 * cross(d2, d1).atan2(d1.dot(d2))).tan().max(0.0)
+        })
+        .collect();
+    let of_face = |i: usize| (corners[i + 1] - corners[i]).length();
+    let fits = (1..tangents.len()).map(|i| of_face(i) / (tangents[i - 1] + tangents[i]));
+    let least = fits.fold(f64::INFINITY, f64::min);
+    if least < 1.0 { least } else { 0.0 }
 }
 
 /// A block on the ground, or a trench in it.

@@ -2,7 +2,7 @@
 
 use super::super::OwnContact;
 use super::curve::Curve;
-use super::grounds::Ground;
+use super::grounds::{Ground, largest_radius};
 use super::judge::Judge;
 use super::scene::{Scene, cases};
 use crate::contact::Contact;
@@ -245,17 +245,23 @@ fn a_part_leaves_the_ground_along_its_contacts() {
 /// The contact of a polygon with a step of 0.1 m, whose foot is the origin.
 fn polygon_at_step(corners: &[[f64; 2]]) -> OwnContact {
     let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.1], [1.0, 0.1]].map(|[x, y]| Vector::new(x, y));
+    let corners: Vec<Vector> = corners.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+    polygon_on(&step, 0.0, &corners)
+}
+
+/// The contact of a polygon with a ground whose edges have this radius [m].
+fn polygon_on(ground: &[Vector], radius: f64, corners: &[Vector]) -> OwnContact {
     let part = Part {
         kind: BodyKind::Belly,
         shape: Shape::Polygon {
-            corners: corners.iter().map(|[x, y]| Vector::new(*x, *y)).collect(),
+            corners: corners.to_vec(),
         },
         drive: None,
         friction_limit: f64::INFINITY,
         lane: 0,
         mount: Mount::Chassis,
     };
-    OwnContact::new(&[part], &[Ground::new(&step, 0.0).unwrap().profile])
+    OwnContact::new(&[part], &[Ground::new(ground, radius).unwrap().profile])
 }
 
 #[test]
@@ -288,6 +294,60 @@ fn a_block_that_lies_on_a_step_bears_with_both_ends() {
             let pose = Pose::from_parts(Vector::new(0.5, 0.1 - depth), Rotation::new(angle));
             contact.find(pose, &Running::default(), 1e-3, &mut contacts);
             assert_eq!(contacts.len(), 2, "{angle} {depth} {contacts:?}");
+        }
+    }
+}
+
+/// Behind a block and before one, between two slopes, and before a slope that has none.
+#[test]
+fn a_tip_at_the_foot_of_an_arc_bears_on_the_arc_and_on_the_ground_beside_it() {
+    let ([x, y], diagonal) = ([Vector::X, Vector::Y], Vector::ONE.normalize());
+    let grounds: [(&[[f64; 2]], [Vector; 2]); 4] = [
+        (&[[-1.0, 0.06], [0.0, 0.06], [0.0, 0.0], [1.0, 0.0]], [x, y]),
+        (
+            &[[-1.0, 0.0], [0.0, 0.0], [0.0, 0.06], [1.0, 0.06]],
+            [y, -x],
+        ),
+        (
+            &[
+                [-1.0, 0.06],
+                [-0.06, 0.06],
+                [0.0, 0.0],
+                [0.06, 0.06],
+                [1.0, 0.06],
+            ],
+            [diagonal, Vector::new(-diagonal.x, diagonal.y)],
+        ),
+        (
+            &[[-1.0, 0.06], [-0.06, 0.06], [0.0, 0.0], [1.0, 0.0]],
+            [diagonal, y],
+        ),
+    ];
+    for (points, normals) in grounds {
+        let corners: Vec<Vector> = points.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
+        let up = (normals[0] + normals[1]).normalize();
+        let needle = [
+            Vector::ZERO,
+            up * 0.1 + left_of(up) * -0.001,
+            up * 0.1 + left_of(up) * 0.001,
+        ];
+        for short in [0.0, 1e-13, 1e-11, 1e-9, 1e-6, 1e-3] {
+            let radius = largest_radius(&corners) * (1.0 - short);
+            let contact = polygon_on(&corners, radius, &needle);
+            for (a, b) in [(1e-9, 1e-9), (1e-6, 1e-4), (1e-4, 1e-6), (3e-4, 3e-4)] {
+                let place = -(normals[0] * a + normals[1] * b);
+                let mut contacts = Vec::new();
+                let pose = Pose::from_translation(place);
+                contact.find(pose, &Running::default(), 1e-3, &mut contacts);
+                for normal in normals {
+                    let is_it = |c: &Contact| {
+                        (c.normal - normal).length() < 1e-5
+                            && (c.distance - place.dot(normal)).abs() < 1e-8
+                    };
+                    let told = format!("{points:?} {short} {a} {b} {normal} {contacts:?}");
+                    assert!(contacts.iter().any(is_it), "{told}");
+                }
+            }
         }
     }
 }

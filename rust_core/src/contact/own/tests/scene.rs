@@ -35,7 +35,9 @@ impl Scene {
     /// A part that does not touch the ground, but is near some of it.
     pub(super) fn random(number: usize, draw: &mut Draw) -> Self {
         let name = format!("scene {number} of {:#x}", draw.0);
-        let ground = Ground::random(draw.below(grounds::KINDS), draw);
+        let left = [0.0, 1e-11, 1e-8, 1e-5];
+        let left = (number % 3 == 2).then(|| left[number / 3 % left.len()]);
+        let ground = Ground::random(draw.below(grounds::KINDS), left, draw);
         let outline = Outline::random(draw.below(outlines::KINDS), draw);
         let contact = OwnContact::new(from_ref(&outline.part), from_ref(&ground.profile));
         // On a random feature other than the end ones, or on the flat beside it.
