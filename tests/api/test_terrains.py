@@ -87,6 +87,24 @@ def test_a_half_round_is_half_a_circle(radius: float) -> None:
     assert len(x) > 180
 
 
+@pytest.mark.parametrize("size", [0.02, 0.04, 0.06, 0.08])
+def test_an_arc_may_take_up_all_of_a_slope(size: float) -> None:
+    corners = [[-5.0, 0.0], [0.0, 0.0], [size, -size], [2.0 * size, 0.0], [5.0, 0.0]]
+    largest = size * math.sqrt(2.0) / math.tan(0.125 * math.pi)
+    made = ground(c2d.terrains.from_points(corners, goal=2.0 * size, edge_radius=largest))
+    points = made["lanes"][0][1]
+    assert points[:, 1].min() == -size
+    assert len(made["edges"]["x"]) == 3
+
+
+def test_an_edge_radius_below_a_nanometre_is_a_sharp_edge() -> None:
+    sharp, rounded = (
+        ground(c2d.terrains.barrier(0.05, 0.1, edge_radius=radius)) for radius in (0.0, 9e-10)
+    )
+    assert np.array_equal(sharp["lanes"][0][1], rounded["lanes"][0][1])
+    assert not rounded["edges"]["radius"].any()
+
+
 def test_a_knife_edge_is_a_thin_barrier() -> None:
     assert c2d.terrains.knife_edge(0.05) == c2d.terrains.barrier(0.05, 0.01)
     thinner = c2d.terrains.knife_edge(0.05, thickness=0.004, edge_radius=0.002, friction=0.5)

@@ -136,6 +136,8 @@ impl Profile {
 
     /// Walks along the corners and replaces each convex one by an arc of this radius.
     fn round(&mut self, path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
+        // The facets of a smaller arc would have no length.
+        let radius = if radius < COLLINEAR { 0.0 } else { radius };
         if radius > 0.0 {
             check_facets(path, corners, radius)?;
         }
@@ -162,7 +164,7 @@ impl Profile {
                 (behind - corner).length(),
             );
             let room = to_last.min(to_next);
-            if tangent > room * (1.0 + 1e-12) {
+            if rounded && tangent > room * (1.0 + 1e-12) {
                 let rule = format!(
                     "must fit the edge at ({}, {}), whose arc needs {tangent} m of {room} m",
                     corner.x, corner.y
