@@ -109,10 +109,12 @@ class ArgumentError(ScenarioError, TypeError):
 class ScenarioWarning(UserWarning):
     """A scenario is legal but unlikely to be what was meant; it is simulated as it is.
 
+    Also if a run sank deeper into the ground than the softness of its contacts explains.
+
     Parameters
     ----------
     path : str
-        Dotted path of the field, such as ``terrain.height``.
+        Dotted path of the field, such as ``terrain.height``, or the metric ``max_penetration``.
     value : object
         The value found there.
     reason : str

@@ -109,7 +109,10 @@ mod _core {
             return Err(signal);
         }
         match result {
-            Some((_, Ok(run))) => convert::run(py, run),
+            Some((_, Ok(run))) => {
+                errors::warn(py, &run.doubts)?;
+                convert::run(py, run)
+            }
             Some((_, Err(error))) => Err(errors::to_python(error)),
             None => Err(errors::internal("the run ended without a result")),
         }
@@ -145,10 +148,13 @@ mod _core {
             .iter()
             .map(|passed| passed.checked.clone())
             .collect();
+        let mut doubts = Vec::new();
         let interrupted = run_all(py, scenarios, threads, record, |py, finished| {
             if finished.is_empty() {
                 return Ok(());
             }
+            let runs = finished.iter().filter_map(|(_, run)| run.as_ref().ok());
+            doubts.extend(runs.flat_map(|run| run.doubts.iter().cloned()));
             let list = PyList::empty(py);
             for (place, result) in finished {
                 let converted = match result {
@@ -161,6 +167,7 @@ mod _core {
             }
             take.call1(py, (list,)).map(|_| ())
         })?;
+        errors::warn(py, &doubts)?;
         match interrupted {
             // After Ctrl-C, finished runs are kept; any other exception of a callback is passed on unchanged.
             Some(signal) if !signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) => {

@@ -196,6 +196,45 @@ def test_a_call_tells_a_doubt_once_at_the_line_of_the_caller(name: str) -> None:
     assert doubt.path == "terrain.height"
 
 
+SUNK = Scenario(
+    ROBOT,
+    c2d.terrains.flat(),
+    gravity=20.0,
+    drive=c2d.Drive(speed=0.0),
+    duration=2.0,
+    solver=c2d.Solver(max_push_speed=1e-6, contact_damping_ratio=0.01, contact_frequency=200.0),
+)
+"""Contacts that may not push it out again."""
+
+
+def test_a_run_that_sank_deeper_than_its_softness_explains_is_doubted() -> None:
+    runs = []
+    (doubt,) = doubts(lambda: runs.append(c2d.simulate(SUNK)))
+    assert doubt.path == "max_penetration"
+    assert doubt.value == runs[0].metrics["max_penetration"] > 2e-3
+    assert "max_push_speed" in doubt.reason
+    for call in (
+        lambda: c2d.simulate_many([SUNK, SUNK]),
+        lambda: c2d.sweep(SUNK, {"gravity": [20.0, 21.0]}, progress=False),
+    ):
+        (doubt,) = doubts(call)
+        assert doubt.path == "max_penetration"
+
+
+def test_ground_inside_a_track_that_is_closed_in_a_run_is_no_sinking() -> None:
+    wheels = ROBOT.with_track(c2d.LineOfWheels(2))
+    run = c2d.simulate(wheels, c2d.terrains.knife_edge(0.1), duration=8.0)
+    assert run.outcome is c2d.Outcome.SEIZED
+    closed = run.branch(at=run.metrics["time"], track="closed")
+    # The dent heals where contacts find it; the outline alone is 30 mm deep.
+    assert closed.metrics["max_penetration"] < 0.01
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_a_run_of_what_is_usual_is_not_doubted(name: str) -> None:
+    assert not doubts(lambda: c2d.simulate(VARIANTS[name], record="summary"))
+
+
 def test_what_only_reads_and_writes_tells_no_doubt() -> None:
     def read_and_write() -> None:
         scenario = Scenario.from_json(HIGH.to_json()).replace({"duration": 0.01})

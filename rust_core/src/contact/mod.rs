@@ -3,6 +3,7 @@
 //! The equations: docs/physics.md, "Contacts".
 
 mod dents;
+mod depth;
 mod finder;
 mod gear;
 mod hull;
@@ -20,6 +21,7 @@ use crate::robot::Model;
 use crate::terrain::Profile;
 
 pub(crate) use dents::Dents;
+pub(crate) use depth::depth;
 pub(crate) use finder::ContactFinder;
 pub use intrusion::Intrusion;
 pub(crate) use intrusion::TrackEnvelope;

@@ -10,6 +10,7 @@ mod poses;
 mod record;
 mod simulate;
 mod simulation;
+mod sinkage;
 mod tip;
 mod trace;
 mod trials;

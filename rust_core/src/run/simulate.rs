@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::contact_table::ContactTable;
 use super::record::Record;
 use super::simulation::SAME_TIME;
+use super::sinkage::Sinkage;
 use super::trace::{Recorder, Trace};
 use super::trials::{self, EscapeForce};
 use super::{Checked, Metrics, Simulation, budget};
@@ -13,7 +14,7 @@ use crate::error::Error;
 use crate::limits::Cancel;
 use crate::limits::memory::Budget;
 use crate::observe::{Event, Outcome};
-use crate::scenario::Scenario;
+use crate::scenario::{Doubt, Scenario};
 use crate::terrain::Edge;
 
 /// The results of a run.
@@ -25,6 +26,10 @@ pub struct Run {
     pub diagnosis: Option<Diagnosis>,
     /// Figures of the whole run.
     pub metrics: Metrics,
+    /// [m] How deep the robot was in the ground, by its outline alone, at some instants.
+    pub depth: f64,
+    /// What in it is hardly right.
+    pub doubts: Vec<Doubt>,
     /// History, if recorded.
     pub trace: Trace,
     /// Contacts, if recorded.
@@ -204,8 +209,10 @@ fn advance(
         .history
         .then(|| Recorder::new(simulation, record, budget));
     let mut recorder = recorder.transpose()?;
+    let mut sinkage = Sinkage::from(simulation);
     while simulation.time() < end && !simulation.is_over() {
         simulation.step_until(end)?;
+        sinkage.step(simulation);
         if let Some(recorder) = &mut recorder {
             recorder.step(simulation)?;
         }
@@ -217,11 +224,18 @@ fn advance(
     let diagnosis = trials::judge(simulation, record.trials, cancel)?;
     let ended = simulation.monitor().ended_as().unwrap_or(Outcome::TimedOut);
     let outcome = diagnosis.as_ref().map_or(ended, |found| found.outcome);
-    let metrics = Metrics::of(simulation, &start, &events);
+    let mut metrics = Metrics::of(simulation, &start, &events);
+    let doubts = Vec::from_iter(sinkage.doubt(simulation));
+    // Where contacts were not found they do not tell how deep it was.
+    for doubt in &doubts {
+        metrics.max_penetration = metrics.max_penetration.max(doubt.value);
+    }
     Ok(Run {
         outcome,
         diagnosis,
         metrics,
+        depth: sinkage.deepest,
+        doubts,
         trace,
         contacts,
         edges: simulation.ground().edges(),

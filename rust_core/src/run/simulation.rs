@@ -29,9 +29,7 @@ use crate::diagnosis::{self, Balance, Diagnosis, Scene};
 use crate::dynamics::{ChainReading, DriveState, Dynamics, LoadedContact, Shoe, State};
 use crate::engine::EngineWorld;
 use crate::error::Error;
-#[cfg(test)]
-use crate::geometry::Pose;
-use crate::geometry::Vector;
+use crate::geometry::{Pose, Vector};
 use crate::observe::{Event, Monitor, Reading};
 use crate::robot::{BodyKind, Model, Running, start_position};
 use crate::scenario::{Engine, Scenario};
@@ -191,8 +189,12 @@ impl Simulation {
         running
     }
 
+    /// The robot as it is simulated.
+    pub(crate) fn model(&self) -> &Model {
+        self.dynamics.model()
+    }
+
     /// The robot, the current positions of its moving parts, and the pose of its chassis.
-    #[cfg(test)]
     pub(crate) fn placed(&self) -> (&Model, Running, Pose) {
         let model = self.dynamics.model();
         (model, self.running(), self.state.pose(model))

@@ -34,6 +34,7 @@ mod repeat;
 mod robustness;
 mod segmental;
 mod seizure;
+mod sinkage;
 mod slopes;
 mod snapshots;
 mod stops;
