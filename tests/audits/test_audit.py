@@ -191,6 +191,18 @@ def test_what_a_user_says_is_unknown_counts() -> None:
     assert "unknown_friction" not in found.table
 
 
+@pytest.mark.parametrize(
+    ("unknown", "many"),
+    [
+        ({"robot.drivetrain.max_torque": c2d.uniform(3.0, 6.0)}, "2 robots, 1 run each"),
+        ({"terrain.friction": c2d.uniform(0.5, 1.0)}, "2 floors, 1 run each"),
+    ],
+)
+def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
+    few = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repair=False, **QUIET)
+    assert f"Verdicts: {many}" in str(few)
+
+
 def test_terrains_of_a_users_own_keep_their_friction() -> None:
     found = c2d.audit(SEIZING, STEP, samples=2, repeats=1, repair=False, **QUIET)
     assert "terrain.friction" not in found.unknown

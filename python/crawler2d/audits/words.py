@@ -86,12 +86,20 @@ def population(audit: Audited) -> str:
     """Say over how many runs the rates are rates, and how fast it drove."""
     samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
     each = "1 run" if repeats == 1 else f"{repeats} runs"
-    many = f"{samples} robots on floors, {each} each" if audit.unknown else f"{samples} runs"
+    many = f"{samples} {_drawn(audit)}, {each} each" if audit.unknown else f"{samples} runs"
     said = f"{many}, {driven(audit.table, audit.vary)}; intervals of 95 %"
     least = least_samples()
     if samples < least:
         said += f'; "does not seize" takes {least} or more'
     return said
+
+
+def _drawn(audit: Audited) -> str:
+    """Name what is another one in each sample: robots, floors, or both."""
+    on_floors = {path.startswith("terrain.") for path in audit.unknown}
+    if on_floors == {True}:
+        return "floors"
+    return "robots on floors" if True in on_floors else "robots"
 
 
 def driven(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
