@@ -17,8 +17,11 @@ __all__ = ["short_name", "stop_columns"]
 Column = tuple[type, str, list[Any]]
 
 
-_NEEDED = ("closed track", "closed track, clear of the ground")
-"""Trials that may decide the outcome."""
+_NEEDED = (
+    *("closed track", "closed track, clear of the ground", "belt"),
+    *("belt, from the start", "closed track, from the start"),
+)
+"""Trials of every jam."""
 
 
 def short_name(trial: str) -> str:
@@ -35,8 +38,7 @@ def short_name(trial: str) -> str:
 def stop_columns(why: Sequence[Diagnosis | None], asked: Sequence[str] = ()) -> dict[str, Column]:
     """Kind, unit and values of each column, by name; for runs that did not stop they are empty.
 
-    Trials that were asked for, or may decide the outcome, have three columns each, named after
-    them.
+    Trials that were asked for, and those of every jam, have three columns each, named after them.
     """
 
     def of(name: str, empty: Any) -> list[Any]:
