@@ -202,8 +202,11 @@ def test_a_stop_that_no_belt_gets_past_says_so(belt: float, closed: float, said:
     assert said in str(found)
     assert found.reached_by_belt is (belt >= 0.0)
     assert made().reached_by_belt is None
-    past = made(trials=(tried("belt, from the start", 3.0),))
-    assert "No belt" not in str(past)
+    for past in (
+        tried("belt, from the start", 3.0),
+        tried("belt, from the start", outcome=OUT.TIPPED_OVER, distance=0.2),
+    ):
+        assert "No belt" not in str(made(trials=(past,)))
 
 
 @pytest.mark.parametrize(

@@ -169,8 +169,9 @@ class Claims:
         starts = ("belt from the start", "closed track from the start")
         runs = [c2d.simulate(self.variant(change)) for change in starts]
         farthest = max(self.ahead(run) for run in runs)
-        reached = farthest >= 0.0 if self.beyond.startswith("got past") else farthest < 0.0
-        return reached and not any(map(self.gets_away, runs))
+        if self.beyond.startswith("came this far"):
+            return farthest < 0.0
+        return 0.0 <= farthest <= self.run.scenario.criteria.escape_distance
 
     def went(self, change: str, came: str) -> bool | None:
         counted = re.search(r" \((\d) of (\d) times free\)$", came)

@@ -109,11 +109,17 @@ def _goes_on(d: Findings) -> str:
 
 
 def _beyond_belts(d: Findings) -> str:
-    """Say so if no belt that was tried from the start got past the stop, or even came to it."""
+    """Say so if no belt that was tried from the start came to the stop, or none got past it."""
     starts = [tried for tried in d.trials if tried.is_from_the_start]
-    if not starts or any(tried.freed for tried in starts):
+    if not starts or any(map(_is_past, starts)):
         return ""
     return f". No belt {'got past here' if d.reached_by_belt else 'came this far'} from the start"
+
+
+def _is_past(tried: Tried) -> bool:
+    """Whether a belt got past the stop, be it to tip over farther on."""
+    is_lost = tried.outcome in (Outcome.TIPPED_OVER, Outcome.LEFT_TERRAIN)
+    return tried.freed or (is_lost and tried.distance > 0.0)
 
 
 def _came(d: Findings, tried: Tried) -> str:
