@@ -167,6 +167,12 @@ def test_lanes_that_are_alike_give_the_rates_of_one(
     assert low <= 0.0 <= high, f"{one} and {two} of 60"
 
 
+def test_a_lane_of_two_lanes_is_refused_where_it_is_given() -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        c2d.terrains.lanes(c2d.terrains.flat(), c2d.terrains.diagonal_barrier(0.1))  # type: ignore[arg-type]
+    assert caught.value.path == "terrain.right"
+
+
 @pytest.mark.parametrize(
     ("terrain", "path"),
     [
@@ -177,13 +183,6 @@ def test_lanes_that_are_alike_give_the_rates_of_one(
         (c2d.terrains.random_stepfield(1, pattern="steep"), "terrain.pattern"),  # type: ignore[arg-type]
         (c2d.terrains.random_stepfield(1, edge_radius=0.2), "terrain.edge_radius"),
         (c2d.terrains.stepfield_with_barrier(1, yaw=math.nan), "terrain.barrier_yaw"),
-        (
-            c2d.terrains.lanes(
-                c2d.terrains.flat(),
-                c2d.terrains.diagonal_barrier(0.1),  # type: ignore[arg-type]
-            ),
-            "terrain.right",
-        ),
         (
             c2d.terrains.lanes(
                 c2d.terrains.flat(),
