@@ -49,11 +49,11 @@ STOPS: dict[str, tuple[c2d.Robot, Any]] = {
 SAID = {
     "straddled": "seized between wheels 1 and 2: the ground at x = 0.000 m, y = 0.100 m stands",
     "undercut": "seized between wheels 1 and 2: the ground at x =",
-    "on its belly": "hung up: the belly carries 59 % of the supporting force. Tried:",
+    "on its belly": "hung up: the belly carries 59 % of the supporting force at x = ",
     "interlocked": "stalled: the ground at x = 0.000 m, y = 0.067 m stands",
     "slipping": "slipping: the track slips at 0.40 m/s. Tried:",
     "stalled": "stalled: the motors are at their torque limit. Tried:",
-    "hung up": "hung up: the belly carries 100 % of the supporting force. Tried:",
+    "hung up": "hung up: the belly carries 100 % of the supporting force at x = ",
     "cycling": "cycling",
 }
 

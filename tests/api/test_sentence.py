@@ -15,6 +15,8 @@ CONTACTS = {
     "body": [2, 1, 0],
     "body_kind": [0, 0, 0],
     "edge": [1, 1, -1],
+    "x": [0.61, 0.6, 0.5],
+    "y": [0.1, 0.1, 0.0],
     "normal_x": [0.0, 0.0, 0.0],
     "normal_y": [1.0, 1.0, 1.0],
     "normal_force": [150.0, 40.0, 60.0],
@@ -355,25 +357,30 @@ def test_a_stop_without_ground_inside_is_told_by_motors_and_surfaces(
 @pytest.mark.parametrize(
     ("angle", "normal", "side", "said"),
     [
-        (0.1, (0.0, 1.0), "underside", "hung up: the belly carries 40 % of the supporting force"),
+        (
+            0.1,
+            (0.0, 1.0),
+            "underside",
+            "hung up: the belly carries 40 % of the supporting force{AT}",
+        ),
         (
             1.05,
             (0.0, 1.0),
             "tail",
-            "hung up on the tail of its hull: the tail carries 40 % of the supporting force",
+            "hung up on the tail of its hull: the tail carries 40 % of the supporting force{AT}",
         ),
         (
             -1.05,
             (0.0, 1.0),
             "nose",
-            "hung up on the nose of its hull: the nose carries 40 % of the supporting force",
+            "hung up on the nose of its hull: the nose carries 40 % of the supporting force{AT}",
         ),
         # On an edge, a steep robot lies on its underside all the same.
         (
             1.05,
             (-0.87, 0.5),
             "underside",
-            "hung up: the belly carries 40 % of the supporting force",
+            "hung up: the belly carries 40 % of the supporting force{AT}",
         ),
     ],
 )
@@ -397,7 +404,7 @@ def test_a_robot_that_stands_on_its_tail_is_told_from_one_that_lies_on_its_belly
         jammed=False,
     )
     assert hung.belly_side == side
-    assert str(hung) == said
+    assert str(hung) == said.format(AT=" at x = 0.610 m, y = 0.100 m")
     assert made().belly_side == ""
 
 

@@ -244,7 +244,7 @@ def test_a_diff_is_shown_with_its_repair(found: c2d.Audit, page: Page) -> None:
 
 def test_how_it_was_made_names_runs_seed_and_command(of_file: c2d.Audit, file_page: Page) -> None:
     rows = {row[0]: row[1] for row in file_page.rows("how it was made")}
-    assert rows["runs behind the verdicts"].startswith("48: 12 robots on floors, 1 run each")
+    assert rows["runs behind the verdicts"].startswith("48: 12 robots, 1 run each")
     assert rows["seed of the draws"] == "3"
     assert c2d.__version__ in rows["crawler2d"]
     *_, (_, again) = file_page.all("pre")

@@ -73,11 +73,10 @@ def test_the_drawing_of_a_card_has_the_outline_of_the_belt(robot: c2d.Robot) -> 
 
 
 def test_what_breaks_a_rule_is_shown_as_text() -> None:
-    for fields in ({"mass": -1.0}, {"track": "belt"}, {"outline": None}, {"name": 3}):
-        broken = dataclasses.replace(ROBOT, **fields)
-        assert broken._repr_html_() is None
-        assert c2d.Scenario(broken, c2d.terrains.flat())._repr_html_() is None
-        assert repr(broken).startswith("Robot(")
+    broken = dataclasses.replace(ROBOT, mass=-1.0)
+    assert broken._repr_html_() is None
+    assert c2d.Scenario(broken, c2d.terrains.flat())._repr_html_() is None
+    assert repr(broken).startswith("Robot(")
 
 
 def test_a_hostile_name_stays_a_name() -> None:

@@ -166,8 +166,6 @@ def test_a_broken_robot_is_refused_before_there_is_a_figure() -> None:
     broken = dataclasses.replace(ROBOT, mass=-1.0)
     assert refused(broken.plot).path == "robot.mass"
     assert refused(c2d.Scenario(broken, c2d.terrains.flat()).plot).path == "robot.mass"
-    nonsense = dataclasses.replace(ROBOT, track="belt")  # type: ignore[arg-type]
-    assert refused(nonsense.plot).path == "robot.track"
     assert plt.get_fignums() == []
 
 

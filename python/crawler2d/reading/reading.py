@@ -89,6 +89,7 @@ class Reading:
             f" friction {self.friction:.3g} ({self.tree.format}, {self.tree.file})"
         )
 
+    @takes_keywords
     def friction_on(self, ground: float) -> float:
         """[-] Return the friction with ground of another coefficient, by the rule of `engine`."""
         _, friction, _ = assembled(

@@ -256,7 +256,13 @@ def _belly(d: Findings) -> str:
         return ""
     side = d.belly_side
     what = f"the {side}" if side in ("tail", "nose") else "the belly"
-    return f"{what} carries {_percent(d.belly_share)} of the supporting force"
+    said = f"{what} carries {_percent(d.belly_share)} of the supporting force"
+    on_it = d.contacts["body_kind"] == BodyKind.BELLY
+    if d.outcome != Outcome.HUNG_UP or not on_it.any():
+        return said
+    force = d.contacts["normal_force"][on_it]
+    x, y = (np.average(d.contacts[name][on_it], weights=force) for name in ("x", "y"))
+    return f"{said} at x = {x:z.3f} m, y = {y:z.3f} m"
 
 
 def _drives(d: Findings) -> str:

@@ -14,7 +14,7 @@ use rapier2d_f64::prelude::SharedShape;
 use super::hull::HullContact;
 use super::lane::Lane;
 use super::{Contact, without_redundant};
-use crate::geometry::{Pose, Vector};
+use crate::geometry::{Gear, Pose, Vector};
 use crate::robot::{Part, Running, Shape};
 use crate::terrain::Profile;
 
@@ -146,11 +146,19 @@ impl ReferenceContact {
     }
 }
 
+/// [m] Grousers are no thinner to the engine, to which a polygon as thin as a rounding error is none.
+const THINNEST: f64 = 1e-9;
+
 /// The convex pieces of a part in its own frame; hulls use our own contacts and have none.
 pub(crate) fn solids_of(part: &Part) -> Vec<SharedShape> {
     match &part.shape {
         Shape::Disc { radius, .. } => vec![SharedShape::ball(*radius)],
         Shape::Gear { gear, .. } => {
+            let gear = Gear {
+                tip_thickness: gear.tip_thickness.max(THINNEST),
+                base_thickness: gear.base_thickness.max(THINNEST),
+                ..*gear
+            };
             let root = SharedShape::ball(gear.root_radius);
             let grousers = gear
                 .directions()

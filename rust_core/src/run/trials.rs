@@ -59,6 +59,11 @@ pub(super) fn judge(
                 };
             }
         }
+        if found.symptom == Outcome::HungUp && !found.jammed {
+            // A closed track may cover the belly.
+            bench.frees(Change::ClosedTrack)?;
+            bench.frees(Change::NoBelly)?;
+        }
         for change in wanted.changes() {
             bench.frees(change)?;
         }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from crawler2d.common.markup import escaped, table
 from crawler2d.pictures.page.replay import replay_page
-from crawler2d.pictures.page.words import all_figures, heading, sentence
+from crawler2d.pictures.page.words import all_figures, sentence
 
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
@@ -33,7 +33,7 @@ def embedded(run: Record) -> str:
     # Only scripts are allowed: the page can reach neither the notebook nor the network.
     return (
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" '
-        f'title="{escaped(heading(run))}" '
+        f'title="{escaped(run.title)}" '
         f'style="width: 100%; height: {_FRAME_HEIGHT}px; border: 0"></iframe>'
     )
 
@@ -44,6 +44,4 @@ def _summary(run: Record) -> str:
     except Exception:
         why = ""
     note = f"<p>{escaped(why)}</p>" if why else ""
-    return (
-        f"<div><p><strong>{escaped(heading(run))}</strong></p>{note}{table(all_figures(run))}</div>"
-    )
+    return f"<div><p><strong>{escaped(run.title)}</strong></p>{note}{table(all_figures(run))}</div>"

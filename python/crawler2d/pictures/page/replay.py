@@ -18,7 +18,7 @@ from crawler2d.pictures.page.parts import (
     replay_style,
 )
 from crawler2d.pictures.page.recording import recording
-from crawler2d.pictures.page.words import all_figures, figures, heading, sentence, verdict
+from crawler2d.pictures.page.words import all_figures, figures, sentence, verdict
 
 if TYPE_CHECKING:
     from crawler2d.results.findings import Mechanism
@@ -51,7 +51,7 @@ def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str
         `replay_style` and `replay_script`.
     """
     data = recording(run, time)
-    title = heading(run)
+    title = run.title
     subject, _, ending = title.rpartition(": ")
     outcome = verdict(run)
     mechanism = [] if run.mechanism is None else [run.mechanism]

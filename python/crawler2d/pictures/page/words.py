@@ -10,7 +10,7 @@ from crawler2d.common.units import METRICS
 if TYPE_CHECKING:
     from crawler2d.results.record import Record
 
-__all__ = ["all_figures", "figures", "heading", "sentence", "verdict"]
+__all__ = ["all_figures", "figures", "sentence", "verdict"]
 
 # metric, label, factor from the metric's unit, unit shown, decimals
 _FIGURES = (
@@ -27,14 +27,6 @@ _FIGURES = (
 )
 # Shown only if not zero.
 _RARE = {"time_to_clear", "stopped_time", "intrusion_depth", "intrusion_force", "min_angle"}
-
-
-def heading(run: Record) -> str:
-    """Say what ran and how it ended; see `Run.title`."""
-    try:
-        return run.title
-    except Exception:  # a rejected scenario may hold anything
-        return "run"
 
 
 def sentence(run: Record) -> str:

@@ -77,10 +77,10 @@ fn ground_that_only_the_belly_rests_on_jams_nothing_whatever_lane_the_belly_has(
         },
     ] {
         scenario.terrain = terrain;
-        let found = why(&scenario, Wanted::of([Change::NoBelly]));
+        let found = why(&scenario, Wanted::default());
         assert!(!found.jammed && found.intrusion.is_none());
         assert_eq!(found.outcome, Outcome::HungUp);
-        assert_eq!(freed(&found), ["no belly"]);
+        assert_eq!(freed(&found), ["closed track", "no belly"]);
     }
 }
 
