@@ -35,7 +35,8 @@ ODD_SHARE = 0.02
 MOST = 500
 """[MB] For all files, one after the other, and for any child with its imports."""
 
-TRUSTED: dict[str, Any] = {"trusted": True, "missing": "leave_out", "mesh": "leave_out"}
+LENIENT: dict[str, Any] = {"missing": "leave_out", "mesh": "leave_out"}
+TRUST = pytest.mark.parametrize("trusted", [True, False])
 LOOP = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <link name="${max(range(10**12))}"/></robot>"""
 
@@ -172,9 +173,10 @@ def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
     check(go_through(tmp_path, cases("CHILDREN", 20), MJCF))
 
 
-def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path) -> None:
+@TRUST
+def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
-    check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, **TRUSTED))
+    check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, trusted=trusted, **LENIENT))
 
 
 @pytest.mark.soak
@@ -186,10 +188,12 @@ def test_20000_mutated_mjcf_files_are_read_or_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.soak
-def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path) -> None:
+@TRUST
+def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
+    how = {"trusted": trusted, **LENIENT}
     with StandingChild("crawler2d.reading.xacro_child") as standing:
-        check(go_through(tmp_path, cases("XACRO", 20_000), XACRO, standing, **TRUSTED))
+        check(go_through(tmp_path, cases("XACRO", 20_000), XACRO, standing, **how))
 
 
 def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None:

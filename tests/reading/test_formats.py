@@ -161,18 +161,13 @@ def test_of_several_models_in_a_world_one_must_be_named(tmp_path: Path) -> None:
         read(tmp_path, text, "w.sdf", model="three")
 
 
-def test_xacro_is_expanded_only_if_it_is_trusted(tmp_path: Path) -> None:
-    with pytest.raises(c2d.ScenarioError, match="must be trusted, because xacro evaluates"):
-        read(tmp_path, urdf(WHEELS), "cart.xacro")
-
-
-def test_xacro_that_is_trusted_takes_arguments(tmp_path: Path) -> None:
+def test_xacro_takes_arguments(tmp_path: Path) -> None:
     pytest.importorskip("xacrodoc")
     start = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
     start += '<xacro:arg name="mass" default="8"/>'
     text = urdf(WHEELS, mass="$(arg mass)").replace('<robot name="cart">', start)
-    assert read(tmp_path, text, "cart.xacro", trusted=True).robot.mass == 12.0
-    given = read(tmp_path, text, "cart.xacro", trusted=True, arguments={"mass": "18"})
+    assert read(tmp_path, text, "cart.xacro").robot.mass == 12.0
+    given = read(tmp_path, text, "cart.xacro", arguments={"mass": "18"})
     assert given.robot.mass == 22.0
     assert "cart.xacro (expanded):" in given.sources["robot.mass"]
     assert "18" in given.text

@@ -40,7 +40,7 @@ class How:
     tolerance : float
         [m] By how much the two sides may differ in side view.
     trusted : bool
-        Whether the file may evaluate expressions.
+        Whether xacro may evaluate expressions of any kind.
     packages : mapping of str to path
         Folders of packages.
     arguments : mapping of str to str

@@ -173,7 +173,9 @@ def read_robot(
     tolerance : float
         [m] By how much the two sides may differ in side view.
     trusted : bool
-        Whether the file may evaluate expressions, as xacro does.
+        Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
+        that, only those of plain data, operators and known functions, which most files keep to, are
+        evaluated, and the file may read nothing but its packages.
     packages : mapping of str to path, optional
         Folders of the packages that ``$(find ...)``, ``package://`` and ``model://`` name. Meshes
         and includes are read from these, and from the folder or package of the file itself.

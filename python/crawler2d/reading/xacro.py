@@ -1,4 +1,4 @@
-"""Xacro as URDF text: expanded in a child process, because it evaluates expressions."""
+"""Xacro as URDF text: expanded in a child process, because its expressions may do much work."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def expanded(
     root : Element
         Of the file, for errors.
     trusted : bool
-        Whether its user trusts it: its expressions are evaluated.
+        Whether its user trusts it: Python evaluates its expressions, whatever they are.
     arguments : mapping of str to str
         Values of its ``xacro:arg``.
     leave_out : bool
@@ -47,13 +47,11 @@ def expanded(
     Raises
     ------
     ScenarioError
-        If it is not trusted, does not expand, or needs packages that are not there.
+        If it does not expand, needs packages that are not there, or is not trusted and has
+        expressions of more than plain data and known functions.
     ImportError
         If xacrodoc is missing; the message names the extra to install.
     """
-    if not trusted:
-        rule = "must be trusted, because xacro evaluates expressions: trusted=True"
-        root.refuse(f"trusted={trusted}", rule)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -62,6 +60,7 @@ def expanded(
         "text": text,
         "file": root.where.file,
         "files": files.plain,
+        "trusted": trusted,
         "arguments": dict(arguments),
         "leave_out": leave_out,
     }

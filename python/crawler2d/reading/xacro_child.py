@@ -1,4 +1,4 @@
-"""Expands a xacro file that its user trusts; runs in a child process."""
+"""Expands a xacro file; runs in a child process."""
 
 from __future__ import annotations
 
@@ -7,71 +7,87 @@ import errno
 import io
 import os
 import re
-from collections.abc import Callable
+from collections import ChainMap
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from types import MappingProxyType, SimpleNamespace
+from typing import IO, Any, NoReturn
+from xml.sax.saxutils import escape
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
 from crawler2d.reading.files import Files
 from crawler2d.reading.limits import serve
 
 _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
-_LOST = re.compile(r"Package not found: (\S+)")
 # What xacro says was unknown to it, or could not be evaluated.
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
+_EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
 _INCLUDE = re.compile(r"<xacro:include\b[^>]*?/>|<xacro:include\b[^>]*?>\s*</xacro:include>")
+
+_Package = Callable[[str], str | None]
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
     """Import xacrodoc, which brings xacro along and needs no ROS."""
     module = extra("xacrodoc", "models")
-    return lambda question: _expanded(module, **question)
+    xacro, arguments = extra("xacro", "models"), extra("xacro.substitution_args", "models")
+    return lambda question: _expanded(module, xacro, arguments, **question)
 
 
 def _expanded(
     module: Any,
+    xacro: Any,
+    substitution: Any,
     *,
     text: str,
     file: str,
     files: dict[str, Any],
+    trusted: bool,
     arguments: dict[str, str],
     leave_out: bool,
 ) -> dict[str, Any]:
     module.packages.update_package_cache(files["packages"])
-    builtins.open = _Door(Files(**files), file, text)  # type: ignore[assignment]
+    package = partial(_package, module)
+    door = _Door(Files(**files), file, text, package, leave_out=leave_out)
+    builtins.open = door  # type: ignore[assignment]
+    substitution._eval_find = door.find
+    if not trusted:
+        _check(xacro, substitution)
     left_out: list[str] = []
     if leave_out:
-        text = _without_missing(module, text, left_out)
+        text = _without_missing(package, text, left_out)
     try:
         document = module.XacroDoc.from_string(text, subargs=arguments, resolve_packages=False)
         return {"text": document.to_urdf_string(), "left_out": left_out}
     except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
-        if refusal := _refusal(error):
+        refusal, at = _refusal(error)
+        if isinstance(refusal, NotAllowed):
+            place = door.place([f"${{{at}}}", at, refusal.expression], first=_file_of(xacro))
+            rule = f"{refusal.rule}, or be trusted: trusted=True lets it through"
+            raise ScenarioError(f"{place}: {at}", refusal.found, rule) from None
+        if refusal:
             raise refusal from None
         said = " ".join(str(error).split()) or type(error).__name__
-        if lost := _LOST.search(said):
-            names = [name for name in _FIND.findall(text) if not _known(module, name)]
-            rule = "must have its packages: packages={name: folder} says where each is"
-            if not leave_out:
-                rule += ', missing="leave_out" leaves out includes of others'
-            value = ", ".join(dict.fromkeys([*names, lost[1]]))
-            calls = [f"find {name}" for name in (lost[1], *names)]
-            raise ScenarioError(_place(file, text, calls), value, rule) from None
         rule = "must be xacro that expands"
         if left_out:
             rule += ", which may need an include that was left out: packages= says where it is"
         culprits = [part for pair in _CULPRITS.findall(said) for part in pair if part]
-        raise ScenarioError(_place(file, text, culprits), said, rule) from None
+        raise ScenarioError(door.place(culprits), said, rule) from None
 
 
 class _Door:
     """Takes the place of `open`: whatever xacro and its libraries read is read as the model is."""
 
-    def __init__(self, files: Files, file: str, text: str) -> None:
+    def __init__(
+        self, files: Files, file: str, text: str, package: _Package, *, leave_out: bool
+    ) -> None:
         self.files = files
-        self.file = file
-        self.text = text
+        self.texts = {file: text}  # of the model, and of what it includes by their paths
+        self.package = package
+        self.leave_out = leave_out
 
     def __call__(
         self, path: str | os.PathLike[str], mode: str = "r", *_: object, **__: object
@@ -80,52 +96,130 @@ class _Door:
             raise PermissionError(errno.EACCES, "must only be read", str(path))
         name = str(Path(path).absolute())
         try:
-            data = self.files.read(name, at=_place(self.file, self.text, [Path(path).name]))
+            data = self.files.read(name, at=self.place([Path(path).name]))
         except ScenarioError as error:
             if isinstance(error.__cause__, FileNotFoundError):  # an include may be optional
                 raise error.__cause__ from None
             raise
+        self.texts[name] = data.decode(errors="replace")
         return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode(), newline=None)
 
+    def place(self, words: list[str], first: str = "") -> str:
+        """Return file and line where one of some words stands first: of a file, or of them all."""
+        for path in (first, *self.texts):
+            text = self.texts.get(path, "")
+            spelled = [each for word in words if word for each in (word, escape(word))]
+            found = [text.find(word) for word in spelled if word in text]
+            if found:
+                return f"{Path(path).name}:{text.count(chr(10), 0, min(found)) + 1}"
+        return next(iter(self.texts))
 
-def _refusal(error: BaseException | None) -> ScenarioError | None:
-    """Return the refusal of a file among an error and those that it came of."""
-    while error is not None and not isinstance(error, ScenarioError):
-        error = error.__context__
-    return error
+    def find(self, name: str) -> str:
+        """Return the folder of a package."""
+        folder = self.package(name)
+        if folder is not None:
+            return folder
+        rule = "must have its packages: packages={name: folder} says where each is"
+        if not self.leave_out:
+            rule += ', missing="leave_out" leaves out includes of others'
+        others = _FIND.findall(next(iter(self.texts.values())))
+        lost = [each for each in others if self.package(each) is None]
+        place = self.place([f"find {each}" for each in (name, *lost)])
+        raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
 
 
-def _place(file: str, text: str, culprits: list[str]) -> str:
-    r"""Return file and line where one of some words stands first; without it, what it includes has.
+def _package(module: Any, name: str) -> str | None:
+    """Return the folder of a package; None if there is none."""
+    try:
+        return str(module.packages.get_path(name))
+    except ScenarioError:
+        raise
+    except Exception:  # whatever a finder raises: it is not found
+        return None
 
-    Examples
-    --------
-    >>> _place("cart.xacro", "<robot>\n<xacro:wheel/>", ["xacro:wheel"])
-    'cart.xacro:2'
+
+def _check(xacro: Any, substitution: Any) -> None:
+    """Put a checked evaluation in the place of both that xacro has; keep it from looking round."""
+    load, context = xacro.load_yaml, xacro.substitution_args_context
+    own: dict[str, Callable[..., Any]] = {
+        "load_yaml": lambda name: plain_copy(load(name)),
+        "dotify": dict,
+        "abs_filename": xacro.abs_filename_spec,
+    }
+    others: dict[str, Callable[..., Any]] = {
+        "arg": lambda name: context["arg"][name],
+        "fatal": _fatal,
+        "tokenize": _tokens,
+        **dict.fromkeys(("message", "warning", "error", "print_location"), lambda *_: ""),
+    }
+    names = {**NAMES, **own, "xacro": MappingProxyType({**own, **others})}
+
+    def in_eval(text: str, context: Mapping[str, Any]) -> str:
+        arguments = context.get("arg", {}).items()
+        values = {name: substitution.convert_value(str(value), "auto") for name, value in arguments}
+        return str(evaluated(text, ChainMap({"true": True, "false": False, **values}, names)))
+
+    def default(name: str, default: str = "") -> str:
+        return default if name not in os.environ else _refuse_environment(name)
+
+    xacro._global_symbols = names
+    xacro.safe_eval = lambda text, symbols, _=None: evaluated(text, symbols)
+    xacro.glob = SimpleNamespace(glob=_refuse_pattern)
+    substitution._eval = in_eval
+    substitution._eval_env = _refuse_environment
+    substitution._eval_optenv = default
+
+
+def _refuse_environment(name: str) -> NoReturn:
+    raise NotAllowed(name, "must ask for no environment variable")
+
+
+def _refuse_pattern(pattern: str) -> NoReturn:
+    raise NotAllowed(pattern, "must include files by their names")
+
+
+def _fatal(*words: Any) -> NoReturn:
+    raise ValueError(" ".join(map(str, words)))
+
+
+def _tokens(text: str, separators: str = ",; ", skip_empty: bool = True) -> list[str]:
+    pieces = re.split(f"[{re.escape(separators)}]", text)
+    return [piece for piece in pieces if piece or not skip_empty]
+
+
+def _refusal(error: BaseException | None) -> tuple[ScenarioError | NotAllowed | None, str]:
+    """Return the refusal among an error and those that it came of, and in which expression.
+
+    That is as it is written; what is evaluated may be made of arguments.
     """
-    found = [text.find(word) for word in culprits if word in text]
-    return f"{file}:{text.count(chr(10), 0, min(found)) + 1}" if found else file
+    written = ""
+    while error is not None and not isinstance(error, (ScenarioError, NotAllowed)):
+        stated = _EVALUATED.search(str(getattr(error, "suffix", "") or ""))
+        written = stated[1] if stated else written
+        error = error.__context__
+    if isinstance(error, NotAllowed):
+        return error, written or error.expression or error.found
+    return error, written
 
 
-def _without_missing(module: Any, text: str, left_out: list[str]) -> str:
+def _file_of(xacro: Any) -> str:
+    """Return the path of the file at work: that of the macro, or the innermost include."""
+    macros, files = xacro.macrostack or [], xacro.filestack or []
+    files = macros[-1].history[-1] if macros else files
+    return os.path.abspath(files[-1]) if files and files[-1] else ""
+
+
+def _without_missing(package: _Package, text: str, left_out: list[str]) -> str:
     """Take out the includes of packages that are not there; lines stay what they are."""
 
     def kept(include: re.Match[str]) -> str:
         for name in _FIND.findall(include[0]):
-            if not _known(module, name):
+            if package(name) is None:
                 left_out.append(" ".join(include[0].split()))
                 return "\n" * include[0].count("\n")
         return include[0]
 
     return _INCLUDE.sub(kept, text)
-
-
-def _known(module: Any, name: str) -> bool:
-    try:
-        module.packages.get_path(name)
-    except Exception:  # whatever a finder raises: it is not found
-        return False
-    return True
 
 
 if __name__ == "__main__":

@@ -67,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     reading.add_argument("--ground-friction", type=float, help="of the floor's own surface")
     reading.add_argument("--tolerance", type=float, default=TOLERANCE, help="between sides, in m")
-    reading.add_argument("--trusted", action="store_true", help="let xacro evaluate expressions")
+    reading.add_argument("--trusted", action="store_true", help="let xacro evaluate anything")
     reading.add_argument("--package", action="append", default=[], metavar="NAME=FOLDER")
     reading.add_argument("--argument", action="append", default=[], metavar="NAME=VALUE")
 
