@@ -3,14 +3,13 @@
 Whatever a model is made of is read here and nowhere else: the model itself, what it includes, its
 meshes and textures, settings in YAML, manifests of packages. A file is read if it
 
-- lies in the folder of the model, in the package round that, or in a folder that the user named:
-  one of ``packages=``, or of the variables in which ROS looks for packages. Links and ``..`` are
-  followed first, so none of them leads out;
+- lies in the folder of the model, in the package round that, in another package of its tree, or in
+  a folder that the user named: one of ``packages=``, or of the variables in which ROS and Gazebo
+  look for packages. Links and ``..`` are followed first, so none of them leads out;
 - is a regular file: a pipe may never answer, a device never end;
 - is not too large, by itself and with all others of its model.
 
-Each refusal is a `ScenarioError` that names the file, the rule and what to do. New ways of finding
-files, such as packages by their manifests, are to add to the folders here.
+Each refusal is a `ScenarioError` that names the file, the rule and what to do.
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.packages import MANIFESTS, VARIABLES, Packages, folders
 
 __all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files"]
 
@@ -33,9 +33,10 @@ LARGEST_MODEL = 4_000_000
 LARGEST_TOGETHER = 30_000_000
 """[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
 
-_SCHEME = re.compile(r"(package|model|file)://(.*)", re.DOTALL)
-_MANIFESTS = ("package.xml", "manifest.xml", "model.config")
-_SEARCHED = ("ROS_ROOT", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+_IN_PACKAGE = re.compile(
+    r"(?:(?:package|model)://([^/]*)|(?:file://)?\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
+    re.DOTALL,
+)
 _KINDS = {
     stat.S_IFDIR: "a folder",
     stat.S_IFIFO: "a pipe",
@@ -83,17 +84,22 @@ class Files:
     ) -> None:
         self._model = _real(model, "path")
         self.folder = self._model.parent
-        self._packages = {name: _real(folder, "packages") for name, folder in packages.items()}
-        searched = os.pathsep.join(os.environ.get(name, "") for name in _SEARCHED)
-        named = [_real(each, "packages") for each in searched.split(os.pathsep) if each]
-        self._roots = [_package_round(self.folder), *self._packages.values(), *named]
+        self._given = {name: _real(folder, "packages") for name, folder in packages.items()}
+        self._packages = Packages(self.folder, self._given, _read_regular)
+        named = [folder for variable in VARIABLES for folder in folders(variable)]
+        self._roots = [_package_round(self.folder), *self._given.values(), *named]
         self._left = LARGEST_TOGETHER
 
     @property
     def plain(self) -> dict[str, Any]:
         """The parameters, for another process."""
-        packages = {name: str(folder) for name, folder in self._packages.items()}
+        packages = {name: str(folder) for name, folder in self._given.items()}
         return {"model": str(self._model), "packages": packages}
+
+    @property
+    def looked(self) -> str:
+        """Where packages are looked for, for errors."""
+        return self._packages.looked
 
     def model(self) -> bytes:
         """Read the model itself; see `read`."""
@@ -105,8 +111,8 @@ class Files:
         Parameters
         ----------
         name : str
-            Relative to the folder of the model, absolute, or with ``package://``, ``model://`` or
-            ``file://``.
+            Relative to the folder of the model, absolute, or with ``package://``, ``model://``,
+            ``file://`` or ``$(find ...)``.
         at : str
             Who names it, as the path of errors.
         most : int
@@ -125,10 +131,11 @@ class Files:
             If it must not or cannot be read; the system's error, if there is one, is the cause.
         """
         path = _real(self._path(name, at), at)
-        if not any(path.is_relative_to(root) for root in self._roots):
+        inside = any(path.is_relative_to(root) for root in self._roots)
+        if not inside and not self._packages.hold(path):
             rule = (
-                "must be in the folder or package of its model, or in a folder that is named:"
-                f" packages={{name: folder}}{remedy}"
+                "must be in the folder or package of its model, in another package of its tree, or"
+                f" in a folder that is named: packages={{name: folder}}{remedy}"
             )
             raise ScenarioError(at, name, rule)
         try:
@@ -144,19 +151,24 @@ class Files:
             raise ScenarioError(at, name, f"{rule}{remedy}")
         return data
 
+    def package(self, name: str) -> Path | None:
+        """Return the folder of a package; None if there is none."""
+        return self._packages.find(name)
+
     def _path(self, name: str, at: str) -> Path:
         """Say where a file is that a model names."""
-        found = _SCHEME.fullmatch(name)
+        found = _IN_PACKAGE.fullmatch(name)
         if found is None:
-            return self.folder / name
-        kind, rest = found.groups()
-        if kind == "file":
-            return self.folder / rest
-        package, _, inside = rest.partition("/")
-        if package not in self._packages:
-            rule = "must be in a package whose folder is given: packages={name: folder}"
+            return self.folder / name.removeprefix("file://")
+        package = found[1] or found[2] or ""
+        folder = self.package(package)
+        if folder is None:
+            rule = (
+                f"must be in a package that is found in {self.looked}, or whose folder is given:"
+                " packages={name: folder}"
+            )
             raise ScenarioError(at, name, rule)
-        return self._packages[package] / inside
+        return folder / found[3].lstrip("/")
 
 
 def _read_regular(path: Path, most: int) -> bytes:
@@ -183,6 +195,6 @@ def _real(path: str | os.PathLike[str], at: str) -> Path:
 def _package_round(folder: Path) -> Path:
     """Return the innermost folder with a manifest round a folder, or else that itself."""
     for each in (folder, *folder.parents):
-        if any(os.path.exists(each / name) for name in _MANIFESTS):
+        if any(os.path.exists(each / name) for name in MANIFESTS):
             return each
     return folder

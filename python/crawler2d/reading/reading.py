@@ -174,11 +174,12 @@ def read_robot(
         [m] By how much the two sides may differ in side view.
     trusted : bool
         Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
-        that, only those of plain data, operators and known functions, which most files keep to, are
-        evaluated, and the file may read nothing but its packages.
+        that, only plain data, operators and known functions are evaluated: enough for most files.
     packages : mapping of str to path, optional
-        Folders of the packages that ``$(find ...)``, ``package://`` and ``model://`` name. Meshes
-        and includes are read from these, and from the folder or package of the file itself.
+        Folders of packages that ``$(find ...)``, ``package://`` and ``model://`` name and that are
+        not found: by ``package.xml`` or ``model.config`` in the repository round the file, or by
+        ``AMENT_PREFIX_PATH``, ``COLCON_PREFIX_PATH``, ``ROS_PACKAGE_PATH``,
+        ``GZ_SIM_RESOURCE_PATH``, ``GAZEBO_MODEL_PATH`` or ``SDF_PATH``.
     arguments : mapping of str to str, optional
         Values for the arguments of a xacro file.
 

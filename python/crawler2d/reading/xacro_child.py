@@ -9,7 +9,6 @@ import os
 import re
 from collections import ChainMap
 from collections.abc import Callable, Mapping
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import IO, Any, NoReturn
@@ -21,13 +20,11 @@ from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_co
 from crawler2d.reading.files import Files
 from crawler2d.reading.limits import serve
 
-_FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
+_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^)\s]+)\s*\)")
 # What xacro says was unknown to it, or could not be evaluated.
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
 _INCLUDE = re.compile(r"<xacro:include\b[^>]*?/>|<xacro:include\b[^>]*?>\s*</xacro:include>")
-
-_Package = Callable[[str], str | None]
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
@@ -49,16 +46,14 @@ def _expanded(
     arguments: dict[str, str],
     leave_out: bool,
 ) -> dict[str, Any]:
-    module.packages.update_package_cache(files["packages"])
-    package = partial(_package, module)
-    door = _Door(Files(**files), file, text, package, leave_out=leave_out)
+    door = _Door(Files(**files), file, text, leave_out=leave_out)
     builtins.open = door  # type: ignore[assignment]
-    substitution._eval_find = door.find
+    _find_by(door, substitution)
     if not trusted:
         _check(xacro, substitution)
     left_out: list[str] = []
     if leave_out:
-        text = _without_missing(package, text, left_out)
+        text = _without_missing(door.files, text, left_out)
     try:
         document = module.XacroDoc.from_string(text, subargs=arguments, resolve_packages=False)
         return {"text": document.to_urdf_string(), "left_out": left_out}
@@ -81,12 +76,9 @@ def _expanded(
 class _Door:
     """Takes the place of `open`: whatever xacro and its libraries read is read as the model is."""
 
-    def __init__(
-        self, files: Files, file: str, text: str, package: _Package, *, leave_out: bool
-    ) -> None:
+    def __init__(self, files: Files, file: str, text: str, *, leave_out: bool) -> None:
         self.files = files
         self.texts = {file: text}  # of the model, and of what it includes by their paths
-        self.package = package
         self.leave_out = leave_out
 
     def __call__(
@@ -116,26 +108,33 @@ class _Door:
 
     def find(self, name: str) -> str:
         """Return the folder of a package."""
-        folder = self.package(name)
+        folder = self.files.package(name)
         if folder is not None:
-            return folder
-        rule = "must have its packages: packages={name: folder} says where each is"
+            return str(folder)
+        rule = (
+            f"must have its packages, which are looked for in {self.files.looked}:"
+            " packages={name: folder} says where each is"
+        )
         if not self.leave_out:
             rule += ', missing="leave_out" leaves out includes of others'
         others = _FIND.findall(next(iter(self.texts.values())))
-        lost = [each for each in others if self.package(each) is None]
-        place = self.place([f"find {each}" for each in (name, *lost)])
+        lost = [each for each in others if self.files.package(each) is None]
+        place = self.place([f"{how} {each}" for each in (name, *lost) for how in _FINDS])
         raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
 
 
-def _package(module: Any, name: str) -> str | None:
-    """Return the folder of a package; None if there is none."""
-    try:
-        return str(module.packages.get_path(name))
-    except ScenarioError:
-        raise
-    except Exception:  # whatever a finder raises: it is not found
-        return None
+_FINDS = ("find", "find-pkg-share")
+
+
+def _find_by(door: _Door, substitution: Any) -> None:
+    """Let xacro find packages as all the rest does, also by the word of ROS 2's launch files."""
+    resolved = substitution.resolve_args
+
+    def resolve(text: str, context: Any = None, filename: Any = None) -> Any:
+        return resolved(re.sub(r"^\$\(find-pkg-share\s", "$(find ", text), context, filename)
+
+    substitution.resolve_args = resolve
+    substitution._eval_find = door.find
 
 
 def _check(xacro: Any, substitution: Any) -> None:
@@ -209,12 +208,12 @@ def _file_of(xacro: Any) -> str:
     return os.path.abspath(files[-1]) if files and files[-1] else ""
 
 
-def _without_missing(package: _Package, text: str, left_out: list[str]) -> str:
+def _without_missing(files: Files, text: str, left_out: list[str]) -> str:
     """Take out the includes of packages that are not there; lines stay what they are."""
 
     def kept(include: re.Match[str]) -> str:
         for name in _FIND.findall(include[0]):
-            if package(name) is None:
+            if files.package(name) is None:
                 left_out.append(" ".join(include[0].split()))
                 return "\n" * include[0].count("\n")
         return include[0]
