@@ -339,7 +339,7 @@ def test_a_trial_shows_where_the_robot_ended_and_hides_it_again(open_page: Open)
     run = c2d.simulate(ROBOT.with_track(ROUND), STEP, trials="all")
     page = open_page(run.to_html())
     buttons = page.locator("[data-trial]")
-    assert buttons.count() == 6
+    assert buttons.count() == 9
     before = page.locator("#scene").evaluate(CHECKSUM)
     seen = set()
     for number in range(buttons.count()):
