@@ -35,6 +35,8 @@ class Diagnosis(Findings):
         What was tried so far, and what came of it; `Run.trials` and `Run.what_if` add to it.
     freed_by : tuple of str
         Names of those that freed the robot.
+    reached_by_belt : bool or None
+        Whether a belt that was tried from the start came as far as the robot; None if none was.
     belly_side : {"", "underside", "tail", "nose"}
         Where the ground pushes against the belly: at its tail if the robot stands on that.
     jammed : bool
