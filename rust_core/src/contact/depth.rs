@@ -6,10 +6,14 @@ use crate::geometry::{Disc, Pose, Vector};
 use crate::robot::{Part, Shape};
 use crate::terrain::Profile;
 
-/// [m] How deep a part at a place is in a lane, at most; 0 above it.
+/// [m] How deep a part at a place is in a lane, at most; 0 above it, and at the ends of the ground: they have no faces,
+/// and what hangs over one may fall beside it.
 pub(crate) fn depth(part: &Part, place: Pose, lane: &Profile) -> f64 {
     let (middle, bound) = part.bound();
-    if lane.is_clear_of(place.transform_point(middle), bound) {
+    let center = place.transform_point(middle);
+    let (low, high) = lane.extent();
+    let hangs_over = center.x - bound < low || center.x + bound > high;
+    if hangs_over || lane.is_clear_of(center, bound) {
         return 0.0;
     }
     let rounds = rounds(part).into_iter();
