@@ -134,8 +134,8 @@ def _came(d: Findings, tried: Tried) -> str:
     elif tried.outcome == Outcome.TIMED_OUT:
         said = "still moving, but not free"
     else:
-        is_elsewhere = tried.jammed and "x =" in end
-        further = "" if tried.distance < 0.0 or is_elsewhere else _how_far(tried)
+        is_placed = tried.distance < 0.0 or _is_jammed_elsewhere(d, tried)
+        further = "" if is_placed else _how_far(tried)
         said = f"{end} {further}" if further else end
     if tried.starts > 1:
         said += f" ({tried.freeing} of {tried.starts} times free)"
@@ -153,14 +153,22 @@ def _how_far(tried: Tried) -> str:
 def _end(d: Findings, tried: Tried) -> str:
     if not tried.jammed:
         return in_words(tried.outcome)
-    was, jam = d.intrusion, tried.intrusion
+    jam = tried.intrusion
     if jam is None:
         return "is jammed"
-    here = (jam.side, jam.carrier, jam.edge)
-    if not d.jammed or was is None or here != (was.side, was.carrier, was.edge):
+    if _is_jammed_elsewhere(d, tried):
         return f"is jammed{_where(jam)}, in {_track(jam)} at x = {jam.x:z.3f} m, y = {jam.y:z.3f} m"
-    again = sorted(jam.bodies) == sorted(was.bodies)
+    again = d.intrusion is not None and sorted(jam.bodies) == sorted(d.intrusion.bodies)
     return "is jammed again" if again else f"is jammed again,{_where(jam)}"
+
+
+def _is_jammed_elsewhere(d: Findings, tried: Tried) -> bool:
+    """Whether a trial ended in a jam at another edge, or in another track, than the stop."""
+    was, jam = d.intrusion, tried.intrusion
+    if not tried.jammed or jam is None:
+        return False
+    here = (jam.side, jam.carrier, jam.edge)
+    return not d.jammed or was is None or here != (was.side, was.carrier, was.edge)
 
 
 def _inside(d: Findings) -> str:

@@ -28,9 +28,6 @@ __all__ = [
 ]
 
 
-_ASK = "its `reason` says how"
-
-
 def refuse_without_result(run: Record) -> None:
     """Refuse a run that ended with an error, and a branch, whose scenario is not all of it."""
     if run.trunk is not None:
@@ -44,7 +41,8 @@ def branch_time(run: Record, at: float | str) -> float:
     refuse_without_result(run)
     if isinstance(at, str) and at == "stop":
         if run.diagnosis is None:
-            rule = f"must be a time: the run did not end in a stop, but {run.outcome}; {_ASK}"
+            ended = f"the run did not end in a stop, but {run.outcome}"
+            rule = f"must be a time: {ended}; its `reason` says how"
             raise ScenarioError("at", at, rule)
         return run.diagnosis.time
     end = run.metrics["time"]

@@ -264,7 +264,7 @@ class Run(Record):
         time = branching.branch_time(self, "stop")
         made = trials_at(self, time, trial_names("all"))
         self._remember(*made)
-        return tuple(Trial.of(each, self._shown(time, each.name)) for each in made)
+        return tuple(Trial.of(each, self._shown(time, each)) for each in made)
 
     @takes_keywords
     def what_if(
@@ -310,7 +310,7 @@ class Run(Record):
         if name is not None:
             tried = trial_at(self, time, name)
             self._remember(tried)
-            return Trial.of(tried, self._shown(time, name))
+            return Trial.of(tried, self._shown(time, tried))
         variant = branching.branch_scenario(
             self,
             track=track,
@@ -338,13 +338,13 @@ class Run(Record):
             trials = tuple(known[name] for name in trial_names("all") if name in known)
             self.diagnosis = replace(self.diagnosis, trials=trials)
 
-    def _shown(self, time: float, name: str) -> Callable[[], Run]:
+    def _shown(self, time: float, tried: Tried) -> Callable[[], Run]:
         """Give the way to the run of a trial."""
 
         def show() -> Run:
-            variant, result = run_of_trial(self, time, name)
-            is_branch = not name.endswith(", from the start")
-            return Run(variant, result, trunk=(self.scenario, time) if is_branch else None)
+            variant, result = run_of_trial(self, time, tried.name)
+            trunk = None if tried.is_from_the_start else (self.scenario, time)
+            return Run(variant, result, trunk=trunk)
 
         return show
 
