@@ -121,7 +121,7 @@ def test_a_mesh_is_refused_unless_its_hull_is_asked_for(tmp_path: Path) -> None:
     refused(tmp_path, text, "must be a regular file that can be read .No such file", mesh="hull")
     reading = read(tmp_path, text, mesh="leave_out")
     assert reading.robot.belly is None
-    assert "left out is a mesh" in reading.doubts[0]
+    assert "is left out: a mesh, got a.stl" in reading.doubts[0]
 
 
 def test_a_mesh_of_an_unknown_kind_or_package_is_refused(tmp_path: Path) -> None:

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crawler2d.models.tree import Tree
-from crawler2d.reading.elements import Element
 from crawler2d.reading.files import Files
 from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import parsed
 from crawler2d.reading.sdf import read_sdf
+from crawler2d.reading.telling import Doubt
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.xacro import expanded
 
@@ -23,7 +23,7 @@ _MOST_SHAPES = 3000  # collisions; the public models have at most 67
 
 @dataclass(slots=True)
 class Found:
-    """A tree with the text that its lines are those of, and what was left out on request.
+    """A tree with the text that its lines are those of, and what the reader did without.
 
     Parameters
     ----------
@@ -31,13 +31,13 @@ class Found:
         The model.
     text : str
         The file, or what it expands to.
-    left_out : list of (str, str)
-        What, and what it was.
+    doubts : list of Doubt
+        What was left out or replaced, with its line.
     """
 
     tree: Tree
     text: str
-    left_out: list[tuple[str, str]] = field(default_factory=list)
+    doubts: list[Doubt] = field(default_factory=list)
 
 
 def tree_of(data: bytes, path: Path, how: How) -> Found:
@@ -58,7 +58,7 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         If it breaks a rule of its format, or needs what is not there.
     """
     name, files = path.name, Files(path, how.packages)
-    missing: list[tuple[str, str]] = []
+    doubts: list[Doubt] = []
     if path.suffix == ".xacro":
         data, includes = expanded(
             files,
@@ -69,23 +69,21 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
             leave_out=how.leaves_out_missing,
         )
         name = f"{name} (expanded)"
-        missing += [(include, "an include whose package is missing") for include in includes]
+        reason = "is left out: its package is missing"
+        doubts += [(path.name, include, reason) for include in includes]
     root = parsed(data, name)
     shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
     if len(shapes) > _MOST_SHAPES:
         rule = f"must have at most {_MOST_SHAPES} collision shapes"
         shapes[_MOST_SHAPES].refuse(len(shapes), rule)
     text = data.decode("utf-8", errors="replace")
-    meshes = Meshes(rule=how.mesh, files=files)
+    meshes = Meshes(rule=how.mesh, files=files, doubts=doubts)
     if root.tag == "sdf":
         tree = read_sdf(root, how.model, meshes)
     elif root.tag == "robot":
-        joints: list[Element] | None = [] if how.leaves_out_missing else None
-        tree = read_urdf(root, meshes, left_out=joints)
-        missing += [(joint.attribute("name"), "a joint of missing links") for joint in joints or ()]
+        tree = read_urdf(root, meshes, doubts, leave_out=how.leaves_out_missing)
     elif root.tag == "mujoco":
         tree = read_mjcf(root, text, how.model, meshes)
     else:
         root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
-    missing += [(f"{shape} ({at.where})", "a mesh") for shape, at in meshes.left_out]
-    return Found(tree, text, missing)
+    return Found(tree, text, doubts)

@@ -14,6 +14,7 @@ from crawler2d.models.poses import Array
 from crawler2d.models.tree import Shape
 from crawler2d.reading.elements import Element
 from crawler2d.reading.files import LARGEST_TOGETHER, Files
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["MeshRule", "Meshes"]
 
@@ -35,21 +36,21 @@ class Meshes:
         As in `read_robot`.
     files : Files
         The files of the model.
-    left_out : list of (str, Element)
-        The shapes that were left out.
+    doubts : list of Doubt
+        Where shapes that are left out are noted.
     corners : int
         Of all meshes that were read.
     """
 
     rule: MeshRule
     files: Files
-    left_out: list[tuple[str, Element]] = field(default_factory=list)
+    doubts: list[Doubt] = field(default_factory=list)
     corners: int = 0
 
     def hull(self, shape: Shape, element: Element, name: str, scale: list[float]) -> Shape | None:
         """Return the shape with the corners of its mesh, or None if it is left out."""
         if self.rule == "leave_out":
-            self.left_out.append((shape.name, element))
+            self.doubts.append((element.at, name, "is left out: a mesh"))
             return None
         if self.rule == "refuse":
             rule = 'must be no mesh: mesh="hull" takes its hull, mesh="leave_out" leaves it out'

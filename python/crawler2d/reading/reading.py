@@ -274,8 +274,7 @@ def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[Scenario
         tree, forward=how.forward, tolerance=how.tolerance, engine=engine, ground=ground
     )
     robot.wheels()  # the core checks every rule of a robot
-    left_out = [("left out", what, f"is {kind}") for what, kind in found.left_out]
-    doubts = [ScenarioWarning(*doubt) for doubt in [*left_out, *work.told.doubts]]
+    doubts = [ScenarioWarning(*doubt) for doubt in [*found.doubts, *work.told.doubts]]
     notes = list(work.told.notes)
     if path.suffix == ".xacro":
         notes.append(f"lines are those of the text that {path.name} expands to, Reading.text")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
-__all__ = ["Telling", "place_of"]
+__all__ = ["Doubt", "Telling", "place_of"]
 
 Doubt = tuple[str, object, str]
 """Path, value and reason of a `ScenarioWarning`."""

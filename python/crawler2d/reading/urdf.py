@@ -16,11 +16,14 @@ from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import checked
 from crawler2d.reading.plugins import plugin_of
 from crawler2d.reading.shapes import inertia, shape_of
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["read_urdf"]
 
 
-def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None = None) -> Tree:
+def read_urdf(
+    root: Element, meshes: Meshes, doubts: list[Doubt], *, leave_out: bool = False
+) -> Tree:
     """Read the robot of a URDF.
 
     Parameters
@@ -29,8 +32,10 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
         Of the file.
     meshes : Meshes
         What is done with meshes.
-    left_out : list of Element, optional
-        Where to note joints whose links are missing, which are left out; None refuses them.
+    doubts : list of Doubt
+        Where to note what is left out.
+    leave_out : bool
+        Whether joints whose links are missing are left out, or refused.
 
     Returns
     -------
@@ -50,8 +55,8 @@ def read_urdf(root: Element, meshes: Meshes, *, left_out: list[Element] | None =
     ends = []
     for joint in root.all("joint"):
         parent, child = (joint.needed(end).attribute("link") for end in ("parent", "child"))
-        if left_out is not None and not {parent, child} <= elements.keys():
-            left_out.append(joint)
+        if leave_out and not {parent, child} <= elements.keys():
+            doubts.append((joint.at, f"{parent} to {child}", "is left out: a link is missing"))
             continue
         ends.append((joint, joint.attribute("name"), parent, child))
     order = checked(
