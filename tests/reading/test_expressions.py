@@ -253,7 +253,7 @@ LEAVES = st.one_of(NUMBERS.map(lambda n: f"({n!r})"), st.sampled_from(["a", "pi"
 
 def grown(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     operators = ["+", "-", "*", "/", "//", "%", "<", "<=", "==", "!=", "and", "or"]
-    functions = ["sin({})", "abs({})", "max({0}, {0})", "int({})", "-({})", "not ({})", "str({})"]
+    functions = ["sin({})", "abs({})", "max({0}, {0})", "int({})", "-({})", "(not {})", "str({})"]
     return st.one_of(
         st.tuples(inner, st.sampled_from(operators), inner).map(lambda p: f"({' '.join(p)})"),
         st.tuples(st.sampled_from(functions), inner).map(lambda p: p[0].format(p[1])),

@@ -16,7 +16,7 @@ from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Tr
 from crawler2d.reading.belts import belt_ends
 from crawler2d.reading.gear_wheels import is_same_wheel
 from crawler2d.reading.parts import Arm, Runner
-from crawler2d.reading.sides import Pair, centers, paired
+from crawler2d.reading.sides import Pair, centers, is_belted, paired
 from crawler2d.reading.silhouettes import silhouette
 from crawler2d.reading.telling import Telling
 from crawler2d.reading.tracks import Base, wheels_of
@@ -32,6 +32,10 @@ _ALIKE = 0.01
 
 _DIRECTIONS = 360
 """In which shapes are held against wheels; 0.004 % of a length lies between two of them."""
+
+_BEYOND = 0.2
+"""[-] How far a shape that is left out may stand out of a flipper's wheels, as a share of the
+largest radius: such as the boxes that stand for grousers or for a sagging belt."""
 
 _SAME_ANGLE = 1e-3
 """[rad] By how much the angles of two arms may differ: files round them."""
@@ -66,9 +70,14 @@ class ArmPair:
         """Line of its joint."""
         return self.arms[0].joint.at
 
+    @property
+    def path(self) -> str:
+        """Its line and its joint, for errors and doubts."""
+        return f"{self.at}: joint[{self.arms[0].joint.name}]"
+
     def refuse(self, value: object, rule: str) -> NoReturn:
         """Raise the error that this pair breaks a rule."""
-        raise ScenarioError(f"{self.at}: joint[{self.arms[0].joint.name}]", value, rule)
+        raise ScenarioError(self.path, value, rule)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -161,45 +170,47 @@ def _pair(
         arms=arms,
         pivot=pivot,
         pairs=tuple(found),
-        is_belt=runners[0].joint is None,
+        is_belt=is_belted(runners, f"{arms[0].joint.at}: joint[{arms[0].joint.name}]"),
         mass=sum(masses) / 2.0,
     )
-    if len({runner.joint is None for runner in runners}) > 1:
-        pair.refuse("wheels and drums", "must have either wheels or a moved belt")
     if max(masses) - min(masses) > _ALIKE * max(masses):
         value = " and ".join(f"{mass:.4g} kg" for mass in masses)
-        pair.refuse(value, f"must have flippers whose masses differ by at most {_ALIKE:.0%}")
+        told.doubts.append((pair.path, value, "differ in mass left and right: the mean is used"))
     for arm in arms:
-        _leave_out_bare(told, arm, view, tolerance)
+        _leave_out_bare(told, arm, view, tolerance, is_belt=pair.is_belt)
     return pair
 
 
-def _leave_out_bare(told: Telling, arm: Arm, view: SideView, tolerance: float) -> None:
-    """Leave out shapes of an arm that do not move and lie within its track; refuse others."""
+def _leave_out_bare(
+    told: Telling, arm: Arm, view: SideView, tolerance: float, *, is_belt: bool
+) -> None:
+    """Leave out shapes of an arm that do not move: doubt those that something may touch."""
     for _, shape in arm.shapes:
         flat = silhouette(shape, view)
-        if any(_is_within(flat, (runner,), tolerance) for runner in arm.runners):
+        if any(_beyond(flat, (runner,)) <= tolerance for runner in arm.runners):
             continue
         path = f"{shape.at}: collision[{shape.name}]"
-        if not _is_within(flat, arm.runners, tolerance):
+        beyond = _beyond(flat, arm.runners)
+        if beyond > _BEYOND * max(runner.radius for runner in arm.runners) + tolerance:
             rule = (
                 "must lie within the envelope of its flipper's wheels: arms touch with wheels or"
                 " belts only; make it smaller, or fix it to the chassis, whose shapes are the belly"
             )
-            raise ScenarioError(path, shape.kind, rule)
-        reason = "left out: within the envelope of its flipper's wheels, where edges reach it"
-        told.doubts.append((path, shape.kind, f"{reason} only between two of them"))
+            raise ScenarioError(path, f"a {shape.kind} {1e3 * beyond:.3g} mm beyond it", rule)
+        if beyond > tolerance:
+            reason = "left out, with what stands out of the envelope of its flipper's wheels"
+            told.doubts.append((path, f"a {shape.kind} {1e3 * beyond:.3g} mm beyond it", reason))
+        elif not is_belt:
+            reason = "left out: within the envelope of its flipper's wheels, where edges reach it"
+            told.doubts.append((path, shape.kind, f"{reason} only between two of them"))
 
 
-def _is_within(flat: Array, runners: Sequence[Runner], tolerance: float) -> bool:
-    """Whether points lie within the convex envelope of some wheels.
-
-    They do where they reach no farther than a wheel in any direction.
-    """
+def _beyond(flat: Array, runners: Sequence[Runner]) -> float:
+    """[m] Return how far points reach out of the convex envelope of some wheels."""
     angles = np.linspace(0.0, 2.0 * math.pi, _DIRECTIONS, endpoint=False)
     away = np.stack([np.cos(angles), np.sin(angles)])
     reach = np.max([np.array([r.x, r.y]) @ away + r.radius for r in runners], axis=0)
-    return bool(((flat @ away).max(axis=0) <= reach + tolerance).all())
+    return float(((flat @ away).max(axis=0) - reach).max())
 
 
 def at_end(
@@ -284,8 +295,10 @@ def _wheels(
     return wheels_of(told, order, frame, view, path=path, run=run, is_whole=has_root)
 
 
-def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
-    """Refuse flippers at both ends that differ: a robot has one kind.
+def refuse_unlike(told: Telling, front: AtEnd, rear: AtEnd, tolerance: float) -> None:
+    """Refuse flippers at both ends that differ in shape: a robot has one kind.
+
+    Where they differ in mass or angle only, that is doubted.
 
     Raises
     ------
@@ -296,7 +309,6 @@ def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
         ("length", tolerance),
         ("root_radius", tolerance),
         ("tip_radius", tolerance),
-        ("angle", _SAME_ANGLE),
     ):
         pair = getattr(front, name), getattr(rear, name)
         if abs(pair[0] - pair[1]) > allowed:
@@ -304,7 +316,12 @@ def refuse_unlike(front: AtEnd, rear: AtEnd, tolerance: float) -> None:
             rear.pair.refuse(f"{name} {pair[1]:.6g} and {pair[0]:.6g}", rule)
     if abs(front.pair.mass - rear.pair.mass) > _ALIKE * front.pair.mass:
         value = f"{rear.pair.mass:.4g} and {front.pair.mass:.4g} kg"
-        rear.pair.refuse(value, f"must be alike at both ends, within {_ALIKE:.0%}")
+        reason = "differ in mass from the front ones: the mean is used"
+        told.doubts.append((rear.pair.path, value, reason))
+    if abs(front.angle - rear.angle) > _SAME_ANGLE:
+        value = f"{rear.angle:.4g} and {front.angle:.4g} rad"
+        reason = "stand at another angle than the front ones: that of those is used for both"
+        told.doubts.append((rear.pair.path, value, reason))
     if not _is_same(front.track, rear.track):
         rule = "must be alike at both ends and have evenly spaced wheels, or a belt"
         rear.pair.refuse(f"{rear.track!r} and {front.track!r}", rule)

@@ -14,20 +14,24 @@ from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
 from crawler2d.reading.axles import bent_round, frame_of, outline_of
 from crawler2d.reading.belly import belly_of
+from crawler2d.reading.belts import is_within
 from crawler2d.reading.drive import drivetrain_of
 from crawler2d.reading.flippers import arms_at, flippers_of
 from crawler2d.reading.friction import combined
 from crawler2d.reading.masses import circulating, summed
 from crawler2d.reading.parts import Runner, RunningGear
 from crawler2d.reading.running_gear import running_gear_of
-from crawler2d.reading.sides import Pair, centers, middle_of, paired
+from crawler2d.reading.sides import Pair, centers, is_belted, middle_of, paired
+from crawler2d.reading.silhouettes import silhouette
 from crawler2d.reading.sources import estimate, lines
+from crawler2d.reading.surfaces import surfaces_of
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base, wheels_of
 from crawler2d.reading.view import SideView, side_view
 
 __all__ = ["Assembly", "assembled"]
 
+_SHOWN = 4  # names of links in a doubt
 _LEAST_MOVING = 0.001  # [kg] The least that a robot can have.
 _MOVING_SHARE = 0.01  # of the mass, for a surface that moves without mass in its file
 
@@ -68,20 +72,25 @@ class Assembly:
             If the model has what a side view cannot hold, or breaks a rule of a robot.
         """
         tree, at, tolerance = self.tree, self.tree.at, self.tolerance
-        self.view = view = side_view(tree, forward)
+        surfaces = surfaces_of(tree)
+        self.told.doubts += surfaces.doubts
+        self.view = view = side_view(tree, surfaces, forward)
         self.told.notes.append(f"{view.reason}: {_named(view.forward)} is forward")
-        gear = running_gear_of(tree, view)
+        gear = running_gear_of(tree, view, surfaces)
         runners = gear.runners + [r for arm in gear.arms for r in arm.runners]
         self.middle = middle = middle_of(gear.runners or runners)
+        castors = gear.without_castors(middle, tolerance)
+        self.doubt_passive(gear, castors)
         pairs = paired(gear.runners, middle=middle, tolerance=tolerance, at=at)
         arms = arm_pairs(self.told, gear.arms, view, middle=middle, tolerance=tolerance, at=at)
-        is_belt = bool(pairs) and pairs[0].left[0].joint is None
-        if len({runner.joint is None for runner in gear.runners}) > 1:
-            raise ScenarioError(str(at), "wheels and drums", "must have one kind on the chassis")
+        is_belt = is_belted(gear.runners, str(at))
         if gear.bars and not is_belt:
             rule = "must have a drum at either end of a track"
             raise ScenarioError(str(at), "moved boxes only", rule)
-        bent = bent_round(self.told, gear, pairs, arms, is_belt=is_belt)
+        bent = bent_round(self.told, gear, pairs, arms, castors, is_belt=is_belt)
+        if is_belt and surfaces.taken:
+            # What stands between the drums of a track is no belly: the belt runs round it.
+            gear.shapes = [s for s in gear.shapes if not is_within(silhouette(s[1], view), bent)]
         base, rear = frame_of(self.told, bent, tolerance)
         self.base = base
         by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
@@ -130,6 +139,21 @@ class Assembly:
         turn = np.stack([side @ ahead, view.left, side @ (-ahead[1], ahead[0])], axis=1)
         place = side @ (0.5 * (base.front + base.rear)) + self.middle * view.left
         return Pose(place=place, turn=turn)
+
+    def doubt_passive(self, gear: RunningGear, castors: list[Runner]) -> None:
+        """Doubt wheels without a motor, beside others that have one."""
+        for wheels, reason in (
+            (castors, "roll freely in the middle: read as skids of the belly, which slide"),
+            (
+                [r for r in gear.runners if r.name in gear.passive],
+                "roll freely beside others that are driven: read as driven, as by a track round"
+                " all",
+            ),
+        ):
+            if wheels:
+                names = ", ".join(wheel.name for wheel in wheels[:_SHOWN])
+                more = f" and {len(wheels) - _SHOWN} more" if len(wheels) > _SHOWN else ""
+                self.told.doubts.append((str(wheels[0].link.at), f"{names}{more}", reason))
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return what moves at track speed."""

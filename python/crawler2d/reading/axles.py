@@ -8,7 +8,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import TrackOutline
 from crawler2d.reading.arms import ArmPair
 from crawler2d.reading.belts import belt_round, ends_among
-from crawler2d.reading.parts import RunningGear
+from crawler2d.reading.parts import Runner, RunningGear
 from crawler2d.reading.sides import Pair, centers
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
@@ -20,12 +20,18 @@ _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorte
 
 
 def bent_round(
-    told: Telling, gear: RunningGear, pairs: list[Pair], arms: list[ArmPair], *, is_belt: bool
+    told: Telling,
+    gear: RunningGear,
+    pairs: list[Pair],
+    arms: list[ArmPair],
+    castors: list[Runner],
+    *,
+    is_belt: bool,
 ) -> list[Pair]:
     """Return what the outline is the hull of, from the rear to the front; note its lines.
 
     The two outermost wheels, or the drums that a belt bends round; without either, the roots of
-    flippers.
+    flippers; of a robot with one wheel a side, that and its castors.
 
     Raises
     ------
@@ -34,6 +40,11 @@ def bent_round(
     """
     if is_belt:
         bent = belt_round(pairs, gear.bars, at=told.at)
+    elif len(pairs) == 1 and castors:
+        # One wheel a side is no track: the robot stands on it and on what it trails.
+        bent = sorted([*pairs, *map(_alone, castors)], key=lambda pair: pair.x)
+        reason = "is no track: its outline is drawn round it and the free wheels in the middle"
+        told.doubts.append(("robot.outline", "one wheel a side", reason))
     elif pairs:
         bent = [pairs[0], pairs[-1]]
     else:
@@ -59,6 +70,10 @@ def bent_round(
         of_all = [s.size_at for pair in pairs for runner in pair.both for s in runner.surfaces]
         told.note("robot.track", lines(of_all, "sizes"))
     return bent
+
+
+def _alone(castor: Runner) -> Pair:
+    return Pair(left=(castor,), right=(castor,), x=castor.x, y=castor.y, radius=castor.radius)
 
 
 def frame_of(told: Telling, bent: list[Pair], tolerance: float) -> tuple[Base, Pair]:

@@ -13,7 +13,7 @@ from crawler2d.models.where import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.tracks import FIT
 
-__all__ = ["belt_ends", "belt_round", "ends_among"]
+__all__ = ["belt_ends", "belt_round", "ends_among", "is_within"]
 
 _BEYOND = 0.02
 """[-] How far boxes may reach out of the belt, as a share of the larger radius: what is drawn as
@@ -109,6 +109,13 @@ def belt_ends(
     _refuse_bars(bars, discs[ends], at)
     rear, front = ends
     return drums[rear], drums[front]
+
+
+def is_within(flat: Array, drums: list[Pair]) -> bool:
+    """Whether points of the side view, shape (n, 2), lie within the belt round drums."""
+    discs = _discs(drums)
+    points = np.column_stack([flat, np.zeros(len(flat))])
+    return bool(_Hull(discs).beyond(points).max() <= _BEYOND * float(discs[:, 2].max()))
 
 
 def _discs(drums: list[Pair]) -> Array:

@@ -17,6 +17,9 @@ __all__ = ["arms_at", "flippers_of"]
 _RATE = 1.0  # [rad/s] that of MARV's flippers
 
 
+_LIGHTEST = 1.001e-5
+"""[-] Of the mass of the robot; the core refuses lighter ones, which no solver could hold."""
+
 _TOLD = 1e-4  # [m] At an edge, tenths of a millimetre have decided whether a robot gets over it.
 
 
@@ -49,7 +52,7 @@ def arms_at(
         if locked:
             told.notes.append(f"{', '.join(locked)}: locked in the file, here flippers that turn")
     if len(found) == 2:
-        refuse_unlike(found["front"], found["rear"], tolerance)
+        refuse_unlike(told, found["front"], found["rear"], tolerance)
     return {end: found[end] for end in ("front", "rear") if end in found}
 
 
@@ -85,13 +88,24 @@ def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flipper
         length=first.length,
         root_radius=first.root_radius,
         tip_radius=first.tip_radius,
-        mass=first.pair.mass,
+        mass=_mass(told, ends, mass),
         ends="both" if len(ends) == 2 else ("front" if "front" in by_end else "rear"),
         angle=first.angle,
         rate_limit=rate,
         torque_limit=torque,
         track=first.track,
     )
+
+
+def _mass(told: Telling, ends: list[AtEnd], whole: float) -> float:
+    """[kg] Return the mass of one flipper: the mean, and no less than a robot can have."""
+    mass = sum(end.pair.mass for end in ends) / len(ends)
+    least = _LIGHTEST * whole
+    if mass >= least:
+        return mass
+    reason = f"is too light to be moved: {least:.4g} kg is used, the least that a flipper can have"
+    told.doubts.append(("robot.flippers.mass", float(f"{mass:.4g}"), reason))
+    return least
 
 
 def _limits(ends: list[AtEnd], *, mass: float, note: Note) -> tuple[float, float]:

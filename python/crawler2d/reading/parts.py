@@ -125,6 +125,8 @@ class RunningGear:
         What the chassis has besides, fixed to it.
     moving : list of (Joint, Link, Shape)
         Shapes of other moving parts, such as a lidar or a manipulator.
+    passive : set of str
+        Names of wheels that nothing drives, while something drives others.
     """
 
     runners: list[Runner] = field(default_factory=list)
@@ -132,6 +134,18 @@ class RunningGear:
     arms: list[Arm] = field(default_factory=list)
     shapes: list[tuple[Link, Shape]] = field(default_factory=list)
     moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)
+    passive: set[str] = field(default_factory=set)
+
+    def without_castors(self, middle: float, tolerance: float) -> list[Runner]:
+        """Take out the wheels in the middle that nothing drives, which become skids."""
+        castors = [
+            wheel
+            for wheel in self.runners
+            if wheel.name in self.passive and abs(wheel.z - middle) <= tolerance
+        ]
+        self.runners = [wheel for wheel in self.runners if wheel not in castors]
+        self.shapes += [(castor.link, castor.shape) for castor in castors]
+        return castors
 
 
 def corners_of(shape: Shape) -> Array:

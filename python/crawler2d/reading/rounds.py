@@ -7,13 +7,11 @@ import math
 import numpy as np
 
 from crawler2d.models.poses import Array
-from crawler2d.models.tree import Link, Shape, Tree
-from crawler2d.models.where import Where
+from crawler2d.models.tree import Shape, Tree
 
 __all__ = [
     "PARALLEL",
     "below",
-    "is_moved",
     "is_parallel",
     "plane_across",
     "radius_about",
@@ -69,8 +67,3 @@ def _radius_of_hull(shape: Shape, point: Array, axis: Array) -> float | None:
     reach = (flat @ np.stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])).max(axis=0)
     largest = float(reach.max())
     return largest if reach.min() >= (1.0 - _OUT_OF_ROUND) * largest > 0.0 else None
-
-
-def is_moved(link: Link, shape: Shape, moved: dict[str, Where]) -> bool:
-    """Whether the surface of a shape moves."""
-    return shape.surface_speed > 0.0 or link.name in moved

@@ -12,8 +12,8 @@ from crawler2d.models.poses import Array
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.reading.grousers import grousers_on
 from crawler2d.reading.parts import Arm, Runner, RunningGear, corners_of
-from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.rounds import below, is_moved, is_parallel, radius_about
+from crawler2d.reading.rounds import below, is_parallel, radius_about
+from crawler2d.reading.surfaces import Surfaces
 from crawler2d.reading.view import SideView
 from crawler2d.reading.wheels import wheel_of
 
@@ -23,7 +23,7 @@ __all__ = ["running_gear_of"]
 _BEHIND = 0.005
 
 
-def running_gear_of(tree: Tree, view: SideView) -> RunningGear:
+def running_gear_of(tree: Tree, view: SideView, surfaces: Surfaces) -> RunningGear:
     """Sort everything that can touch the ground.
 
     Parameters
@@ -32,6 +32,8 @@ def running_gear_of(tree: Tree, view: SideView) -> RunningGear:
         The model.
     view : SideView
         Its side view.
+    surfaces : Surfaces
+        Those that move.
 
     Returns
     -------
@@ -41,20 +43,20 @@ def running_gear_of(tree: Tree, view: SideView) -> RunningGear:
     Raises
     ------
     ScenarioError
-        If wheels or tracks hang on springs, slides, rockers or steered joints, if a wheel turns
-        about another axis, or nothing drives it while something drives others.
+        If wheels or tracks hang on springs, slides, rockers or steered joints, or a wheel turns
+        about another axis.
     """
-    return _Sorting(tree, view).gear()
+    return _Sorting(tree, view, surfaces).gear()
 
 
 class _Sorting:
     """Walks down the tree; what hangs on a link is known when it is its turn."""
 
-    def __init__(self, tree: Tree, view: SideView) -> None:
+    def __init__(self, tree: Tree, view: SideView, surfaces: Surfaces) -> None:
         self.tree = tree
         self.view = view
         self.hanging = below(tree)
-        self.moved = moved_links(tree)
+        self.moved = surfaces.moved
         self.links = tree.by_name
         self.wheels: dict[str, list[tuple[Link, Shape]]] = {}
         for child, joint in tree.joints.items():
@@ -72,7 +74,7 @@ class _Sorting:
             if joint is not None and link.name not in self.turning:
                 above = self.carried(joint, above, arms)
             self.carrier[link.name] = above
-        self.refuse_passive()
+        gear.passive = self.passive()
         for arm in arms.values():
             gear.arms.append(self.arm(arm))
         for link in self.tree.links:
@@ -80,7 +82,7 @@ class _Sorting:
             if carrier is None:
                 gear.runners += self.runners_of(link)
                 for shape in self.still(link):
-                    if is_moved(link, shape, self.moved):
+                    if shape in self.moved:
                         gear.bars += self.bar(shape)
                     else:
                         gear.shapes.append((link, shape))
@@ -125,7 +127,7 @@ class _Sorting:
             if name in self.wheels:
                 yield self.view.of(self.tree.joints[name].place)
             for shape in self.still(self.links[name]):
-                if is_moved(self.links[name], shape, self.moved):
+                if shape in self.moved:
                     yield self.view.of(shape.pose.place)
 
     def is_arm(self, joint: Joint, places: list[Array]) -> bool:
@@ -148,7 +150,7 @@ class _Sorting:
         if link.name in self.wheels:
             yield self.wheel(self.tree.joints[link.name])
         for shape in self.still(link):
-            if is_moved(link, shape, self.moved) and shape.kind in (
+            if shape in self.moved and shape.kind in (
                 "cylinder",
                 "capsule",
                 "sphere",
@@ -210,22 +212,14 @@ class _Sorting:
             links=tuple(links),
             runners=tuple(runner for link in links for runner in self.runners_of(link)),
             bars=tuple(
-                bar
-                for link, shape in still
-                if is_moved(link, shape, self.moved)
-                for bar in self.bar(shape)
+                bar for link, shape in still if shape in self.moved for bar in self.bar(shape)
             ),
-            shapes=tuple(pair for pair in still if not is_moved(*pair, self.moved)),
+            shapes=tuple(pair for pair in still if pair[1] not in self.moved),
         )
 
-    def refuse_passive(self) -> None:
-        """Refuse a wheel that nothing drives, if the file says what drives others."""
-        driven = [c for c in self.wheels if self.tree.joints[c].name in self.tree.driven]
-        for child in self.wheels if driven else ():
-            joint = self.tree.joints[child]
-            if child not in driven:
-                rule = (
-                    "must be driven as the other wheels are: a robot holds no rollers beside them"
-                )
-                path = f"{joint.at}: joint[{joint.name}]"
-                raise ScenarioError(path, "a wheel without a motor", rule)
+    def passive(self) -> set[str]:
+        """Return the wheels that nothing drives, if the file says what drives others."""
+        driven = {
+            child for child in self.wheels if self.tree.joints[child].name in self.tree.driven
+        }
+        return set(self.wheels) - driven if driven else set()

@@ -13,7 +13,7 @@ from crawler2d.models.poses import Array
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
-__all__ = ["Pair", "centers", "middle_of", "paired"]
+__all__ = ["Pair", "centers", "is_belted", "middle_of", "paired"]
 
 _MOST = 400  # wheels of one track, on both sides: any two are compared
 
@@ -45,6 +45,21 @@ class Pair:
 def centers(pairs: Iterable[Pair]) -> Array:
     """[m] Return where pairs stand in side view, shape (n, 2)."""
     return np.array([[pair.x, pair.y] for pair in pairs])
+
+
+def is_belted(runners: list[Runner], path: str) -> bool:
+    """Whether a belt runs round them: drums, and no more wheels among them than sprockets.
+
+    Raises
+    ------
+    ScenarioError
+        If more of them turn than are fixed.
+    """
+    turning = sum(runner.joint is not None for runner in runners)
+    if 0 < len(runners) - turning < turning:
+        rule = "must be wheels, or drums of a moved belt and at most one sprocket for each"
+        raise ScenarioError(path, f"{turning} wheels and {len(runners) - turning} drums", rule)
+    return turning < len(runners)
 
 
 def middle_of(runners: Iterable[Runner]) -> float:

@@ -11,8 +11,8 @@ import numpy as np
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Tree
-from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.rounds import PARALLEL, below, is_moved, is_parallel
+from crawler2d.reading.rounds import PARALLEL, below, is_parallel
+from crawler2d.reading.surfaces import Surfaces
 from crawler2d.reading.wheels import wheel_of
 
 __all__ = ["SideView", "side_view"]
@@ -59,13 +59,15 @@ class SideView:
         return float(self.left @ tensor @ self.left)
 
 
-def side_view(tree: Tree, forward: str | None) -> SideView:
+def side_view(tree: Tree, surfaces: Surfaces, forward: str | None) -> SideView:
     """Find the lateral axis from what turns, and the forward sign from the names.
 
     Parameters
     ----------
     tree : Tree
         The model.
+    surfaces : Surfaces
+        Those that move.
     forward : {"+x", "-x", "+y", "-y"}, optional
         The direction that is forward; None finds it.
 
@@ -79,7 +81,7 @@ def side_view(tree: Tree, forward: str | None) -> SideView:
     ScenarioError
         If nothing turns, what turns has no common lateral axis, or forward cannot be told.
     """
-    lateral = _lateral(tree)
+    lateral = _lateral(tree, surfaces)
     ahead = np.cross(lateral, _UP)
     if forward is not None:
         if forward not in _FORWARDS:
@@ -100,15 +102,15 @@ def side_view(tree: Tree, forward: str | None) -> SideView:
     return SideView(forward=ahead, left=np.cross(_UP, ahead), reason=reason)
 
 
-def _lateral(tree: Tree) -> Array:
+def _lateral(tree: Tree, surfaces: Surfaces) -> Array:
     """Return the direction of the most axes of wheels and of the drums of tracks, horizontal."""
-    hanging, moved = below(tree), moved_links(tree)
+    hanging = below(tree)
     axes = [j.axis for j in tree.joints.values() if wheel_of(tree, j, hanging)]
     axes += [
         shape.axis
         for link in tree.links
         for shape in link.shapes
-        if shape.kind in ("cylinder", "capsule") and is_moved(link, shape, moved)
+        if shape.kind in ("cylinder", "capsule") and shape in surfaces.moved
     ]
     if not axes:
         rule = (

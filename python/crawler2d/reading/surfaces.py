@@ -1,0 +1,226 @@
+"""Surfaces that move: those that a file moves, and drums that stand for a track it does not move.
+
+Many models have the drums of a track as fixed cylinders, and leave it to a controller elsewhere, or
+to one sprocket among them, to move what runs round them. That such drums are a track is told from
+where they are, and always doubted: a simulator that only has the file lets them slide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from crawler2d.models.poses import Array
+from crawler2d.models.tree import Shape, Tree
+from crawler2d.reading.parts import corners_of
+from crawler2d.reading.plugins import moved_links
+from crawler2d.reading.rounds import below, is_parallel, radius_about
+from crawler2d.reading.telling import Doubt
+from crawler2d.reading.wheels import wheel_of
+
+__all__ = ["Surfaces", "surfaces_of"]
+
+_SAME = 0.002
+"""[m] By how much a drum may differ in side view from its partner on the other side."""
+
+_APART = 0.01
+"""[m] Drums nearer than this are one: a belt round them would have no length."""
+
+_BELOW = 0.01
+"""[m] By how much a belly may hang below the drums of a track: less than a boss or a bolt head."""
+
+_HORIZONTAL = 0.02  # of the upward part of a direction
+_SHOWN = 4  # names of links
+_MOST = 100  # axes that are compared with all
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surfaces:
+    """What moves without turning.
+
+    Parameters
+    ----------
+    moved : frozenset of Shape
+        Shapes whose surface moves, be it by the file or by a rule of this module.
+    taken : frozenset of Shape
+        Those by a rule of this module.
+    doubts : tuple of Doubt
+        One for each rule that was used.
+    """
+
+    moved: frozenset[Shape]
+    taken: frozenset[Shape]
+    doubts: tuple[Doubt, ...]
+
+
+def surfaces_of(tree: Tree) -> Surfaces:
+    """Find the surfaces of a model that move.
+
+    Fixed drums, cylinders across that stand on one side and have a partner on the other, are those
+    of a track that the file does not move, if either
+
+    - a wheel on a joint stands beside them on the same body, one for each drum at most: a sprocket;
+    - or nothing on that body turns or moves, and there are two of them: on the chassis they are the
+      lowest of all shapes, on a flipper one of them is on its pivot.
+
+    Parameters
+    ----------
+    tree : Tree
+        The model.
+    """
+    links = moved_links(tree)
+    moved = {
+        shape
+        for link in tree.links
+        for shape in link.shapes
+        if shape.surface_speed > 0.0 or link.name in links
+    }
+    beside, unmoved = _Search(tree, frozenset(moved)).found()
+    doubts = [
+        (str(drums[0].shape.at), _named(drums), f"{why}; with this file alone they slide")
+        for drums, why in (
+            (beside, "do not turn as the wheel beside them does: read as a belt round both"),
+            (unmoved, "are moved by nothing in the file: read as the drums of moving belts"),
+        )
+        if drums
+    ]
+    drums = frozenset(drum.shape for drum in (*beside, *unmoved))
+    return Surfaces(drums | moved, drums, tuple(doubts))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drum:
+    """A fixed cylinder across, or a wheel; where it is forward, up and across, and its body."""
+
+    shape: Shape
+    link: str
+    body: str
+    place: Array
+    radius: float
+
+    def side(self, middle: float) -> str:
+        return "left" if self.place[2] > middle else "right"
+
+    def is_at(self, place: Array, within: float) -> bool:
+        return bool(np.abs(self.place[:2] - place[:2]).max() <= within)
+
+
+class _Search:
+    """Drums and wheels by the rigid body that carries them, and by side."""
+
+    def __init__(self, tree: Tree, moved: frozenset[Shape]) -> None:
+        self.tree = tree
+        self.moved = moved
+        self.body: dict[str, str] = {}
+        for link in tree.links:  # parents before children
+            joint = tree.joints.get(link.name)
+            is_rigid = joint is not None and joint.kind == "fixed"
+            self.body[link.name] = self.body[joint.parent] if joint and is_rigid else link.name
+        hanging = below(tree)
+        shapes = {child: wheel_of(tree, joint, hanging) for child, joint in tree.joints.items()}
+        self.wheels = {child: found for child, found in shapes.items() if found}
+        self.turning = {name for child in self.wheels for name in hanging[child]}
+
+    def found(self) -> tuple[list[_Drum], list[_Drum]]:
+        """Return the drums beside sprockets, and those that nothing moves."""
+        axis = self._lateral()
+        if axis is None:
+            return [], []
+        drums, wheels = list(self._drums(axis)), list(self._sprockets(axis))
+        across = [each.place[2] for each in wheels or drums]
+        middle = 0.5 * (min(across) + max(across)) if across else 0.0
+        drums = [drum for drum in drums if abs(drum.place[2] - middle) > 0.5 * drum.shape.length]
+        drums = [drum for drum in drums if self._has_partner(drum, drums, middle)]
+        beside: list[_Drum] = []
+        unmoved: list[_Drum] = []
+        for body, side in dict.fromkeys((d.body, d.side(middle)) for d in drums):
+            group = [d for d in drums if d.body == body and d.side(middle) == side]
+            own = [w for w in wheels if w.body == body and w.side(middle) == side]
+            if own:
+                apart = [d for d in group if not any(d.is_at(w.place, _APART) for w in own)]
+                beside += group if apart and len(own) <= len(apart) else []
+            elif self._is_track(body, group, axis):
+                unmoved += group
+        return beside, unmoved
+
+    def _lateral(self) -> Array | None:
+        """Return the direction of the axes of most wheels, or else of most fixed cylinders."""
+        axes = [self.tree.joints[child].axis for child in self.wheels] or [
+            shape.axis for _, shape in self._cylinders() if abs(shape.axis[2]) < _HORIZONTAL
+        ]
+        counts = [sum(is_parallel(axis, other) for other in axes) for axis in axes[:_MOST]]
+        return axes[int(np.argmax(counts))] if axes else None
+
+    def _cylinders(self) -> Iterator[tuple[str, Shape]]:
+        for link in self.tree.links:
+            if link.name not in self.turning:
+                yield from (
+                    (link.name, shape)
+                    for shape in link.shapes
+                    if shape.kind == "cylinder" and shape not in self.moved
+                )
+
+    def _drums(self, axis: Array) -> Iterator[_Drum]:
+        for name, shape in self._cylinders():
+            if is_parallel(shape.axis, axis):
+                place = _seen(shape.pose.place, axis)
+                yield _Drum(shape, name, self.body[name], place, shape.radius)
+
+    def _sprockets(self, axis: Array) -> Iterator[_Drum]:
+        for child, found in self.wheels.items():
+            joint = self.tree.joints[child]
+            if is_parallel(joint.axis, axis):
+                shape = found[0][1]
+                place = _seen(shape.pose.place, axis)
+                radius = radius_about(shape, joint.place, joint.axis) or 0.0
+                yield _Drum(shape, child, self.body[joint.parent], place, radius)
+
+    def _has_partner(self, drum: _Drum, drums: list[_Drum], middle: float) -> bool:
+        return any(
+            other.side(middle) != drum.side(middle)
+            and other.is_at(drum.place, _SAME)
+            and abs(other.radius - drum.radius) <= _SAME
+            for other in drums
+        )
+
+    def _is_track(self, body: str, group: list[_Drum], axis: Array) -> bool:
+        """Whether drums beside no wheel are those of a track that nothing in the file moves."""
+        if not any(not drum.is_at(group[0].place, _APART) for drum in group):
+            return False
+        joint = self.tree.joints.get(body)
+        if joint is not None and joint.kind == "hinge":  # a flipper?
+            pivot = _seen(joint.place, axis)
+            return is_parallel(joint.axis, axis) and any(d.is_at(pivot, _APART) for d in group)
+        return not self._moves(body) and self._is_lowest(body, group)
+
+    def _moves(self, body: str) -> bool:
+        """Whether anything turns or moves on the chassis."""
+        wheels = (self.body[self.tree.joints[child].parent] for child in self.wheels)
+        links = (link for link in self.tree.links if self.body[link.name] == body)
+        return body in wheels or any(s in self.moved for link in links for s in link.shapes)
+
+    def _is_lowest(self, body: str, group: list[_Drum]) -> bool:
+        foot = min(float(drum.place[1]) - drum.radius for drum in group)
+        others = (
+            float(corner[2])
+            for link in self.tree.links
+            if self.body[link.name] == body
+            for shape in link.shapes
+            if shape.kind in ("box", "hull")
+            for corner in corners_of(shape)
+        )
+        return foot <= min(others, default=foot) + _BELOW
+
+
+def _named(drums: list[_Drum]) -> str:
+    names = list(dict.fromkeys(drum.link for drum in drums))
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return f"{len(drums)} fixed drums: {', '.join(names[:_SHOWN])}{more}"
+
+
+def _seen(place: Array, axis: Array) -> Array:
+    """[m] Return where a place is along, up and across, shape (3,)."""
+    along = np.cross(axis, (0.0, 0.0, 1.0))
+    return np.array([place @ along, place[2], place @ axis])
