@@ -185,3 +185,19 @@ def test_a_shape_that_stands_a_little_out_of_a_flipper_is_left_out_with_a_doubt(
     found = read(tmp_path, with_box(0.13))
     assert any("5 mm beyond it" in doubt for doubt in found.doubts)
     refused(tmp_path, with_box(0.2), "must lie within the envelope of its flipper's wheels")
+
+
+def test_a_moved_box_above_the_upper_run_is_belly(tmp_path: Path) -> None:
+    """As boxes that stand for a tensioned run: they meet no obstacle before the belt does."""
+    shape = collision(DRUM.format(radius=0.08), ACROSS)
+    roof = collision('<box size="0.2 0.05 0.02"/>', '<origin xyz="0.2 0 0.09"/>')
+    tracks = "".join(
+        link(f"{side}_track", 'type="fixed">', f"-0.2 {sign * 0.15} 0").replace(
+            "</link>", shape + shape.replace("rpy", 'xyz="0.4 0 0" rpy') + roof + "</link>"
+        )
+        for side, sign in SIDES
+    )
+    found = read(tmp_path, urdf(tracks), tracks=["left_track", "right_track"])
+    assert found.robot.track == c2d.BeltTrack()
+    assert found.robot.belly is not None
+    assert any("20 mm" in doubt and "read as belly" in doubt for doubt in found.doubts)

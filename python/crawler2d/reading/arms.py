@@ -13,7 +13,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.where import Where
 from crawler2d.parameters.track import BeltTrack, HybridWheels, LineOfWheels, Track
-from crawler2d.reading.belts import belt_ends
+from crawler2d.reading.belts import BELT_TOLERANCE, belt_ends
 from crawler2d.reading.gear_wheels import is_same_wheel
 from crawler2d.reading.parts import Arm, Runner
 from crawler2d.reading.sides import Pair, centers, is_belted, paired
@@ -190,8 +190,9 @@ def _leave_out_bare(
         if any(_beyond(flat, (runner,)) <= tolerance for runner in arm.runners):
             continue
         path = f"{shape.at}: collision[{shape.name}]"
-        beyond = _beyond(flat, arm.runners)
-        if beyond > _BEYOND * max(runner.radius for runner in arm.runners) + tolerance:
+        beyond, largest = _beyond(flat, arm.runners), max(runner.radius for runner in arm.runners)
+        tolerance = max(tolerance, BELT_TOLERANCE * largest) if is_belt else tolerance
+        if beyond > _BEYOND * largest + tolerance:
             rule = (
                 "must lie within the envelope of its flipper's wheels: arms touch with wheels or"
                 " belts only; make it smaller, or fix it to the chassis, whose shapes are the belly"
@@ -258,11 +259,10 @@ def at_end(
     from_pivot = np.hypot(*(places - pivot).T)
     has_root = len(pair.pairs) > 1 and bool(from_pivot[0] <= tolerance)
     if pair.is_belt:
-        bars = [bar for arm in pair.arms for bar in arm.bars]
         # Along the arm: a steep one has its tip above its root.
         away = np.array([tip.x, tip.y]) - pair.pivot
         along = away / max(math.hypot(*away), 1e-9)
-        ends = belt_ends(list(pair.pairs), bars, along=along, at=pair.at)
+        ends = belt_ends(list(pair.pairs), along=along, at=pair.at)
         if not has_root or {root, tip} != set(ends):
             pair.refuse("a belt beside the pivot", "must have a belt from the pivot to the tip")
     out = places[-1] - (places[0] if has_root else pivot)

@@ -14,7 +14,7 @@ from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.arms import AtEnd, arm_pairs
 from crawler2d.reading.axles import bent_round, frame_of, outline_of
 from crawler2d.reading.belly import belly_of
-from crawler2d.reading.belts import is_within
+from crawler2d.reading.belts import beyond_belt
 from crawler2d.reading.drive import drivetrain_of
 from crawler2d.reading.flippers import arms_at, flippers_of
 from crawler2d.reading.friction import combined
@@ -87,10 +87,9 @@ class Assembly:
         if gear.bars and not is_belt:
             rule = "must have a drum at either end of a track"
             raise ScenarioError(str(at), "moved boxes only", rule)
-        bent = bent_round(self.told, gear, pairs, arms, castors, is_belt=is_belt)
-        if is_belt and surfaces.taken:
-            # What stands between the drums of a track is no belly: the belt runs round it.
-            gear.shapes = [s for s in gear.shapes if not is_within(silhouette(s[1], view), bent)]
+        bent = bent_round(self.told, pairs, arms, castors, is_belt=is_belt)
+        if is_belt:
+            self.sort_boxes(gear, bent, is_moved=not surfaces.taken)
         base, rear = frame_of(self.told, bent, tolerance)
         self.base = base
         by_end = arms_at(self.told, arms, base, view, radius=rear.radius, tolerance=tolerance)
@@ -139,6 +138,29 @@ class Assembly:
         turn = np.stack([side @ ahead, view.left, side @ (-ahead[1], ahead[0])], axis=1)
         place = side @ (0.5 * (base.front + base.rear)) + self.middle * view.left
         return Pose(place=place, turn=turn)
+
+    def sort_boxes(self, gear: RunningGear, bent: list[Pair], *, is_moved: bool) -> None:
+        """Take what lies within the belt for a part of it, and what reaches out for the belly.
+
+        Raises
+        ------
+        ScenarioError
+            If something moves that reaches out where it may meet the ground.
+        """
+        if not is_moved:  # by the file: then what stands between the drums is no belly
+            gear.bars += gear.shapes
+            gear.shapes = []
+        outlines = [silhouette(shape, self.view) for _, shape in gear.bars]
+        for (link, shape), (out, low) in zip(gear.bars, beyond_belt(outlines, bent), strict=True):
+            path = f"{shape.at}: collision[{shape.name}]"
+            if is_moved and low > 0.0:
+                rule = "must lie within the belt round the drums, but for its upper run"
+                raise ScenarioError(path, f"a moved shape {1e3 * low:.3g} mm beyond it", rule)
+            if out > 0.0:
+                gear.shapes.append((link, shape))
+            if out > 0.0 and is_moved:
+                reason = "reaches out of the belt round the drums: read as belly, which stands"
+                self.told.doubts.append((path, f"{1e3 * out:.3g} mm", reason))
 
     def doubt_passive(self, gear: RunningGear, castors: list[Runner]) -> None:
         """Doubt wheels without a motor, beside others that have one."""

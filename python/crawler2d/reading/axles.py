@@ -8,7 +8,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import TrackOutline
 from crawler2d.reading.arms import ArmPair
 from crawler2d.reading.belts import belt_round, ends_among
-from crawler2d.reading.parts import Runner, RunningGear
+from crawler2d.reading.parts import Runner
 from crawler2d.reading.sides import Pair, centers
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
@@ -21,7 +21,6 @@ _LARGEST = 3.0  # [m] The largest tracked robots that climb obstacles are shorte
 
 def bent_round(
     told: Telling,
-    gear: RunningGear,
     pairs: list[Pair],
     arms: list[ArmPair],
     castors: list[Runner],
@@ -39,7 +38,7 @@ def bent_round(
         If there is nothing to stand on at one end, or something reaches out of a belt.
     """
     if is_belt:
-        bent = belt_round(pairs, gear.bars, at=told.at)
+        bent = belt_round(pairs, at=told.at)
     elif len(pairs) == 1 and castors:
         # One wheel a side is no track: the robot stands on it and on what it trails.
         bent = sorted([*pairs, *map(_alone, castors)], key=lambda pair: pair.x)

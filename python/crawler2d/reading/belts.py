@@ -13,12 +13,13 @@ from crawler2d.models.where import Where
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.tracks import FIT
 
-__all__ = ["belt_ends", "belt_round", "ends_among", "is_within"]
+__all__ = ["BELT_TOLERANCE", "belt_ends", "belt_round", "beyond_belt", "ends_among"]
 
-_BEYOND = 0.02
+BELT_TOLERANCE = 0.02
 """[-] How far boxes may reach out of the belt, as a share of the larger radius: what is drawn as
 boxes between drums only nears their tangents. Those of Gazebo's example do so by 1.2 %."""
 
+_UPWARDS = 0.5  # 30 degrees above level: what reaches out higher meets no obstacle
 _MOST = 64  # discs that an outline can have
 _AT_ONCE = 10_000  # corners of a mesh that are looked at together, in some tens of MB
 _DIRECTIONS = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
@@ -32,7 +33,7 @@ def ends_among(drums: list[Pair]) -> tuple[Pair, Pair]:
     return drums[places.index(rear)], drums[places.index(front)]
 
 
-def belt_round(drums: list[Pair], bars: list[Array], *, at: Where) -> list[Pair]:
+def belt_round(drums: list[Pair], *, at: Where) -> list[Pair]:
     """Return the drums that bend the belt round all, from the rear to the front.
 
     What lies within the belt, such as a return roller, or on one of its straight runs, such as a
@@ -42,15 +43,13 @@ def belt_round(drums: list[Pair], bars: list[Array], *, at: Where) -> list[Pair]
     ----------
     drums : list of Pair
         From the rear to the front, at least one.
-    bars : list of ndarray, shape (n, 3)
-        [m] Corners of what else is moved.
     at : Where
         Line of the model, for errors.
 
     Raises
     ------
     ScenarioError
-        If there is one drum only, too many bend the belt, or a bar reaches out of it.
+        If there is one drum only, or too many bend the belt.
     """
     discs = _discs(drums)
     first = _ends(discs, np.array([1.0, 0.0]), at)
@@ -69,21 +68,16 @@ def belt_round(drums: list[Pair], bars: list[Array], *, at: Where) -> list[Pair]
         others = [other for other in bent if other != each]
         if len(others) > 1 and _Hull(discs[others]).beyond(discs[[each]]).max() <= FIT:
             bent = others
-    _refuse_bars(bars, discs[bent], at)
     return [drums[each] for each in sorted(bent)]
 
 
-def belt_ends(
-    drums: list[Pair], bars: list[Array], *, along: Array, at: Where
-) -> tuple[Pair, Pair]:
+def belt_ends(drums: list[Pair], *, along: Array, at: Where) -> tuple[Pair, Pair]:
     """Return the rearmost and the foremost drum of a belt that runs round two, as on a flipper.
 
     Parameters
     ----------
     drums : list of Pair
         From the rear to the front, at least one.
-    bars : list of ndarray, shape (n, 3)
-        [m] Corners of what else is moved.
     along : ndarray, shape (2,)
         Direction from the rear end to the front end, roughly.
     at : Where
@@ -92,12 +86,12 @@ def belt_ends(
     Raises
     ------
     ScenarioError
-        If there is one drum only, or something reaches out.
+        If there is one drum only, or another reaches out.
     """
     discs = _discs(drums)
     ends = list(_ends(discs, along, at))
     out = _Hull(discs[ends]).beyond(discs)
-    tolerance = _BEYOND * float(discs[ends, 2].max())
+    tolerance = BELT_TOLERANCE * float(discs[ends, 2].max())
     beyond = np.flatnonzero(out > tolerance)
     if beyond.size:
         runner = drums[beyond[0]].left[0]
@@ -106,16 +100,30 @@ def belt_ends(
             f"{len(beyond)} beyond the belt round the end drums",
             "must lie within the belt round the end drums: flippers have two",
         )
-    _refuse_bars(bars, discs[ends], at)
     rear, front = ends
     return drums[rear], drums[front]
 
 
-def is_within(flat: Array, drums: list[Pair]) -> bool:
-    """Whether points of the side view, shape (n, 2), lie within the belt round drums."""
+def beyond_belt(outlines: list[Array], drums: list[Pair]) -> list[tuple[float, float]]:
+    """[m] Return how far shapes reach out of the belt round drums, and how far but upwards.
+
+    Both are 0 within what boxes may.
+
+    Parameters
+    ----------
+    outlines : list of ndarray, shape (n, 2)
+        [m] Corners of each in the side view.
+    drums : list of Pair
+        All that the belt bends round.
+    """
     discs = _discs(drums)
-    points = np.column_stack([flat, np.zeros(len(flat))])
-    return bool(_Hull(discs).beyond(points).max() <= _BEYOND * float(discs[:, 2].max()))
+    hull, tolerance = _Hull(discs), BELT_TOLERANCE * float(discs[:, 2].max())
+    found = []
+    for flat in outlines:
+        points = np.column_stack([flat, np.zeros(len(flat))])
+        out = [float(hull.beyond(points, highest).max()) for highest in (1.0, _UPWARDS)]
+        found.append((out[0] if out[0] > tolerance else 0.0, out[1] if out[1] > tolerance else 0.0))
+    return found
 
 
 def _discs(drums: list[Pair]) -> Array:
@@ -130,17 +138,6 @@ def _ends(discs: Array, along: Array, at: Where) -> tuple[int, int]:
     if rear == front:
         raise ScenarioError(str(at), "one drum", "must have a drum at either end of a track")
     return rear, front
-
-
-def _refuse_bars(bars: list[Array], discs: Array, at: Where) -> None:
-    """Refuse what is moved and reaches out of the belt."""
-    tolerance, hull = _BEYOND * float(discs[:, 2].max()), _Hull(discs)
-    for corners in bars:
-        points = np.column_stack([corners[:, :2], np.zeros(len(corners))])
-        beyond = float(hull.beyond(points).max())
-        if beyond > tolerance:
-            rule = f"must lie within the belt round the drums, within {1e3 * tolerance:g} mm"
-            raise ScenarioError(str(at), f"a moved shape {1e3 * beyond:.3g} mm beyond it", rule)
 
 
 class _Hull:
@@ -164,10 +161,15 @@ class _Hull:
         self.normals = np.concatenate([_NORMALS, normals[:, is_run]], axis=1)
         self.reach = (belt[:, :2] @ self.normals + belt[:, 2:]).max(axis=0)
 
-    def beyond(self, discs: Array) -> Array:
-        """[m] Return how far each disc reaches out of the belt; < 0 where it does not."""
+    def beyond(self, discs: Array, highest: float = 1.0) -> Array:
+        """[m] Return how far each disc reaches out of the belt; < 0 where it does not.
+
+        Only directions that rise by `highest` at most count.
+        """
+        counts = self.normals[1] <= highest
         parts = np.array_split(discs, 1 + len(discs) // _AT_ONCE)
         out = [
-            (part[:, :2] @ self.normals + part[:, 2:] - self.reach).max(axis=1) for part in parts
+            (part[:, :2] @ self.normals + part[:, 2:] - self.reach)[:, counts].max(axis=1)
+            for part in parts
         ]
         return np.concatenate(out)

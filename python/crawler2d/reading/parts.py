@@ -97,17 +97,14 @@ class Arm:
         Everything that turns with it.
     runners : tuple of Runner
         Its wheels or drums.
-    bars : tuple of ndarray, shape (n, 3)
-        [m] Corners of the boxes whose surface is moved, in the side view.
     shapes : tuple of (Link, Shape)
-        What neither turns nor is moved.
+        What is neither wheel nor drum.
     """
 
     joint: Joint
     pivot: Array
     links: tuple[Link, ...]
     runners: tuple[Runner, ...]
-    bars: tuple[Array, ...]
     shapes: tuple[tuple[Link, Shape], ...]
 
 
@@ -117,8 +114,10 @@ class RunningGear:
 
     Parameters
     ----------
-    runners, bars : list
-        As in `Arm`, of the chassis.
+    runners : list of Runner
+        Wheels and drums of the chassis.
+    bars : list of (Link, Shape)
+        Shapes on it whose surface is moved, and which are no drums.
     arms : list of Arm
         The flippers.
     shapes : list of (Link, Shape)
@@ -130,7 +129,7 @@ class RunningGear:
     """
 
     runners: list[Runner] = field(default_factory=list)
-    bars: list[Array] = field(default_factory=list)
+    bars: list[tuple[Link, Shape]] = field(default_factory=list)
     arms: list[Arm] = field(default_factory=list)
     shapes: list[tuple[Link, Shape]] = field(default_factory=list)
     moving: list[tuple[Joint, Link, Shape]] = field(default_factory=list)

@@ -11,7 +11,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.reading.grousers import grousers_on
-from crawler2d.reading.parts import Arm, Runner, RunningGear, corners_of
+from crawler2d.reading.parts import Arm, Runner, RunningGear
 from crawler2d.reading.rounds import below, is_parallel, radius_about
 from crawler2d.reading.surfaces import Surfaces
 from crawler2d.reading.view import SideView
@@ -21,6 +21,7 @@ __all__ = ["running_gear_of"]
 
 # [m] What lies this little behind its pivot does not lie behind it.
 _BEHIND = 0.005
+_DRUMS = ("cylinder", "capsule", "sphere")
 
 
 def running_gear_of(tree: Tree, view: SideView, surfaces: Surfaces) -> RunningGear:
@@ -82,10 +83,10 @@ class _Sorting:
             if carrier is None:
                 gear.runners += self.runners_of(link)
                 for shape in self.still(link):
-                    if shape in self.moved:
-                        gear.bars += self.bar(shape)
-                    else:
+                    if shape not in self.moved:
                         gear.shapes.append((link, shape))
+                    elif shape.kind not in _DRUMS:
+                        gear.bars.append((link, shape))
             elif carrier.child not in arms:
                 gear.moving += [(carrier, link, shape) for shape in link.shapes]
         return gear
@@ -150,11 +151,7 @@ class _Sorting:
         if link.name in self.wheels:
             yield self.wheel(self.tree.joints[link.name])
         for shape in self.still(link):
-            if shape in self.moved and shape.kind in (
-                "cylinder",
-                "capsule",
-                "sphere",
-            ):
+            if shape in self.moved and shape.kind in _DRUMS:
                 yield self.drum(link, shape)
 
     def wheel(self, joint: Joint) -> Runner:
@@ -197,12 +194,6 @@ class _Sorting:
         name = f"{link.name}/{shape.name}"
         return Runner(name=name, x=x, y=y, z=z, radius=shape.radius, link=link, shape=shape)
 
-    def bar(self, shape: Shape) -> list[Array]:
-        """Return the corners of a moved shape that is no drum."""
-        if shape.kind in ("cylinder", "capsule", "sphere"):
-            return []
-        return [self.view.of(corners_of(shape))]
-
     def arm(self, joint: Joint) -> Arm:
         links = [self.links[name] for name in self.hanging[joint.child]]
         still = [(link, shape) for link in links for shape in self.still(link)]
@@ -211,10 +202,11 @@ class _Sorting:
             pivot=self.view.of(joint.place),
             links=tuple(links),
             runners=tuple(runner for link in links for runner in self.runners_of(link)),
-            bars=tuple(
-                bar for link, shape in still if shape in self.moved for bar in self.bar(shape)
+            shapes=tuple(
+                (link, shape)
+                for link, shape in still
+                if shape not in self.moved or shape.kind not in _DRUMS
             ),
-            shapes=tuple(pair for pair in still if pair[1] not in self.moved),
         )
 
     def passive(self) -> set[str]:
