@@ -18,6 +18,7 @@ _VALUES = {
     "missing": "--missing",
     "ground_friction": "--ground-friction",
     "tolerance": "--tolerance",
+    "scale": "--scale",
 }
 _LISTS = {"tracks": "--track"}
 _PAIRS = {"packages": "--package", "arguments": "--argument"}

@@ -44,7 +44,7 @@ def of_robot(robot: Robot) -> Iterator[Finding]:
     if not _SHORTEST <= length <= _LONGEST:
         what = f"{length:.3g} m long without flippers; tracked robots have 0.1 to 3 m"
         if length > _LONGEST and _SHORTEST <= 0.1 * length <= _LONGEST:
-            what += ": is it ten times too large?"
+            what += ": is it ten times too large? scale=0.1 reads it so"
         yield Finding(rule="size", severity="error", what=what)
     space = length * height * (robot.gauge + outline.front_radius)
     if not _LIGHTEST <= robot.mass / space <= _HEAVIEST:

@@ -28,6 +28,7 @@ class HowToRead(TypedDict, total=False):
     tracks: Collection[str]
     ground_friction: float | None
     tolerance: float
+    scale: float | None
     trusted: bool
     packages: Mapping[str, str | os.PathLike[str]] | None
     arguments: Mapping[str, str] | None

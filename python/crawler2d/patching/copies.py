@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 
-from crawler2d.patching.document import Document
-from crawler2d.patching.spans import Span
+from crawler2d.writing.document import Document
+from crawler2d.writing.spans import Span
 
 __all__ = ["copied", "items_about", "names_of"]
 

@@ -8,8 +8,8 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Link, Tree
 from crawler2d.patching.changes import Change
-from crawler2d.patching.document import Document, written
-from crawler2d.patching.spans import Span
+from crawler2d.writing.document import Document, written
+from crawler2d.writing.spans import Span
 from crawler2d.writing.xml import numbers
 
 __all__ = ["change_mjcf"]

@@ -7,7 +7,7 @@ import difflib
 import itertools
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NoReturn
 
 import numpy as np
@@ -17,13 +17,13 @@ from crawler2d.models.tree import Tree
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.changes import Change, changes_of
 from crawler2d.patching.copies import copied, items_about, names_of
-from crawler2d.patching.document import Document
 from crawler2d.patching.mjcf import change_mjcf
 from crawler2d.patching.sdf import change_sdf
-from crawler2d.patching.spans import Span
 from crawler2d.patching.urdf import change_urdf
 from crawler2d.reading.reading import Reading, read_text
 from crawler2d.reading.tracks import FIT
+from crawler2d.writing.document import Document
+from crawler2d.writing.spans import Span
 
 __all__ = ["Patch", "patched"]
 
@@ -104,7 +104,10 @@ def patched(reading: Reading, robot: Robot) -> Patch:
     )
     lines = list(diff)
     left = _left(changes, document.root, reading.text)
-    return Patch(text=text, diff="".join(lines), summary=_summary(changes, lines, left), left=left)
+    summary = _summary(changes, lines, left)
+    if reading.how.scale is not None:
+        summary += f"; all lengths times {reading.how.scale:g}"
+    return Patch(text=text, diff="".join(lines), summary=summary, left=left)
 
 
 def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:
@@ -202,7 +205,7 @@ def _check(reading: Reading, robot: Robot, text: str) -> None:
     path = reading.path
     if path.suffix == ".xacro":  # what it expanded to was changed
         path = path.with_suffix("") if path.stem.endswith(".urdf") else path.with_suffix(".urdf")
-    again, _ = read_text(text.encode(), path, reading.how)
+    again, _ = read_text(text.encode(), path, replace(reading.how, scale=None))
     made = again.robot
     got, asked = made.wheels(), robot.wheels()
     if len(got) != len(asked) or (got["carrier"] != asked["carrier"]).any():

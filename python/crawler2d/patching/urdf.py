@@ -5,8 +5,8 @@ from __future__ import annotations
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Tree
 from crawler2d.patching.changes import Change
-from crawler2d.patching.document import Document, written
-from crawler2d.patching.spans import Span, joint_in, links_in
+from crawler2d.writing.document import Document, written
+from crawler2d.writing.spans import Span, joint_in, links_in
 from crawler2d.writing.xml import numbers
 
 __all__ = ["change_urdf"]

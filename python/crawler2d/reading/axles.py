@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from crawler2d.errors import ScenarioError
@@ -114,7 +116,12 @@ def outline_of(told: Telling, base: Base, bent: list[Pair]) -> TrackOutline:
         places = base.of(centers(bent))
         outline = TrackOutline(discs=np.column_stack([places, radii]), **grousers)
     length = outline.axle_distance
-    if length + outline.rear_radius + outline.front_radius > _LARGEST:
-        reason = f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
+    whole = length + outline.rear_radius + outline.front_radius
+    if whole > _LARGEST:
+        power = math.ceil(math.log10(whole / _LARGEST))
+        reason = (
+            f"is usually at most {_LARGEST:g} m with the wheels: is the file in metres?"
+            f" scale={10.0**-power:g} reads it so much smaller"
+        )
         told.doubts.append(("robot.outline.axle_distance", length, reason))
     return outline

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from crawler2d.errors import ScenarioError
 from crawler2d.models.tree import Tree
 from crawler2d.reading.files import Files
 from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import parsed
+from crawler2d.reading.scaling import scaled
 from crawler2d.reading.sdf import read_sdf
 from crawler2d.reading.telling import Doubt
 from crawler2d.reading.urdf import read_urdf
@@ -72,6 +74,12 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         reason = "is left out: its package is missing"
         doubts += [(path.name, include, reason) for include in includes]
     root = parsed(data, name)
+    if how.scale not in (None, 1.0):
+        if root.tag not in ("sdf", "robot"):
+            rule = "must be 1 for MJCF: <compiler> and its defaults say what its lengths are"
+            raise ScenarioError("scale", how.scale, rule)
+        data = scaled(data, how.scale, name)
+        root = parsed(data, name)
     shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
     if len(shapes) > _MOST_SHAPES:
         rule = f"must have at most {_MOST_SHAPES} collision shapes"

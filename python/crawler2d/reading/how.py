@@ -39,6 +39,8 @@ class How:
         [-] Coefficient of the ground's own surface.
     tolerance : float
         [m] By how much the two sides may differ in side view.
+    scale : float or None
+        [-] By which every length of the file is multiplied.
     trusted : bool
         Whether xacro may evaluate expressions of any kind.
     packages : mapping of str to path
@@ -60,6 +62,7 @@ class How:
     tracks: Collection[str] = ()
     ground_friction: float | None = None
     tolerance: float = TOLERANCE
+    scale: float | None = None
     trusted: bool = False
     packages: Mapping[str, str | os.PathLike[str]] = field(default_factory=dict)
     arguments: Mapping[str, str] = field(default_factory=dict)
@@ -77,6 +80,8 @@ class How:
         _check_pairs(self.packages, "packages", "folders by their names", (str, os.PathLike))
         _check_pairs(self.arguments, "arguments", "texts or numbers by name", (str, int, float))
         _check_between(self.tolerance, "tolerance", 0.0, 0.1)
+        if self.scale is not None:
+            _check_between(self.scale, "scale", 1e-4, 1e4)
         if self.ground_friction is not None:
             _check_between(self.ground_friction, "ground_friction", 0.0, 1e3)
 

@@ -137,6 +137,7 @@ def read_robot(
     tracks: Collection[str] = (),
     ground_friction: float | None = None,
     tolerance: float = TOLERANCE,
+    scale: float | None = None,
     trusted: bool = False,
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     arguments: Mapping[str, str] | None = None,
@@ -172,6 +173,10 @@ def read_robot(
         0.5.
     tolerance : float
         [m] By how much the two sides may differ in side view.
+    scale : float, optional
+        [-] By which every length of an SDF or URDF file is multiplied before it is read, moments
+        of inertia by its square: 0.001 for a file in millimetres. A file that is changed by
+        `Audit.patch` is written so.
     trusted : bool
         Whether a xacro file may evaluate expressions of any kind, and see the environment. Without
         that, only plain data, operators and known functions are evaluated: enough for most files.
@@ -238,6 +243,7 @@ def read_robot(
         tracks=tuple(tracks),
         ground_friction=ground_friction,
         tolerance=tolerance,
+        scale=scale,
         trusted=trusted is True,
         packages=packages or {},
         arguments=arguments or {},

@@ -67,6 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     reading.add_argument("--ground-friction", type=float, help="of the floor's own surface")
     reading.add_argument("--tolerance", type=float, default=TOLERANCE, help="between sides, in m")
+    reading.add_argument("--scale", type=float, help="multiply every length, as in 0.001 for mm")
     reading.add_argument("--trusted", action="store_true", help="let xacro evaluate anything")
     reading.add_argument("--package", action="append", default=[], metavar="NAME=FOLDER")
     reading.add_argument("--argument", action="append", default=[], metavar="NAME=VALUE")
@@ -138,6 +139,7 @@ _OPTIONS = {
     "packages=": "--package",
     "tracks=": "--track",
     "model=": "--model",
+    "scale=": "--scale ",
 }
 """How the command spells the keywords that errors advise."""
 
@@ -154,7 +156,16 @@ def _given(number: int | None, usual: int) -> int:
 
 
 def _reading(options: argparse.Namespace) -> dict[str, Any]:
-    names = ("engine", "forward", "model", "mesh", "missing", "ground_friction", "tolerance")
+    names = (
+        "engine",
+        "forward",
+        "model",
+        "mesh",
+        "missing",
+        "ground_friction",
+        "tolerance",
+        "scale",
+    )
     return {
         **{name: getattr(options, name) for name in (*names, "trusted")},
         "tracks": options.track,

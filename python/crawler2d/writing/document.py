@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from xml.sax.saxutils import escape
 
-from crawler2d.patching.spans import Span, spans_of
+from crawler2d.writing.spans import Span, spans_of
 from crawler2d.writing.xml import exactly, numbers
 
 __all__ = ["Document", "written"]
@@ -125,9 +125,9 @@ class Document:
         """Put an element behind another one, with the same indent."""
         self._change(span.end, span.end, self._indent(span) + text)
 
-    def append(self, span: Span, text: str) -> None:
-        """Put an element behind the last one in another."""
-        if span.children:
+    def append(self, span: Span, text: str, *, is_inline: bool = False) -> None:
+        """Put an element behind the last one in another, on a line of its own unless inline."""
+        if span.children and not is_inline:
             self.insert_after(span.children[-1], text)
         elif span.is_closed:
             self._open(span, text)

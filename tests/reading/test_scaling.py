@@ -1,0 +1,79 @@
+"""A file in another unit of length is read, and written, as if it were in metres."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.patching.patch import patched
+from tests.reading.carts import FILES, ROBOTS, quietly
+
+
+@pytest.mark.parametrize("name", ["cart.sdf", "cart.urdf", "absolem.sdf", "marv.sdf"])
+def test_a_file_in_tenths_is_the_robot_of_the_file_in_metres(tmp_path: Path, name: str) -> None:
+    path = next(folder / name for folder in (FILES, ROBOTS) if (folder / name).is_file())
+    usual = quietly(path)
+    tenfold = quietly(path, scale=10.0, tolerance=0.01)
+    (tmp_path / name).write_text(tenfold.text, encoding="utf-8")
+    again = quietly(tmp_path / name, scale=0.1)
+    own, other = usual.robot, again.robot
+    assert other.mass == own.mass
+    assert other.outline.axle_distance == pytest.approx(own.outline.axle_distance, rel=1e-9)
+    assert other.moment_of_inertia == pytest.approx(own.moment_of_inertia, rel=1e-9)
+    assert other.center_of_mass == pytest.approx(own.center_of_mass, abs=1e-9)
+    for column in ("x", "y", "radius"):
+        assert np.allclose(other.wheels()[column], own.wheels()[column], atol=1e-9)
+    assert tenfold.robot.outline.axle_distance == pytest.approx(10 * own.outline.axle_distance)
+
+
+def test_lines_are_those_of_the_file() -> None:
+    usual, scaled = quietly(ROBOTS / "absolem.sdf"), quietly(ROBOTS / "absolem.sdf", scale=0.5)
+    assert scaled.sources["robot.mass"] == usual.sources["robot.mass"]
+    assert scaled.text.count("\n") == usual.text.count("\n")
+
+
+def test_the_engineer_that_is_ten_times_too_large_says_so_and_is_read_a_tenth_as_large() -> None:
+    large = quietly(ROBOTS / "eng.urdf", mesh="leave_out")
+    assert any("scale=0.1 reads it so" in doubt for doubt in large.doubts)
+    found = quietly(ROBOTS / "eng.urdf", mesh="leave_out", scale=0.1)
+    assert found.robot.outline.axle_distance == pytest.approx(0.372)
+    assert found.robot.mass == large.robot.mass
+    assert not any("scale=" in doubt for doubt in found.doubts)
+
+
+def test_a_changed_file_is_written_in_metres(tmp_path: Path) -> None:
+    found = quietly(ROBOTS / "eng.urdf", mesh="leave_out", scale=0.1)
+    patch = patched(found, found.robot.with_track(c2d.LineOfWheels(3)))
+    assert "all lengths times 0.1" in patch.summary
+    (tmp_path / "eng.urdf").write_text(patch.text, encoding="utf-8")
+    again = quietly(tmp_path / "eng.urdf", mesh="leave_out")
+    assert again.robot.track == c2d.LineOfWheels(3)
+    assert again.robot.outline.axle_distance == pytest.approx(0.372)
+    before, after = (
+        re.findall(r'<mesh [^>]*scale="(\S+)', each)
+        for each in ((ROBOTS / "eng.urdf").read_text(encoding="utf-8"), patch.text)
+    )
+    assert [float(scale) for scale in after] == pytest.approx([0.1 * float(b) for b in before])
+
+
+def test_a_mesh_has_its_own_scale_times_that_of_the_file() -> None:
+    """And one that has none gets it."""
+    text = (ROBOTS / "absolem.sdf").read_text(encoding="utf-8")
+    with_scale = text.count("<scale>0.001 0.001 0.001</scale>")
+    assert 0 < with_scale < text.count("<mesh>")
+    found = quietly(ROBOTS / "absolem.sdf", scale=0.5)
+    assert found.text.count("<scale>0.0005 0.0005 0.0005</scale>") == with_scale
+    assert found.text.count("<scale>0.5 0.5 0.5</scale>") == text.count("<mesh>") - with_scale
+
+
+@pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), 1e9, "0.1", True])
+def test_a_scale_that_is_none_is_refused(scale: object) -> None:
+    with pytest.raises(c2d.ScenarioError, match="scale"):
+        quietly(ROBOTS / "absolem.sdf", scale=scale)
+
+
+def test_mjcf_is_not_scaled() -> None:
+    with pytest.raises(c2d.ScenarioError, match="must be 1 for MJCF"):
+        quietly(FILES / "cart.xml", scale=0.1)
