@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -51,6 +51,9 @@ check: $(VENV)/.built ## format, lint, types, walls, stubs and documentation, no
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -q --noconftest tests/walls
 	$(BIN)/python -m mypy.stubtest crawler2d._core
+
+atlas: $(VENV)/.built ## audit every model file in a tree of repositories, FOLDER=..., on one page; a minute a robot
+	$(BIN)/python -m crawler2d atlas $(FOLDER) $(ARGS)
 
 bench: | tools ## benchmarks
 	cargo bench

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from crawler2d.errors import Crawler2dError
-from crawler2d.reports import audit, study
+from crawler2d.reports import atlas, audit, study
 from crawler2d.reports.paper import command as paper
 
 __all__ = ["main"]
@@ -17,7 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a program from the command line; returns its exit status."""
     parser = argparse.ArgumentParser(prog="python -m crawler2d", description=__doc__)
     programs = parser.add_subparsers(dest="program", required=True, metavar="program")
-    named = {"study": study, "paper": paper, "audit": audit}
+    named = {"study": study, "paper": paper, "audit": audit, "atlas": atlas}
     for name, module in named.items():
         text = (module.__doc__ or name).partition("\n")[0].rstrip(".")
         own = programs.add_parser(name, help=text, description=module.__doc__)
