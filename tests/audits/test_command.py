@@ -122,7 +122,7 @@ CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
 HOWS: Any = [
     {},
     {"engine": "isaac", "forward": "-x", "model": "a b; rm -rf $HOME", "ground_friction": 0.7},
-    {"mesh": "hull", "missing": "leave_out", "trusted": True},
+    {"mesh": "hull", "missing": "refuse", "trusted": True},
     {"tracks": ["-left", "right"], "packages": {"a": "b=c"}, "arguments": {"n": "it's"}},
     {"tolerance": 0.01, "ground_friction": 0.5},
 ]
@@ -144,7 +144,7 @@ def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     kept = command._reading(options)
     assert {name: value for name, value in kept.items() if value} == {
         "mesh": "refuse",
-        "missing": "refuse",
+        "missing": "leave_out",
         "tolerance": 0.001,
         **how,
     }

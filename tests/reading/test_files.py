@@ -1,6 +1,7 @@
 """Whatever a model names as a file is read if it may be, or refused at once, with the reason."""
 
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -82,8 +83,26 @@ def test_a_file_that_xacro_names_and_is_none_is_refused(
     part = '<xacro:include filename="part"/>'
     if named == "yaml":
         part = '<xacro:property name="p" value="${xacro.load_yaml(\'part\')}"/><a>${p}</a>'
-    rule = r"must be .*(\(.*\)|in the folder or package|xacro that expands, got .*No such file)"
-    refused(tmp_path, f"{XACRO}\n{part}</robot>", rule, "cart.xacro", trusted=True)
+    rule = r"must be (a regular file that can be read \(.*\)|in the folder or package)"
+    how: dict[str, Any] = {"trusted": True, "missing": "refuse"}
+    refused(tmp_path, f"{XACRO}\n{part}</robot>", rule, "cart.xacro", **how)
+
+
+@odd
+def test_an_include_is_left_out_if_there_is_none_and_not_if_it_is_odd(
+    tmp_path: Path, what: str
+) -> None:
+    """What leads out of the folder of the model is none of its files, whatever it is."""
+    pytest.importorskip("xacrodoc")
+    ODD[what](tmp_path / "part")
+    text = urdf('\n<xacro:include filename="part"/>', WHEELS).replace('<robot name="cart">', XACRO)
+    if what in ("zero", "random", "tty", "elsewhere", "nowhere"):
+        (doubt,) = read(tmp_path, text, "cart.xacro").doubts
+        assert re.match(r"cart\.xacro:2 is left out: .* got /.*/part$", doubt)
+    elif what == "device" and (tmp_path / "part").is_symlink():
+        pytest.skip("only root may make a device")
+    else:
+        refused(tmp_path, text, r"must be a regular file that can be read \(", "cart.xacro")
 
 
 MJCF = {
@@ -213,7 +232,7 @@ def test_packages_of_the_ros_path_are_read(tmp_path: Path, monkeypatch: pytest.M
     (package / "package.xml").unlink()
     os.mkfifo(package / "package.xml")
     with pytest.raises(c2d.ScenarioError, match=r"looked for in .* and in ROS_PACKAGE_PATH"):
-        read(cart, text, "cart.xacro", **how)
+        read(cart, text, "cart.xacro", missing="refuse", **how)
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj"])

@@ -178,7 +178,7 @@ def test_xacro_that_needs_packages_says_which(tmp_path: Path) -> None:
     parts = '<xacro:include filename="$(find cart_parts)/wheels.xacro"/>'
     text = urdf(parts).replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"')
     with pytest.raises(c2d.ScenarioError, match=r"must have its packages.*got cart_parts"):
-        read(tmp_path, text, "cart.xacro", trusted=True)
+        read(tmp_path, text, "cart.xacro", missing="refuse")
     folder = tmp_path / "parts"
     folder.mkdir()
     (folder / "wheels.xacro").write_text(f"<robot>{WHEELS}</robot>")

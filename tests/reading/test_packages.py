@@ -128,7 +128,7 @@ def test_a_package_that_is_not_found_says_where_it_was_looked_for(
     monkeypatch.setenv("SDF_PATH", str(clone))
     where = rf"looked for in {clone} and below and in SDF_PATH: packages=.* got parts"
     text = f'{XACRO}\n<link name="$(find-pkg-share parts)"/></robot>'
-    refused(clone / "models", text, where, "cart.xacro")
+    refused(clone / "models", text, where, "cart.xacro", missing="refuse")
 
 
 @pytest.mark.parametrize("name", ["..", ".", "", "a/../..", "~", "$HOME", "-x", "parts\\..\\.."])

@@ -143,7 +143,7 @@ def test_the_engineers_xacro_has_three_wheels_of_80_mm_a_side() -> None:
     masses, _ = robot_files.read_xacro("eng.xacro")
     assert reading.robot.mass == pytest.approx(sum(masses.values()))
     assert wheels(reading, "front flipper")[:, 2] == pytest.approx([0.056])
-    assert sum("package is missing" in doubt for doubt in reading.doubts) == 3
+    assert sum("is left out: the file must be in" in doubt for doubt in reading.doubts) == 3
 
 
 def leaves(parameters: Parameters, path: str) -> Iterator[str]:

@@ -332,17 +332,10 @@ def test_xacro_that_does_not_expand_is_refused_with_its_line(
     tmp_path: Path, text: str, line: int, rule: str
 ) -> None:
     pytest.importorskip("xacrodoc")
-    refused(tmp_path, f"{XACRO}{text}</robot>", rule, "cart.xacro", trusted=True)
+    how: Any = {"trusted": True, "missing": "refuse"}
+    refused(tmp_path, f"{XACRO}{text}</robot>", rule, "cart.xacro", **how)
     with pytest.raises(c2d.ScenarioError, match=rf"^cart\.xacro:{line} "):
-        read(tmp_path, f"{XACRO}{text}</robot>", "cart.xacro", trusted=True)
-
-
-def test_xacro_whose_include_was_left_out_says_what_may_help(tmp_path: Path) -> None:
-    pytest.importorskip("xacrodoc")
-    text = f'{XACRO}<xacro:include filename="$(find parts)/w.xacro"/><xacro:wheel/></robot>'
-    refused(tmp_path, text, 'missing="leave_out" leaves out includes', "cart.xacro", trusted=True)
-    how: Any = {"trusted": True, "missing": "leave_out"}
-    refused(tmp_path, text, "may need an include that was left out", "cart.xacro", **how)
+        read(tmp_path, f"{XACRO}{text}</robot>", "cart.xacro", **how)
 
 
 def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
@@ -352,13 +345,13 @@ def test_xacro_of_macros_only_is_refused(tmp_path: Path) -> None:
         read(tmp_path, text, "cart.xacro", trusted=True)
 
 
-def test_joints_of_missing_links_are_left_out_on_request_only(tmp_path: Path) -> None:
+def test_joints_of_missing_links_are_left_out_or_refused_on_request(tmp_path: Path) -> None:
     mount = '<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>'
-    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves joints')
-    reading = read(tmp_path, urdf(WHEELS, mount), missing="leave_out")
+    refused(tmp_path, urdf(WHEELS, mount), 'missing="leave_out" leaves joints', missing="refuse")
+    reading = read(tmp_path, urdf(WHEELS, mount))
     assert "mount" in reading.doubts[0]
 
 
 def test_a_misspelt_parent_is_named_with_the_nearest_link(tmp_path: Path) -> None:
     text = urdf(WHEELS).replace('<parent link="hull"/>', '<parent link="hul"/>', 1)
-    refused(tmp_path, text, "of which the nearest is hull; missing=")
+    refused(tmp_path, text, "of which the nearest is hull; missing=", missing="refuse")

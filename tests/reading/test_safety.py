@@ -110,7 +110,7 @@ def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
         (('name="left_front_joint"', 'name="left_rear_joint"'), "no other joint has"),
         (
             ('<parent link="hull"/>', '<parent link="bow"/>'),
-            "must join links of the model",
+            "must have one link that hangs on no other",
         ),
         (('<child link="left_front"/>', '<child link="left_rear"/>'), "must be the only joint"),
         (("<robot", "<machine"), "must be well-formed XML"),

@@ -24,7 +24,7 @@ class HowToRead(TypedDict, total=False):
     forward: Literal["+x", "-x", "+y", "-y"] | None
     model: str | None
     mesh: MeshRule
-    missing: Literal["refuse", "leave_out"]
+    missing: Literal["leave_out", "refuse"]
     tracks: Collection[str]
     ground_friction: float | None
     tolerance: float

@@ -5,7 +5,8 @@ meshes and textures, settings in YAML, manifests of packages. A file is read if 
 
 - lies in the folder of the model, in the package round that, in another package of its tree, or in
   a folder that the user named: one of ``packages=``, or of the variables in which ROS and Gazebo
-  look for packages. Links and ``..`` are followed first, so none of them leads out;
+  look for packages; or is the one file of the tree that a name fits, though no manifest has that of
+  its package. Links and ``..`` are followed first, so none of them leads out;
 - is a regular file: a pipe may never answer, a device never end;
 - is not too large, by itself and with all others of its model.
 
@@ -24,8 +25,9 @@ from typing import Any
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.packages import MANIFESTS, VARIABLES, Packages, folders
+from crawler2d.reading.telling import Doubt
 
-__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files"]
+__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files", "is_absent"]
 
 LARGEST_MODEL = 4_000_000
 """[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
@@ -34,7 +36,7 @@ LARGEST_TOGETHER = 30_000_000
 """[bytes] Of all files of one model, and so of any mesh: 600,000 facets of a binary STL."""
 
 _IN_PACKAGE = re.compile(
-    r"(?:(?:package|model)://([^/]*)|(?:file://)?\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
+    r"(?:file://)?(?:(?:package|model)://([^/]*)|\$\((?:find|find-pkg-share)\s+([^)\s]+)\s*\))(.*)",
     re.DOTALL,
 )
 _KINDS = {
@@ -64,6 +66,8 @@ class Files:
     ----------
     folder : Path
         That of the model, with all links followed.
+    doubts : list of Doubt
+        Files that were taken for those of packages that are not found.
 
     Examples
     --------
@@ -89,6 +93,8 @@ class Files:
         named = [folder for variable in VARIABLES for folder in folders(variable)]
         self._roots = [_package_round(self.folder), *self._given.values(), *named]
         self._left = LARGEST_TOGETHER
+        self._taken: dict[str, Path] = {}
+        self.doubts: list[Doubt] = []
 
     @property
     def plain(self) -> dict[str, Any]:
@@ -128,16 +134,17 @@ class Files:
         Raises
         ------
         ScenarioError
-            If it must not or cannot be read; the system's error, if there is one, is the cause.
+            If it must not or cannot be read; the system's error, if there is one, is the cause. See
+            `is_absent`.
         """
-        path = _real(self._path(name, at), at)
+        path = self.path(name, at=at)
         inside = any(path.is_relative_to(root) for root in self._roots)
-        if not inside and not self._packages.hold(path):
+        if not inside and not self._packages.hold(path) and path not in self._taken.values():
             rule = (
                 "must be in the folder or package of its model, in another package of its tree, or"
                 f" in a folder that is named: packages={{name: folder}}{remedy}"
             )
-            raise ScenarioError(at, name, rule)
+            raise ScenarioError(at, name, rule) from _absent(name)
         try:
             data = _read_regular(path, most + 1)
         except OSError as error:
@@ -155,20 +162,41 @@ class Files:
         """Return the folder of a package; None if there is none."""
         return self._packages.find(name)
 
-    def _path(self, name: str, at: str) -> Path:
-        """Say where a file is that a model names."""
+    def settings(self) -> list[Path]:
+        """List the files of YAML in the package round the model, or else its repository."""
+        return self._packages.files((".yaml", ".yml"))
+
+    def path(self, name: str, *, at: str) -> Path:
+        """Say where a file is that a model names; see `read`."""
         found = _IN_PACKAGE.fullmatch(name)
         if found is None:
-            return self.folder / name.removeprefix("file://")
-        package = found[1] or found[2] or ""
+            return _real(self.folder / name.removeprefix("file://"), at)
+        package, inside = found[1] or found[2] or "", found[3]
         folder = self.package(package)
-        if folder is None:
-            rule = (
-                f"must be in a package that is found in {self.looked}, or whose folder is given:"
-                " packages={name: folder}"
-            )
-            raise ScenarioError(at, name, rule)
-        return folder / found[3].lstrip("/")
+        if folder is not None:
+            return _real(folder / inside.lstrip("/"), at)
+        if name not in self._taken:
+            taken = self._packages.file(package, inside)
+            if taken is None:
+                rule = (
+                    f"must be in a package that is found in {self.looked}, or whose folder is"
+                    " given: packages={name: folder}"
+                )
+                raise ScenarioError(at, name, rule) from _absent(name)
+            self._taken[name] = taken
+        doubt = (at, name, f"is taken to be {self._taken[name]}: no package has that name")
+        if doubt not in self.doubts:
+            self.doubts.append(doubt)
+        return _real(self._taken[name], at)
+
+
+def is_absent(error: BaseException) -> bool:
+    """Whether a file was refused because there is none among those of the model."""
+    return isinstance(error.__cause__, (FileNotFoundError, NotADirectoryError))
+
+
+def _absent(name: str) -> FileNotFoundError:
+    return FileNotFoundError(errno.ENOENT, "is not among the files of the model", name)
 
 
 def _read_regular(path: Path, most: int) -> bytes:

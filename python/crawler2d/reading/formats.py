@@ -14,7 +14,7 @@ from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import parsed
 from crawler2d.reading.scaling import scaled
 from crawler2d.reading.sdf import read_sdf
-from crawler2d.reading.telling import Doubt
+from crawler2d.reading.telling import Doubt, noted
 from crawler2d.reading.urdf import read_urdf
 from crawler2d.reading.xacro import expanded
 
@@ -57,12 +57,13 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
     Raises
     ------
     ScenarioError
-        If it breaks a rule of its format, or needs what is not there.
+        If it breaks a rule of its format, or needs what is not there; what was left out before is
+        in its notes.
     """
     name, files = path.name, Files(path, how.packages)
     doubts: list[Doubt] = []
     if path.suffix == ".xacro":
-        data, includes = expanded(
+        data, doubts = expanded(
             files,
             data,
             parsed(data, name),  # entities are refused before anything else reads the file
@@ -71,27 +72,26 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
             leave_out=how.leaves_out_missing,
         )
         name = f"{name} (expanded)"
-        reason = "is left out: its package is missing"
-        doubts += [(path.name, include, reason) for include in includes]
-    root = parsed(data, name)
-    if how.scale not in (None, 1.0):
-        if root.tag not in ("sdf", "robot"):
-            rule = "must be 1 for MJCF: <compiler> and its defaults say what its lengths are"
-            raise ScenarioError("scale", how.scale, rule)
-        data = scaled(data, how.scale, name)
+    with noted(doubts):
         root = parsed(data, name)
-    shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
-    if len(shapes) > _MOST_SHAPES:
-        rule = f"must have at most {_MOST_SHAPES} collision shapes"
-        shapes[_MOST_SHAPES].refuse(len(shapes), rule)
-    text = data.decode("utf-8", errors="replace")
-    meshes = Meshes(rule=how.mesh, files=files, doubts=doubts)
-    if root.tag == "sdf":
-        tree = read_sdf(root, how.model, meshes)
-    elif root.tag == "robot":
-        tree = read_urdf(root, meshes, doubts, leave_out=how.leaves_out_missing)
-    elif root.tag == "mujoco":
-        tree = read_mjcf(root, text, how.model, meshes)
-    else:
-        root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
-    return Found(tree, text, doubts)
+        if how.scale not in (None, 1.0):
+            if root.tag not in ("sdf", "robot"):
+                rule = "must be 1 for MJCF: <compiler> and its defaults say what its lengths are"
+                raise ScenarioError("scale", how.scale, rule)
+            data = scaled(data, how.scale, name)
+            root = parsed(data, name)
+        shapes = [element for element in root.within() if element.tag in ("collision", "geom")]
+        if len(shapes) > _MOST_SHAPES:
+            rule = f"must have at most {_MOST_SHAPES} collision shapes"
+            shapes[_MOST_SHAPES].refuse(len(shapes), rule)
+        text = data.decode("utf-8", errors="replace")
+        meshes = Meshes(rule=how.mesh, files=files, doubts=doubts)
+        if root.tag == "sdf":
+            tree = read_sdf(root, how.model, meshes)
+        elif root.tag == "robot":
+            tree = read_urdf(root, meshes, doubts, leave_out=how.leaves_out_missing)
+        elif root.tag == "mujoco":
+            tree = read_mjcf(root, text, how.model, meshes)
+        else:
+            root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
+    return Found(tree, text, doubts + files.doubts)

@@ -58,7 +58,7 @@ class How:
     forward: str | None = None
     model: str | None = None
     mesh: MeshRule = "refuse"
-    missing: str = "refuse"
+    missing: str = "leave_out"
     tracks: Collection[str] = ()
     ground_friction: float | None = None
     tolerance: float = TOLERANCE

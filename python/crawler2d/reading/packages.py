@@ -1,15 +1,17 @@
 """Where the packages are that a model names.
 
 They are looked for in the tree of the model, by their manifests, then in the folders that the
-variables of ROS and Gazebo name. Nothing but manifests is read, and folders are looked into up to a
-number and a depth.
+variables of ROS and Gazebo name. Where no manifest has the name, a file of the package may still be
+told by its path. Nothing but manifests is read, and folders are looked into up to a number and a
+depth.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -68,7 +70,7 @@ class Packages:
     ) -> None:
         self._given = given
         self._read = read
-        self._starts = _starts(folder)
+        self._starts, self._beside = _starts(folder)
 
     def find(self, name: str) -> Path | None:
         """Return the folder of a package; None if there is none."""
@@ -78,6 +80,34 @@ class Packages:
             return None
         return self._in_tree.get(name) or self._named(name) or self._in_ros.get(name)
 
+    def file(self, package: str, inside: str) -> Path | None:
+        """Return the file of a package without a manifest, if its path tells it.
+
+        That is the only file of the tree whose path ends in the name of the package and the path
+        inside, or else in the path inside, if that has a folder. What is near comes first: the
+        package of the model, then what that is part of.
+        """
+        parts = tuple(part for part in inside.split("/") if part not in ("", "."))
+        if not parts or ".." in parts or not _ALLOWED.fullmatch(package):
+            return None
+        for tree in self._trees:
+            paths = [folder / parts[-1] for folder, files in tree if parts[-1] in files]
+            for ending in ((package, *parts), parts):
+                fit = [path for path in paths if path.parts[-len(ending) :] == ending]
+                if fit and len(ending) > 1:
+                    return fit[0] if len(fit) == 1 else None
+        return None
+
+    def files(self, suffixes: tuple[str, ...]) -> list[Path]:
+        """List files of the package round the model, or else of its repository or folder."""
+        tree = self._trees[0]
+        return [
+            folder / name
+            for folder, names in tree
+            for name in sorted(names)
+            if name.endswith(suffixes)
+        ]
+
     def hold(self, path: Path) -> bool:
         """Whether a path, with all links followed, is in a package of the tree."""
         return any(path.is_relative_to(folder) for folder in self._in_tree.values())
@@ -86,7 +116,8 @@ class Packages:
     def looked(self) -> str:
         """Where packages are looked for, for errors."""
         named = [variable for variable in VARIABLES if os.environ.get(variable)]
-        return " and in ".join([f"{self._starts[-1]} and below", *named])
+        widest = [*self._starts, *self._beside][-1]
+        return " and in ".join([f"{widest} and below", *named])
 
     def _named(self, name: str) -> Path | None:
         """Look where a variable says how its folders are laid out."""
@@ -100,7 +131,12 @@ class Packages:
 
     @cached_property
     def _in_tree(self) -> dict[str, Path]:
-        return self._below(self._starts)
+        return self._below([*self._starts, *self._beside])
+
+    @cached_property
+    def _trees(self) -> list[list[tuple[Path, set[str]]]]:
+        """Folders with their files, of the package of the model and of what that is part of."""
+        return [list(_within([start])) for start in self._starts]
 
     @cached_property
     def _in_ros(self) -> dict[str, Path]:
@@ -110,22 +146,9 @@ class Packages:
     def _below(self, starts: Iterable[Path]) -> dict[str, Path]:
         """Look into folders, those near the start first, for manifests."""
         found: dict[str, Path] = {}
-        seen: set[Path] = set()
-        for start in starts:
-            level = [start]
-            for _ in range(_DEEPEST):
-                below: list[Path] = []
-                for folder in level:
-                    if folder in seen:
-                        continue
-                    if len(seen) == _MOST:
-                        return found
-                    seen.add(folder)
-                    files, inside = _listed(folder)
-                    for name in self._names(folder, files):
-                        found.setdefault(name, folder)
-                    below += inside
-                level = below
+        for folder, files in _within(starts):
+            for name in self._names(folder, files):
+                found.setdefault(name, folder)
         return found
 
     def _names(self, folder: Path, files: set[str]) -> list[str]:
@@ -148,18 +171,42 @@ def folders(variable: str) -> list[Path]:
     return [Path(os.path.realpath(part)) for part in parts if part]
 
 
-def _starts(folder: Path) -> list[Path]:
-    """Say where to look for packages, the nearest first: the package, then what it is part of."""
+def _starts(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Say where to look for packages, the nearest first: the package, then what it is part of.
+
+    Without a repository that is the outermost package; folders above may have packages beside it,
+    but not those in which anything may lie.
+    """
     near = [folder, *folder.parents][:_FARTHEST]
     packages = [each for each in near if any((each / name).is_file() for name in MANIFESTS)]
     for each in near:
         if (each / ".git").exists():
-            return [*packages[:1], each]
+            return list(dict.fromkeys([*packages[:1], each])), []
     if packages:
         wider = packages[-1].parents[:_WIDER]
-        too_wide = (Path(folder.anchor), Path.home())
-        return [packages[0], packages[-1], *(each for each in wider if each not in too_wide)]
-    return [folder]
+        all_in = (Path.home(), Path(os.path.realpath(tempfile.gettempdir())))
+        beside = [each for each in wider if not any(wide.is_relative_to(each) for wide in all_in)]
+        return list(dict.fromkeys([packages[0], packages[-1]])), beside
+    return [folder], []
+
+
+def _within(starts: Iterable[Path]) -> Iterator[tuple[Path, set[str]]]:
+    """Go through folders with what is in them, those near a start first, each once."""
+    seen: set[Path] = set()
+    for start in starts:
+        level = [start]
+        for _ in range(_DEEPEST):
+            below: list[Path] = []
+            for folder in level:
+                if folder in seen:
+                    continue
+                if len(seen) == _MOST:
+                    return
+                seen.add(folder)
+                files, inside = _listed(folder)
+                yield folder, files
+                below += inside
+            level = below
 
 
 def _listed(folder: Path) -> tuple[set[str], list[Path]]:

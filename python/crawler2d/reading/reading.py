@@ -24,6 +24,7 @@ from crawler2d.reading.how import TOLERANCE, How
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.silhouettes import Silhouette, silhouettes
 from crawler2d.reading.sources import Sources
+from crawler2d.reading.telling import noted
 
 __all__ = ["Reading", "read_robot", "read_text"]
 
@@ -133,7 +134,7 @@ def read_robot(
     forward: Literal["+x", "-x", "+y", "-y"] | None = None,
     model: str | None = None,
     mesh: MeshRule = "refuse",
-    missing: Literal["refuse", "leave_out"] = "refuse",
+    missing: Literal["leave_out", "refuse"] = "leave_out",
     tracks: Collection[str] = (),
     ground_friction: float | None = None,
     tolerance: float = TOLERANCE,
@@ -164,8 +165,10 @@ def read_robot(
         Name of the model in a world; None takes the only one that can move.
     mesh : {"refuse", "hull", "leave_out"}
         What to do with collision meshes: "hull" takes the hull of an .stl or .obj file.
-    missing : {"refuse", "leave_out"}
-        What to do with includes of packages that are not there, and with joints of missing links.
+    missing : {"leave_out", "refuse"}
+        What to do with what is not there. "leave_out" does without, and doubts each: includes,
+        calls of macros that no file has, joints of missing links. A file of a package that is not
+        found is then told by its path, and an argument without a value by a setting in the package.
     tracks : collection of str
         Links whose surface something outside the file moves, as a controller in Isaac does.
     ground_friction : float, optional
@@ -197,7 +200,7 @@ def read_robot(
     ------
     ScenarioError
         If the file cannot be read, breaks a rule of its format, or has what a side view cannot
-        hold. The error names file, line and element.
+        hold. The error names file, line and element; its notes say what was left out before.
     ImportError
         If the library for xacro or MJCF is missing; the message names the extra to install.
 
@@ -276,9 +279,10 @@ def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[Scenario
     tree = replace(found.tree, tracks=_known(how.tracks, found.tree))
     engine = how.engine or ("mujoco" if tree.format == "MJCF" else "gz")
     ground = ENGINES[engine].usual if how.ground_friction is None else how.ground_friction
-    robot, friction, work = assembled(
-        tree, forward=how.forward, tolerance=how.tolerance, engine=engine, ground=ground
-    )
+    with noted(found.doubts):
+        robot, friction, work = assembled(
+            tree, forward=how.forward, tolerance=how.tolerance, engine=engine, ground=ground
+        )
     robot.wheels()  # the core checks every rule of a robot
     doubts = [ScenarioWarning(*doubt) for doubt in [*found.doubts, *work.told.doubts]]
     notes = list(work.told.notes)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import islice
 
+from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
-__all__ = ["Doubt", "Telling", "place_of"]
+__all__ = ["Doubt", "Telling", "noted", "place_of"]
 
 Doubt = tuple[str, object, str]
 """Path, value and reason of a `ScenarioWarning`."""
+
+_MOST_NOTES = 10
 
 
 @dataclass(slots=True, kw_only=True)
@@ -45,3 +51,14 @@ class Telling:
 def place_of(runner: Runner) -> Where:
     """Return the line that says where a wheel or drum is."""
     return runner.link.pose_at if runner.joint is not None else runner.shape.pose_at
+
+
+@contextmanager
+def noted(doubts: Iterable[Doubt]) -> Iterator[None]:
+    """Add to a refusal what was done without before it, which may be its cause, as notes."""
+    try:
+        yield
+    except ScenarioError as error:
+        for doubt in islice(doubts, _MOST_NOTES):
+            error.add_note(str(ScenarioWarning(*doubt)))
+        raise

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
 from crawler2d.reading.files import Files
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["expanded"]
 
@@ -19,7 +20,7 @@ def expanded(
     trusted: bool,
     arguments: Mapping[str, str],
     leave_out: bool,
-) -> tuple[bytes, list[str]]:
+) -> tuple[bytes, list[Doubt]]:
     """Expand a file.
 
     Parameters
@@ -35,20 +36,21 @@ def expanded(
     arguments : mapping of str to str
         Values of its ``xacro:arg``.
     leave_out : bool
-        Whether includes of packages that are not there are left out.
+        Whether it does without what is not there: includes and calls of their macros are left out,
+        arguments without a value are looked for in settings.
 
     Returns
     -------
     text : bytes
         The URDF.
-    left_out : list of str
-        The includes that were left out.
+    doubts : list of Doubt
+        What was left out, and what was taken for something that is not there.
 
     Raises
     ------
     ScenarioError
-        If it does not expand, needs packages that are not there, or is not trusted and has
-        expressions of more than plain data and known functions.
+        If it does not expand, needs what is not there, or is not trusted and has expressions of
+        more than plain data and known functions.
     ImportError
         If xacrodoc is missing; the message names the extra to install.
     """
@@ -61,10 +63,10 @@ def expanded(
         "file": root.where.file,
         "files": files.plain,
         "trusted": trusted,
-        "arguments": dict(arguments),
+        "arguments": {name: str(value) for name, value in arguments.items()},
         "leave_out": leave_out,
     }
     answer = answered(
         "crawler2d.reading.xacro_child", question, file=root.where.file, folder=files.folder
     )
-    return answer["text"].encode(), answer["left_out"]
+    return answer["text"].encode(), [(path, value, why) for path, value, why in answer["doubts"]]

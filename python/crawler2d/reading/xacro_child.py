@@ -3,41 +3,43 @@
 from __future__ import annotations
 
 import builtins
-import errno
-import io
 import os
 import re
 from collections import ChainMap
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
-from typing import IO, Any, NoReturn
-from xml.sax.saxutils import escape
+from typing import Any, NoReturn
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
+from crawler2d.reading.arguments import Arguments, Setting, doubts_of, settings_for
 from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
 from crawler2d.reading.files import Files
 from crawler2d.reading.limits import serve
+from crawler2d.reading.telling import Doubt
+from crawler2d.reading.xacro_files import XacroFiles
+from crawler2d.reading.xacro_macros import XacroMacros
 
-_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^)\s]+)\s*\)")
 # What xacro says was unknown to it, or could not be evaluated.
 _CULPRITS = re.compile(r"unknown macro name: (\S+)|'([^']{2,})'")
 _EVALUATED = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
-_INCLUDE = re.compile(r"<xacro:include\b[^>]*?/>|<xacro:include\b[^>]*?>\s*</xacro:include>")
+_MOST_PASSES = 5
+_MOST_DOUBTS = 100
 
 
 def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
     """Import xacrodoc, which brings xacro along and needs no ROS."""
     module = extra("xacrodoc", "models")
-    xacro, arguments = extra("xacro", "models"), extra("xacro.substitution_args", "models")
-    return lambda question: _expanded(module, xacro, arguments, **question)
+    xacro, substitution = extra("xacro", "models"), extra("xacro.substitution_args", "models")
+    own = SimpleNamespace(**vars(xacro), resolve_args=substitution.resolve_args)
+    return lambda question: _expanded(module, xacro, substitution, own, **question)
 
 
 def _expanded(
     module: Any,
     xacro: Any,
     substitution: Any,
+    own: SimpleNamespace,
     *,
     text: str,
     file: str,
@@ -46,95 +48,84 @@ def _expanded(
     arguments: dict[str, str],
     leave_out: bool,
 ) -> dict[str, Any]:
-    door = _Door(Files(**files), file, text, leave_out=leave_out)
-    builtins.open = door  # type: ignore[assignment]
-    _find_by(door, substitution)
-    if not trusted:
-        _check(xacro, substitution)
-    left_out: list[str] = []
-    if leave_out:
-        text = _without_missing(door.files, text, left_out)
-    try:
-        document = module.XacroDoc.from_string(text, subargs=arguments, resolve_packages=False)
-        return {"text": document.to_urdf_string(), "left_out": left_out}
-    except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
-        refusal, at = _refusal(error)
-        if isinstance(refusal, NotAllowed):
-            place = door.place([f"${{{at}}}", at, refusal.expression], first=_file_of(xacro))
-            rule = f"{refusal.rule}, or be trusted: trusted=True lets it through"
-            raise ScenarioError(f"{place}: {at}", refusal.found, rule) from None
-        if refusal:
-            raise refusal from None
-        said = " ".join(str(error).split()) or type(error).__name__
-        rule = "must be xacro that expands"
-        if left_out:
-            rule += ", which may need an include that was left out: packages= says where it is"
-        culprits = [part for pair in _CULPRITS.findall(said) for part in pair if part]
-        raise ScenarioError(door.place(culprits), said, rule) from None
-
-
-class _Door:
-    """Takes the place of `open`: whatever xacro and its libraries read is read as the model is."""
-
-    def __init__(self, files: Files, file: str, text: str, *, leave_out: bool) -> None:
-        self.files = files
-        self.texts = {file: text}  # of the model, and of what it includes by their paths
-        self.leave_out = leave_out
-
-    def __call__(
-        self, path: str | os.PathLike[str], mode: str = "r", *_: object, **__: object
-    ) -> IO[Any]:
-        if mode not in ("r", "rt", "rb"):
-            raise PermissionError(errno.EACCES, "must only be read", str(path))
-        name = str(Path(path).absolute())
+    """Go through a file until no more settings and macros are found that it lacks."""
+    shared = Files(**files)
+    settings: dict[str, Setting] = {}
+    lacking: list[str] = []
+    macros: dict[str, Any] = {}
+    for _ in range(_MOST_PASSES):
+        values = Arguments({name: each.value for name, each in settings.items()} | arguments)
+        door = XacroFiles(shared, file, text, leave_out=leave_out)
+        calls = XacroMacros(door, leave_out=leave_out, known=macros)
+        shared.doubts.clear()
+        builtins.open = door  # type: ignore[assignment]
+        door.attach(xacro, substitution, own)
+        calls.attach(xacro, own)
+        if not trusted:
+            _check(xacro, substitution)
+        xacro.filestack = xacro.macrostack = None
+        urdf, failure = "", None
         try:
-            data = self.files.read(name, at=self.place([Path(path).name]))
-        except ScenarioError as error:
-            if isinstance(error.__cause__, FileNotFoundError):  # an include may be optional
-                raise error.__cause__ from None
-            raise
-        self.texts[name] = data.decode(errors="replace")
-        return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode(), newline=None)
+            made = module.XacroDoc.from_string(text, subargs=values, resolve_packages=False)
+            urdf = made.to_urdf_string()
+        except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
+            failure = error
+        lacking += [name for name in values.lacking if name not in lacking]
+        found, differing = settings_for(shared, lacking) if leave_out and lacking else ({}, [])
+        wanted = {*lacking, *door.defaults}
+        found = {name: each for name, each in found.items() if name in wanted - arguments.keys()}
+        later = {name: calls.defined[name] for name in calls.unknown & calls.defined.keys()}
+        if found == settings and later.keys() <= macros.keys():
+            break
+        settings, macros = found, macros | later
+    if values.lacking:
+        _refuse_arguments(door, values.lacking, differing, more=failure is not None)
+    if failure is not None:
+        _refuse(failure, door, xacro)
+    taken = doubts_of(settings, door.defaults, lacking)
+    return {"text": urdf, "doubts": _told([*door.doubts, *shared.doubts, *taken])}
 
-    def place(self, words: list[str], first: str = "") -> str:
-        """Return file and line where one of some words stands first: of a file, or of them all."""
-        for path in (first, *self.texts):
-            text = self.texts.get(path, "")
-            spelled = [each for word in words if word for each in (word, escape(word))]
-            found = [text.find(word) for word in spelled if word in text]
-            if found:
-                return f"{Path(path).name}:{text.count(chr(10), 0, min(found)) + 1}"
-        return next(iter(self.texts))
 
-    def find(self, name: str) -> str:
-        """Return the folder of a package."""
-        folder = self.files.package(name)
-        if folder is not None:
-            return str(folder)
-        rule = (
-            f"must have its packages, which are looked for in {self.files.looked}:"
-            " packages={name: folder} says where each is"
+def _told(doubts: list[Doubt]) -> list[Doubt]:
+    """Return each doubt once, and not too many."""
+    told = list(dict.fromkeys(doubts))
+    if len(told) > _MOST_DOUBTS:
+        path, value, _ = told[_MOST_DOUBTS - 1]
+        reason = f"is one of {len(told) - _MOST_DOUBTS + 1} more places of this kind"
+        told[_MOST_DOUBTS - 1 :] = [(path, value, reason)]
+    return told
+
+
+def _refuse_arguments(
+    door: XacroFiles, lacking: list[str], differing: list[str], *, more: bool
+) -> NoReturn:
+    """Refuse a file for all arguments that have no value."""
+    names = dict.fromkeys([*lacking, *(door.lacking() if more else [])])
+    rule = "must have a value for each argument, by a default or by arguments={name: value}"
+    if differing:
+        rule += f"; files of settings differ: {'; '.join(differing)}"
+    raise ScenarioError(door.place([f"$(arg {name})" for name in names]), ", ".join(names), rule)
+
+
+def _refuse(error: Exception, door: XacroFiles, xacro: Any) -> NoReturn:
+    """Refuse a file that does not expand, with the line and what would help."""
+    refusal, at = _refusal(error)
+    if isinstance(refusal, NotAllowed):
+        place = door.place([f"${{{at}}}", at, refusal.expression], first=_file_of(xacro))
+        rule = f"{refusal.rule}, or be trusted: trusted=True lets it through"
+        raise ScenarioError(f"{place}: {at}", refusal.found, rule) from None
+    if refusal:
+        raise refusal from None
+    said = " ".join(str(error).split()) or type(error).__name__
+    rule = "must be xacro that expands"
+    if door.left_out:
+        lost = " and ".join(f"{name} ({at})" for at, name in door.left_out[:3])
+        rule += (
+            f", for which it may need what was left out, {lost}: put the file there, or say by"
+            " packages={name: folder} where its package is"
         )
-        if not self.leave_out:
-            rule += ', missing="leave_out" leaves out includes of others'
-        others = _FIND.findall(next(iter(self.texts.values())))
-        lost = [each for each in others if self.files.package(each) is None]
-        place = self.place([f"{how} {each}" for each in (name, *lost) for how in _FINDS])
-        raise ScenarioError(place, ", ".join(dict.fromkeys([*lost, name])), rule)
-
-
-_FINDS = ("find", "find-pkg-share")
-
-
-def _find_by(door: _Door, substitution: Any) -> None:
-    """Let xacro find packages as all the rest does, also by the word of ROS 2's launch files."""
-    resolved = substitution.resolve_args
-
-    def resolve(text: str, context: Any = None, filename: Any = None) -> Any:
-        return resolved(re.sub(r"^\$\(find-pkg-share\s", "$(find ", text), context, filename)
-
-    substitution.resolve_args = resolve
-    substitution._eval_find = door.find
+    culprits = [part for pair in _CULPRITS.findall(said) for part in pair if part]
+    raise ScenarioError(door.place(culprits), said, rule) from None
 
 
 def _check(xacro: Any, substitution: Any) -> None:
@@ -206,19 +197,6 @@ def _file_of(xacro: Any) -> str:
     macros, files = xacro.macrostack or [], xacro.filestack or []
     files = macros[-1].history[-1] if macros else files
     return os.path.abspath(files[-1]) if files and files[-1] else ""
-
-
-def _without_missing(files: Files, text: str, left_out: list[str]) -> str:
-    """Take out the includes of packages that are not there; lines stay what they are."""
-
-    def kept(include: re.Match[str]) -> str:
-        for name in _FIND.findall(include[0]):
-            if files.package(name) is None:
-                left_out.append(" ".join(include[0].split()))
-                return "\n" * include[0].count("\n")
-        return include[0]
-
-    return _INCLUDE.sub(kept, text)
 
 
 if __name__ == "__main__":

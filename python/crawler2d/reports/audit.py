@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
     reading.add_argument("--model", help="name of the model in a world")
     reading.add_argument("--mesh", choices=get_args(MeshRule), default="refuse")
-    reading.add_argument("--missing", choices=["refuse", "leave_out"], default="refuse")
+    reading.add_argument("--missing", choices=["leave_out", "refuse"], default="leave_out")
     reading.add_argument(
         "--track", action="append", default=[], help="a link that moves; repeatable"
     )
@@ -91,7 +91,8 @@ def run(options: argparse.Namespace) -> int:
         print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
-        print(f"audit: {_as_options(str(error))}", file=sys.stderr)
+        told = [f"audit: {error}", *getattr(error, "__notes__", ())]
+        print(_as_options("\n  before that: ".join(told)), file=sys.stderr)
         return 2
     return 1 if found.seizes else 0
 
@@ -137,6 +138,8 @@ _OPTIONS = {
     'mesh="leave_out"': "--mesh leave_out",
     "packages={name: folder}": "--package NAME=FOLDER",
     "packages=": "--package",
+    "arguments={name: value}": "--argument NAME=VALUE",
+    "arguments=": "--argument",
     "tracks=": "--track",
     "model=": "--model",
     "scale=": "--scale ",
