@@ -47,8 +47,8 @@ def of_model(reading: Reading) -> Iterator[Finding]:
 def wheel_links(reading: Reading) -> list[tuple[Link, Joint]]:
     """Return the links of all wheels with the joints that they turn on; drums have none."""
     joints = reading.tree.joints
-    carrying = [link for link in _carrying(reading) if link.name in joints]
-    return [(each, joints[each.name]) for each in carrying if joints[each.name].is_unlimited]
+    named = set(reading.wheels["name"].tolist())  # that of a drum has its shape, too
+    return [(link, joints[link.name]) for link in reading.tree.links if link.name in named]
 
 
 def _carrying(reading: Reading) -> list[Link]:
