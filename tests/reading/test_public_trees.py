@@ -1,4 +1,4 @@
-"""Main files of public repositories, read in their trees by default: their keys have the figures."""
+"""Main files of public repositories, read in their trees by default: as their keys say."""
 
 from __future__ import annotations
 
