@@ -81,7 +81,9 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 PARTS = {
     **MESHES,
     "wheels.xacro": f"{carts.XACRO}{carts.WHEELS}</robot>".encode(),
+    "any/urdf/wheels.xacro": f"{carts.XACRO}{carts.WHEELS}</robot>".encode(),
     "masses.yaml": b"hull: 8\nothers: [1, 2.5]\n",
+    "settings.yaml": b"# sizes\nhull_mass: 8 # [kg]\nload: '0'\nboxes:\n  first: 1\nlist: [1, 2]\n",
     "part.png": b"\x89PNG\r\n\x1a\n"
     + _chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 0, 0, 0, 0))
     + _chunk(b"IDAT", zlib.compress(b"\0\x10\x20\x30\x40" * 4))
@@ -125,6 +127,29 @@ URDF = {
     "gears.urdf": _written(GEARS, "urdf"),
     "mesh.urdf": ON_MESHES["part.obj"],
 }
+
+
+def _with_gaps() -> bytes:
+    """Lack files, packages, macros and arguments, in the xacro of long ago, and do without."""
+    parts = """
+<property name="low" value="0.001"/>
+<xacro:include filename="lost.xacro"/>
+<xacro:include filename="$(find nowhere)/urdf/lost.xacro"/>
+<include filename="$(find parts)/urdf/wheels.xacro"/>
+<xacro:sensor name="lidar"><origin xyz="0 0 ${missing}"/></xacro:sensor>
+<if value="$(arg load)"><xacro:cargo mass="1"/></if>
+<xacro:late/>
+<macro name="box_of" params="size *where"><collision><xacro:insert_block name="where"/>
+  <geometry><box size="${size} ${size} ${low}"/></geometry></collision></macro>
+<link name="plate"><box_of size="0.1"><origin xyz="0 0 0.1"/></box_of></link>
+<joint name="fix" type="fixed"><parent link="hull"/><child link="plate"/></joint>
+<joint name="mount" type="fixed"><parent link="hull"/><child link="lidar"/></joint>
+<xacro:macro name="late"><xacro:property name="done" value="1"/></xacro:macro>
+"""
+    text = carts.urdf(parts, mass="${$(arg hull_mass) + 0}")
+    return text.replace('<robot name="cart">', carts.XACRO).encode()
+
+
 MJCF = {
     "cart.xml": (CARTS / "cart.xml").read_bytes(),
     "belt.xml": _written(c2d.BeltTrack(), "mjcf", TRIANGLE),
@@ -147,6 +172,7 @@ XACRO = {
         f'{carts.XACRO}<xacro:property name="m" value="${{xacro.load_yaml(\'masses.yaml\')}}"/>',
     )
     .encode(),
+    "gaps.xacro": _with_gaps(),
 }
 
 NUMBERS = (

@@ -36,6 +36,7 @@ MOST = 500
 """[MB] For all files, one after the other, and for any child with its imports."""
 
 LENIENT: dict[str, Any] = {"missing": "leave_out", "mesh": "leave_out"}
+NAMED_BY_XACRO = tuple(name for name in PARTS if name.endswith(("xacro", "yaml")))
 TRUST = pytest.mark.parametrize("trusted", [True, False])
 LOOP = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <link name="${max(range(10**12))}"/></robot>"""
@@ -51,23 +52,33 @@ def computed() -> float:
     return time.process_time() + used.ru_utime + used.ru_stime
 
 
+def put_parts(folder: Path, parts: tuple[str, ...], draw: random.Random | None = None) -> None:
+    """Write what models name; if one draws, one of it is mutated every other time."""
+    faulty = draw.choice(parts) if draw and parts and draw.random() < 0.5 else None
+    for name in parts:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        data = PARTS[name]
+        (folder / name).write_bytes(mutated(data, draw) if draw and name == faulty else data)
+
+
 def go_through(
     folder: Path,
     count: int,
     originals: dict[str, bytes],
     standing: StandingChild | None = None,
     models: dict[str, bytes] | None = None,
+    parts: tuple[str, ...] = (),
     **how: Any,
 ) -> Account:
     """Read that many mutated files; a child that stands ready may do what the reader's do.
 
-    Where there are models, what is mutated is the mesh that each names.
+    Where there are models, what is mutated is the mesh that each names. Of the parts that are
+    given, one is mutated, too, in every other case.
     """
     account = Account("model files")
     names = sorted(originals)
     lay_out(folder, sorted({Path(name).suffix[1:] for name in (*names, *PARTS)}))
-    for name, data in PARTS.items():
-        (folder / name).write_bytes(data)
+    put_parts(folder, tuple(PARTS))
     before, largest_child = megabytes(), megabytes(resource.RUSAGE_CHILDREN)
     for number in range(count):
         draw = random.Random(f"{SEED} {number}")
@@ -80,6 +91,7 @@ def go_through(
             path.write_bytes(models[name])
         elif draw.random() < ODD_SHARE:
             path = folder / f"{draw.choice(list(ODD))}{path.suffix}"
+        put_parts(folder, parts, draw)
         case = f"case {number} of {path.name if models is None else name}"
         start, asked = computed(), standing.asked if standing else 0
         signal.setitimer(signal.ITIMER_REAL, PATIENCE)
@@ -176,7 +188,8 @@ def test_a_mutated_mjcf_file_is_read_or_refused(tmp_path: Path) -> None:
 @TRUST
 def test_a_mutated_xacro_file_is_read_or_refused(tmp_path: Path, trusted: bool) -> None:
     pytest.importorskip("xacrodoc")
-    check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, trusted=trusted, **LENIENT))
+    how = {"trusted": trusted, **LENIENT}
+    check(go_through(tmp_path, cases("CHILDREN", 20), XACRO, parts=NAMED_BY_XACRO, **how))
 
 
 @pytest.mark.soak
@@ -193,7 +206,8 @@ def test_20000_mutated_xacro_files_are_read_or_refused(tmp_path: Path, trusted: 
     pytest.importorskip("xacrodoc")
     how = {"trusted": trusted, **LENIENT}
     with StandingChild("crawler2d.reading.xacro_child") as standing:
-        check(go_through(tmp_path, cases("XACRO", 20_000), XACRO, standing, **how))
+        count = cases("XACRO", 20_000)
+        check(go_through(tmp_path, count, XACRO, standing, parts=NAMED_BY_XACRO, **how))
 
 
 def test_a_child_that_stands_ready_is_ended_as_any_other(tmp_path: Path) -> None:

@@ -50,10 +50,11 @@ def _expanded(
 ) -> dict[str, Any]:
     """Go through a file until no more settings and macros are found that it lacks."""
     shared = Files(**files)
-    settings: dict[str, Setting] = {}
+    found: dict[str, Setting] = {}
     lacking: list[str] = []
     macros: dict[str, Any] = {}
     for _ in range(_MOST_PASSES):
+        settings = found
         values = Arguments({name: each.value for name, each in settings.items()} | arguments)
         door = XacroFiles(shared, file, text, leave_out=leave_out)
         calls = XacroMacros(door, leave_out=leave_out, known=macros)
@@ -77,7 +78,7 @@ def _expanded(
         later = {name: calls.defined[name] for name in calls.unknown & calls.defined.keys()}
         if found == settings and later.keys() <= macros.keys():
             break
-        settings, macros = found, macros | later
+        macros = macros | later
     if values.lacking:
         _refuse_arguments(door, values.lacking, differing, more=failure is not None)
     if failure is not None:
