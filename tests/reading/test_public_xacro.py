@@ -411,6 +411,9 @@ def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
     with pytest.raises(c2d.ScenarioError, match=rule):
         with_arguments(tmp_path, "hull")
     assert with_arguments(tmp_path, "hull", arguments={"hull": 8}).robot.mass == 12.0
+    (tmp_path / "a.yaml").write_text("hull: 3\nload: 5")
+    with pytest.raises(c2d.ScenarioError, match=rule):
+        with_arguments(tmp_path, "hull", "load")
 
 
 def test_settings_are_not_asked_on_request_and_for_a_default(tmp_path: Path) -> None:
@@ -484,6 +487,16 @@ def test_elements_of_urdf_and_of_plugins_are_no_calls(tmp_path: Path) -> None:
     reading = read(tmp_path, text, "cart.xacro")
     assert reading.doubts == ()
     assert '<property name="c" value="d"/>' in reading.text
+
+
+def test_a_macro_calls_others_without_a_prefix_but_not_itself(tmp_path: Path) -> None:
+    macros = '<macro name="inner" params="of"><inner of="${of}"/></macro>'
+    macros += '\n<macro name="outer" params="of"><inner of="${of}"/></macro>\n<outer of="a"/>'
+    reading = read(tmp_path, urdf(macros, WHEELS).replace(OLD_NAME, OLD), "cart.xacro")
+    assert [doubt.partition(" ")[0] for doubt in reading.doubts] == [
+        f"cart.xacro:{line}" for line in (1, 3, 2)
+    ]
+    assert reading.text.count('<inner of="a"/>') == 1
 
 
 def test_an_element_with_other_attributes_is_no_call(tmp_path: Path) -> None:

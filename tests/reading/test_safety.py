@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import FILES, TENSOR, WHEELS, read, urdf
+from tests.reading.carts import FILES, TENSOR, WHEELS, XACRO, read, urdf
 
 BOMB = """<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa">
 <!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
@@ -181,6 +181,43 @@ def test_xacro_that_takes_all_time_or_memory_is_ended(tmp_path: Path) -> None:
     path.write_text(text)
     with pytest.raises(c2d.ScenarioError, match=r"loop\.xacro(:1)? must be"):
         c2d.read_robot(path, trusted=True)
+
+
+ENDLESS = {
+    "an include of itself": '<xacro:include filename="cart.xacro"/>',
+    "includes of each other": '<xacro:include filename="a.xacro"/>',
+    "a macro before its definition": '<xacro:a/><xacro:macro name="a"><xacro:a/></xacro:macro>',
+    "macros of each other": '<xacro:a/><xacro:macro name="a"><xacro:b/></xacro:macro>'
+    '<xacro:macro name="b"><xacro:a/></xacro:macro>',
+    "calls without a prefix": '<xacro:macro name="a"><b/></xacro:macro><xacro:macro name="b"><a/>'
+    "</xacro:macro><xacro:property name='p' value='${p}'/><a/>${p}",
+    "arguments of arguments": '<xacro:arg name="a" default="$(arg b)"/><x y="$(arg a)$(arg c)"/>',
+    "a property of itself": '<property name="a" value="${a}"/><x y="${a}"/>',
+    "40,000 unknown macros": "<xacro:a/>" * 40_000 + "${lost}",
+    "20,000 unknown arguments": "".join(f"$(arg a{n})" for n in range(20_000)),
+}
+
+
+@pytest.mark.parametrize("what", ENDLESS)
+def test_xacro_that_goes_round_without_an_end_is_refused(tmp_path: Path, what: str) -> None:
+    pytest.importorskip("xacrodoc")
+    for name, other in ("ab", "ba"):
+        include = f'<xacro:include filename="{other}.xacro"/>'
+        (tmp_path / f"{name}.xacro").write_text(f"{XACRO}{include}</robot>")
+    text = urdf(WHEELS, ENDLESS[what]).replace('<robot name="cart">', XACRO)
+    start = time.process_time()
+    with pytest.raises(c2d.ScenarioError, match=r"must be (xacro|understood)|must have a value"):
+        read(tmp_path, text, "cart.xacro")
+    assert time.process_time() - start < 2.0
+
+
+def test_a_thousand_files_of_settings_cost_little(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    for number in range(1000):
+        (tmp_path / f"{number:04}.yaml").write_text("a: 1\n" * 10_000)
+    text = urdf(WHEELS, mass="$(arg hull)").replace('<robot name="cart">', XACRO)
+    with pytest.raises(c2d.ScenarioError, match="must have a value for each argument"):
+        read(tmp_path, text, "cart.xacro")
 
 
 def test_a_folder_of_the_model_is_not_on_the_path_of_the_child(tmp_path: Path) -> None:

@@ -10,15 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from crawler2d.errors import ScenarioError
 from crawler2d.reading.files import Files
 from crawler2d.reading.telling import Doubt
 
-__all__ = ["Arguments", "Setting", "doubts_of", "settings_for"]
+__all__ = ["Arguments", "Setting", "Settings", "doubts_of"]
 
 _MOST_FILES = 100
 _LARGEST = 64_000  # [bytes]
+_MOST_BYTES = 1_000_000
 _LINE = re.compile(r"([A-Za-z_]\w*) ?: +(\S.*)")
 _QUOTED = re.compile(r"""(["'])([^"'\\]*)\1\s*(?:\s#.*)?""")
 _NO_SCALAR = "[]{}&*!|>%@`\"'#,?:"  # lists, blocks, anchors, comments and the like begin so
@@ -54,61 +56,86 @@ class Arguments(dict[str, str]):
 
     Attributes
     ----------
-    lacking : list of str
-        Those that were asked for in vain.
+    lacking : dict of str to None
+        Those that were asked for in vain, in this order.
 
     Examples
     --------
     >>> arguments = Arguments({"radius": "0.1"})
-    >>> arguments["radius"], arguments["width"], arguments.lacking
+    >>> arguments["radius"], arguments["width"], list(arguments.lacking)
     ('0.1', '0', ['width'])
     """
 
     def __init__(self, values: Mapping[str, str]) -> None:
         super().__init__(values)
-        self.lacking: list[str] = []
+        self.lacking: dict[str, None] = {}
 
     def __missing__(self, name: str) -> str:
         """Note the name."""
-        if name not in self.lacking:
-            self.lacking.append(name)
+        self.lacking[name] = None
         return "0"
 
 
-def settings_for(files: Files, lacking: Iterable[str]) -> tuple[dict[str, Setting], list[str]]:
-    """Look for settings with a value for arguments that have none.
+class Settings:
+    """Settings in the package of a model.
 
     Parameters
     ----------
     files : Files
         Those of the model.
-    lacking : iterable of str
-        The arguments.
-
-    Returns
-    -------
-    settings : dict of str to Setting
-        All of the files that have one of the arguments, as far as they agree.
-    differing : list of str
-        Places of values for an argument that do not agree, in words.
     """
-    tables = _tables(files)
-    chosen: list[dict[str, Setting]] = []
-    differing = []
-    for name in lacking:
-        having = [table for table in tables if name in table]
-        if len({table[name].value for table in having}) > 1:
-            values = [table[name] for table in having]
-            places = ", ".join(f"{each.value} in {each.file}:{each.line}" for each in values[:4])
-            differing.append(f"{name} is {places}")
-        else:
-            chosen += [table for table in having if table not in chosen]
-    found: dict[str, Setting] = {}
-    for name in dict.fromkeys(name for table in chosen for name in table):
-        values = [table[name] for table in chosen if name in table]
-        if len({each.value for each in values}) == 1:
-            found[name] = values[0]
-    return found, differing
+
+    def __init__(self, files: Files) -> None:
+        self._files = files
+
+    def of(self, lacking: Iterable[str]) -> tuple[dict[str, Setting], list[str]]:
+        """Look for values of arguments that have none.
+
+        Parameters
+        ----------
+        lacking : iterable of str
+            The arguments.
+
+        Returns
+        -------
+        settings : dict of str to Setting
+            All of the files that have one of the arguments, as far as they agree.
+        differing : list of str
+            Places of values for an argument that do not agree, in words.
+        """
+        chosen: dict[int, dict[str, Setting]] = {}
+        differing: dict[str, str] = {}
+        for name in lacking:
+            having = {n: table for n, table in enumerate(self._tables) if name in table}
+            values = [table[name] for table in having.values()]
+            if len({each.value for each in values}) > 1:
+                places = [f"{each.value} in {each.file}:{each.line}" for each in values[:4]]
+                differing[name] = f"{name} is {', '.join(places)}"
+            else:
+                chosen |= having
+        found: dict[str, list[Setting]] = {}
+        for table in chosen.values():
+            for name, each in table.items():
+                found.setdefault(name, []).append(each)
+        agreed = {
+            name: values[0]
+            for name, values in found.items()
+            if len({each.value for each in values}) == 1 and name not in differing
+        }
+        return agreed, list(differing.values())
+
+    @cached_property
+    def _tables(self) -> list[dict[str, Setting]]:
+        """What the files have at the beginning of lines; odd ones are passed over."""
+        tables, left = [], _MOST_BYTES
+        for path in self._files.settings()[:_MOST_FILES]:
+            try:
+                data = self._files.read(str(path), at=path.name, most=min(_LARGEST, left))
+            except ScenarioError:
+                continue
+            left -= len(data)
+            tables.append(_table(path.name, data.decode(errors="replace")))
+        return tables
 
 
 def doubts_of(
@@ -139,18 +166,6 @@ def doubts_of(
     reason = "is taken as a whole, also in place of defaults"
     doubts += [(file, ", ".join(values), reason) for file, values in others.items()]
     return doubts
-
-
-def _tables(files: Files) -> list[dict[str, Setting]]:
-    """Read what the files of settings have at the beginning of lines; odd files are passed over."""
-    tables = []
-    for path in files.settings()[:_MOST_FILES]:
-        try:
-            data = files.read(str(path), at=path.name, most=_LARGEST)
-        except ScenarioError:
-            continue
-        tables.append(_table(path.name, data.decode(errors="replace")))
-    return tables
 
 
 def _table(file: str, text: str) -> dict[str, Setting]:

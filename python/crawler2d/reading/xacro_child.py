@@ -6,13 +6,13 @@ import builtins
 import os
 import re
 from collections import ChainMap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NoReturn
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.arguments import Arguments, Setting, doubts_of, settings_for
+from crawler2d.reading.arguments import Arguments, Setting, Settings, doubts_of
 from crawler2d.reading.expressions import NAMES, NotAllowed, evaluated, plain_copy
 from crawler2d.reading.files import Files
 from crawler2d.reading.limits import serve
@@ -50,8 +50,9 @@ def _expanded(
 ) -> dict[str, Any]:
     """Go through a file until no more settings and macros are found that it lacks."""
     shared = Files(**files)
+    package = Settings(shared)
     found: dict[str, Setting] = {}
-    lacking: list[str] = []
+    lacking: dict[str, None] = {}
     macros: dict[str, Any] = {}
     for _ in range(_MOST_PASSES):
         settings = found
@@ -71,8 +72,8 @@ def _expanded(
             urdf = made.to_urdf_string()
         except Exception as error:  # xacro raises what its expressions raise, and wraps some of it
             failure = error
-        lacking += [name for name in values.lacking if name not in lacking]
-        found, differing = settings_for(shared, lacking) if leave_out and lacking else ({}, [])
+        lacking |= values.lacking
+        found, differing = package.of(lacking) if leave_out and lacking else ({}, [])
         wanted = {*lacking, *door.defaults}
         found = {name: each for name, each in found.items() if name in wanted - arguments.keys()}
         later = {name: calls.defined[name] for name in calls.unknown & calls.defined.keys()}
@@ -98,7 +99,7 @@ def _told(doubts: list[Doubt]) -> list[Doubt]:
 
 
 def _refuse_arguments(
-    door: XacroFiles, lacking: list[str], differing: list[str], *, more: bool
+    door: XacroFiles, lacking: Iterable[str], differing: list[str], *, more: bool
 ) -> NoReturn:
     """Refuse a file for all arguments that have no value."""
     names = dict.fromkeys([*lacking, *(door.lacking() if more else [])])

@@ -50,26 +50,25 @@ class XacroMacros:
             define(element, macros)
             self.defined[name] = macros[name]
 
-        def is_known(name: str, macros: Any, symbols: Any) -> bool:
+        def known(name: str, macros: Any, symbols: Any) -> Any:
             try:
-                resolve(name, macros, symbols)
+                return resolve(name, macros, symbols)[2]
             except (KeyError, TypeError):  # of what is no macro, or no namespace
-                return False
-            return True
+                return None
 
         def called(node: minidom.Element, macros: Any, symbols: Any) -> Any:
             name = node.tagName.removeprefix("xacro:")
             prefixed = name != node.tagName
             if node.tagName == "xacro:call" or (not prefixed and name in OWN_OF_URDF):
                 return call(node, macros, symbols)
-            if name in self.known and not is_known(name, macros, symbols):
-                macros[name] = self.known[name]
+            macro = known(name, macros, symbols)
+            if macro is None and name in self.known:
+                macro = macros[name] = self.known[name]
                 self.note(node, "is a macro that is defined later, which old xacro allowed")
-            known = is_known(name, macros, symbols)
-            if not prefixed and known and self.fits(node, macros.get(name)):
+            if not prefixed and macro not in xacro.macrostack and self.fits(node, macro):
                 self.note(node, "is taken as a call of the macro, which old xacro allowed")
                 node.tagName = node.nodeName = f"xacro:{name}"
-            elif prefixed and not known and self.leave_out:
+            elif prefixed and macro is None and self.leave_out:
                 self.unknown.add(name)
                 lost = " and ".join(at for at, _ in self.files.left_out[:3])
                 why = f"; what is included at {lost} was left out, too" if lost else ""
