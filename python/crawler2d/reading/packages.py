@@ -91,7 +91,7 @@ class Packages:
         if not parts or ".." in parts or not _ALLOWED.fullmatch(package):
             return None
         for tree in self._trees:
-            paths = [folder / parts[-1] for folder, files in tree if parts[-1] in files]
+            paths = [folder / parts[-1] for folder, files in tree.items() if parts[-1] in files]
             for ending in ((package, *parts), parts):
                 fit = [path for path in paths if path.parts[-len(ending) :] == ending]
                 if fit and len(ending) > 1:
@@ -100,10 +100,9 @@ class Packages:
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """List files of the package round the model, or else of its repository or folder."""
-        tree = self._trees[0]
         return [
             folder / name
-            for folder, names in tree
+            for folder, names in self._trees[0].items()
             for name in sorted(names)
             if name.endswith(suffixes)
         ]
@@ -130,23 +129,29 @@ class Packages:
         return None
 
     @cached_property
-    def _in_tree(self) -> dict[str, Path]:
-        return self._below([*self._starts, *self._beside])
+    def _trees(self) -> list[dict[Path, set[str]]]:
+        """Folders with their files, of the package of the model and of what that is part of."""
+        return [dict(_within([start])) for start in self._starts]
 
     @cached_property
-    def _trees(self) -> list[list[tuple[Path, set[str]]]]:
-        """Folders with their files, of the package of the model and of what that is part of."""
-        return [list(_within([start])) for start in self._starts]
+    def _in_tree(self) -> dict[str, Path]:
+        """Packages by name, those near the model first."""
+        near: dict[Path, set[str]] = {}
+        for tree in (*self._trees, dict(_within(self._beside))):
+            near |= tree
+        return self._with_manifest(near.items())
 
     @cached_property
     def _in_ros(self) -> dict[str, Path]:
         searched = [variable for variable, patterns in VARIABLES.items() if not patterns]
-        return self._below(each for variable in searched for each in folders(variable))
+        return self._with_manifest(
+            _within(each for variable in searched for each in folders(variable))
+        )
 
-    def _below(self, starts: Iterable[Path]) -> dict[str, Path]:
-        """Look into folders, those near the start first, for manifests."""
+    def _with_manifest(self, folders: Iterable[tuple[Path, set[str]]]) -> dict[str, Path]:
+        """Look for manifests; of two packages of one name, the first counts."""
         found: dict[str, Path] = {}
-        for folder, files in _within(starts):
+        for folder, files in folders:
             for name in self._names(folder, files):
                 found.setdefault(name, folder)
         return found
