@@ -406,8 +406,9 @@ def test_all_arguments_without_a_value_are_named_at_once(tmp_path: Path) -> None
 
 def test_settings_that_differ_are_not_taken(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("hull: 3")
-    (tmp_path / "b.yaml").write_text("\nhull: 4")
-    rule = r"files of settings differ: hull is 3 in a\.yaml:1, 4 in b\.yaml:2, got hull$"
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "a.yaml").write_text("\nhull: 4")
+    rule = r"files of settings differ: hull is 3 in a\.yaml:1, 4 in b/a\.yaml:2, got hull$"
     with pytest.raises(c2d.ScenarioError, match=rule):
         with_arguments(tmp_path, "hull")
     assert with_arguments(tmp_path, "hull", arguments={"hull": 8}).robot.mass == 12.0

@@ -7,6 +7,7 @@ as a whole, as the repository would. Only ``name: value`` at the beginning of a 
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -33,17 +34,22 @@ class Setting:
 
     Parameters
     ----------
-    file : str
-        Name of the file.
+    path : str
+        Of the file, from the folder of the model.
     line : int
         Of the value.
     value : str
         As it is written.
     """
 
-    file: str
+    path: str
     line: int
     value: str
+
+    @property
+    def file(self) -> str:
+        """Its name."""
+        return os.path.basename(self.path)
 
 
 class Arguments(dict[str, str]):
@@ -109,7 +115,7 @@ class Settings:
             having = {n: table for n, table in enumerate(self._tables) if name in table}
             values = [table[name] for table in having.values()]
             if len({each.value for each in values}) > 1:
-                places = [f"{each.value} in {each.file}:{each.line}" for each in values[:4]]
+                places = [f"{each.value} in {each.path}:{each.line}" for each in values[:4]]
                 differing[name] = f"{name} is {', '.join(places)}"
             else:
                 chosen |= having
@@ -134,7 +140,8 @@ class Settings:
             except ScenarioError:
                 continue
             left -= len(data)
-            tables.append(_table(path.name, data.decode(errors="replace")))
+            name = os.path.relpath(path, self._files.folder)
+            tables.append(_table(name, data.decode(errors="replace")))
         return tables
 
 
@@ -168,13 +175,13 @@ def doubts_of(
     return doubts
 
 
-def _table(file: str, text: str) -> dict[str, Setting]:
+def _table(path: str, text: str) -> dict[str, Setting]:
     found: dict[str, Setting] = {}
     for number, line in enumerate(text.split("\n"), 1):
         match = _LINE.fullmatch(line.rstrip())
         value = _scalar(match[2]) if match else None
         if match and value is not None:
-            found[match[1]] = Setting(file, number, value)
+            found[match[1]] = Setting(path, number, value)
     return found
 
 
