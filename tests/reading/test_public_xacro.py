@@ -500,9 +500,14 @@ def test_a_macro_calls_others_without_a_prefix_but_not_itself(tmp_path: Path) ->
     assert reading.text.count('<inner of="a"/>') == 1
 
 
-def test_an_element_with_other_attributes_is_no_call(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "element", ['<cover colour="red"/>', '<cover size="1"><a/></cover>', "<cover/>", "<space/>"]
+)
+def test_an_element_that_a_macro_does_not_fit_is_no_call(tmp_path: Path, element: str) -> None:
+    (tmp_path / "none.xacro").write_text(f"{XACRO}</robot>")
     macro = '<xacro:macro name="cover" params="size"><link name="cover"/></xacro:macro>'
-    text = urdf(macro, '<cover colour="red"/>', WHEELS).replace(OLD_NAME, XACRO)
+    macro += '<xacro:include filename="none.xacro" ns="space"/>'
+    text = urdf(macro, element, WHEELS).replace(OLD_NAME, XACRO)
     assert read(tmp_path, text, "cart.xacro").doubts == ()
 
 

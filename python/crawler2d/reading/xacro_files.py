@@ -146,8 +146,9 @@ class XacroFiles:
             if not is_absent(error) or not (self.leave_out or optional_too):
                 raise
             if not optional_too:
-                self.left_out.append((at, str(error.value)))
-                self.doubts.append((at, error.value, f"is left out: the file {error.rule}"))
+                name = str(getattr(error.__cause__, "filename", error.value))  # of any length
+                self.left_out.append((at, name))
+                self.doubts.append((at, name, f"is left out: the file {error.rule}"))
 
     def _parse(self, text: str | None, path: str | None = None) -> minidom.Document:
         """Make the tree of the model's text, or of an include."""

@@ -52,9 +52,10 @@ class XacroMacros:
 
         def known(name: str, macros: Any, symbols: Any) -> Any:
             try:
-                return resolve(name, macros, symbols)[2]
+                macro = resolve(name, macros, symbols)[2]
             except (KeyError, TypeError):  # of what is no macro, or no namespace
                 return None
+            return macro if isinstance(macro, own.Macro) else None
 
         def called(node: minidom.Element, macros: Any, symbols: Any) -> Any:
             name = node.tagName.removeprefix("xacro:")
@@ -84,9 +85,14 @@ class XacroMacros:
         self.files.doubts.append((place_of(node), f"<{node.tagName}>", reason))
 
     def fits(self, node: minidom.Element, macro: Any) -> bool:
-        """Whether an element without the prefix has the parameters of a macro."""
+        """Whether an element without the prefix has the parameters of a macro, and its blocks."""
         if macro is None:
             return False
         given = set(node.attributes.keys())
         wanted = {name for name in macro.params if not name.startswith("*")}
-        return given <= wanted and wanted - given <= macro.defaultmap.keys()
+        inside = [each for each in node.childNodes if each.nodeType == each.ELEMENT_NODE]
+        return (
+            given <= wanted
+            and wanted - given <= macro.defaultmap.keys()
+            and len(inside) == len(macro.params) - len(wanted)
+        )
