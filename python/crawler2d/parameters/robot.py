@@ -17,7 +17,7 @@ from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.form import Form
 from crawler2d.parameters.plain import Parameters
 from crawler2d.parameters.settings import Drive, Solver
-from crawler2d.parameters.terrain import Points
+from crawler2d.parameters.terrain import Points, Terrain
 from crawler2d.parameters.track import BeltTrack, Track
 
 if TYPE_CHECKING:
@@ -537,6 +537,66 @@ class Robot(Parameters):
 
         widths = {"track_width": track_width, "chassis_width": chassis_width}
         return written(self._alone(), "mjcf", path, friction=friction, **widths)
+
+    @takes_keywords
+    def to_world(
+        self,
+        path: str | os.PathLike[str],
+        terrain: Terrain,
+        *,
+        track_width: float | None = None,
+        chassis_width: float | None = None,
+    ) -> str:
+        """Write the robot before an obstacle, as a world for Gazebo or a scene for MuJoCo.
+
+        It stands where a `Scenario` starts it. The ground is the profile of the terrain, drawn out
+        across twice the width of the robot, under each track its own if the two differ: boxes and,
+        where it slopes, convex prisms on a plane at the lowest height. The robot is that of
+        `to_sdf` or `to_mjcf`, with the friction of the terrain between the two, whichever engine
+        combines it. Gravity is 9.81 m/s^2.
+
+        ``gz sim -r world.sdf`` runs the one: its wheels and belts obey the topic
+        ``/model/NAME/cmd_vel``; ``python -m mujoco.viewer --mjcf=scene.xml`` the other.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            File to write: ``.sdf`` or ``.world`` for SDF 1.6, ``.xml`` for MJCF.
+        terrain : terrain
+            Any of `crawler2d.terrains`, such as one of `Audit.obstacles`.
+        track_width : float, optional
+            [m] Of each track across. None takes a quarter of the gauge, as on Absolem.
+        chassis_width : float, optional
+            [m] Of the belly across. None takes what is free between the tracks.
+
+        Returns
+        -------
+        str
+            The text of the file; a console shows only how long it is.
+
+        Raises
+        ------
+        ScenarioError
+            If the suffix is another one, the terrain is none or breaks a rule, or the format cannot
+            hold the robot.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "world.sdf"
+        >>> _ = robot.to_world(path, c2d.terrains.step(0.075))
+        >>> c2d.read_robot(path).robot.mass == robot.mass
+        True
+        """
+        from crawler2d.writing.world import written_world  # noqa: PLC0415 - as above
+
+        if not isinstance(terrain, Terrain):
+            raise ScenarioError("terrain", terrain, "must be a terrain")
+        text = Form(self, terrain, drive=Drive(speed=0.0), solver=Solver(time_step=1e-5)).to_json()
+        widths = {"track_width": track_width, "chassis_width": chassis_width}
+        return written_world(text, self._alone(), path, **widths)
 
     @property
     def in_words(self) -> str:

@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
+
+import numpy as np
 
 from crawler2d import _core
 from crawler2d.common.arrays import real_number
 from crawler2d.common.ends import discs_in, ends_of
 from crawler2d.errors import ScenarioError
+from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Tree
 from crawler2d.writing.across import Across, across_of
 from crawler2d.writing.held import Format
@@ -19,18 +23,41 @@ from crawler2d.writing.mjcf import MJCF, mjcf_of
 from crawler2d.writing.model import model_of
 from crawler2d.writing.motors import Limits
 from crawler2d.writing.sdf import SDF, sdf_of
+from crawler2d.writing.solids import lowest
 from crawler2d.writing.urdf import URDF, urdf_of
 from crawler2d.writing.xml import XML, commented, document
 
-__all__ = ["ModelText", "Name", "written"]
+__all__ = ["Model", "ModelText", "Name", "modelled", "placed_model", "stored", "written"]
 
 Name = Literal["sdf", "urdf", "mjcf"]
 
-_WRITERS: dict[Name, tuple[Format, Callable[[Tree, Across, Limits], XML]]] = {
-    "sdf": (SDF, sdf_of),
-    "urdf": (URDF, lambda tree, *_: urdf_of(tree)),
-    "mjcf": (MJCF, lambda tree, *_: mjcf_of(tree)),
+_WRITERS: dict[Name, tuple[Format, Callable[[Model, Pose], XML]]] = {
+    "sdf": (SDF, lambda model, stand: sdf_of(model.tree, model.across, model.limits, stand)),
+    "urdf": (URDF, lambda model, _: urdf_of(model.tree)),
+    "mjcf": (MJCF, lambda model, stand: mjcf_of(model.tree, stand)),
 }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Model:
+    """A robot in three dimensions, in no format yet.
+
+    Parameters
+    ----------
+    tree : Tree
+        Its links and joints.
+    across : Across
+        Widths and lateral places.
+    limits : Limits
+        What its motors can do together.
+    comment : str
+        Where a file of it comes from, and what in it is not from the robot.
+    """
+
+    tree: Tree
+    across: Across
+    limits: Limits
+    comment: str
 
 
 class ModelText(str):
@@ -52,6 +79,40 @@ class ModelText(str):
         return f"<model file, {len(self)} characters; print it to see them>"
 
 
+def modelled(
+    text: str,
+    name: Name,
+    *,
+    friction: float,
+    track_width: float | None,
+    chassis_width: float | None,
+) -> Model:
+    """Make a model of the robot of a scenario.
+
+    Parameters
+    ----------
+    text : str
+        The scenario in JSON, with the robot on level ground.
+    name : {"sdf", "urdf", "mjcf"}
+        The format, which must be able to hold it.
+    friction, track_width, chassis_width
+        See `Robot.to_sdf`.
+    """
+    robot: dict[str, Any] = json.loads(_core.canonical(text))["robot"]
+    across = across_of(float(robot["gauge"]), track_width, chassis_width)
+    friction = real_number(friction, "friction")
+    if not 0.0 <= friction <= 1e3:
+        raise ScenarioError("friction", friction, "must be between 0 and 1000")
+    tree = model_of(robot, text, across, friction=friction, form=_WRITERS[name][0])
+    comment = _comment(robot, across, friction)
+    return Model(tree=tree, across=across, limits=_limits(robot), comment=comment)
+
+
+def placed_model(model: Model, name: Name, stand: Pose) -> XML:
+    """Write a model in a format, its chassis frame where it stands."""
+    return _WRITERS[name][1](model, stand)
+
+
 def written(
     text: str,
     name: Name,
@@ -65,25 +126,21 @@ def written(
 
     Parameters
     ----------
-    text : str
-        The scenario in JSON, with the robot on level ground.
-    name : {"sdf", "urdf", "mjcf"}
-        The format.
+    text, name, friction, track_width, chassis_width
+        See `modelled`.
     path : path or None
         Where to write the text, too.
-    friction, track_width, chassis_width
-        See `Robot.to_sdf`.
     """
-    robot: dict[str, Any] = json.loads(_core.canonical(text))["robot"]
-    across = across_of(float(robot["gauge"]), track_width, chassis_width)
-    friction = real_number(friction, "friction")
-    if not 0.0 <= friction <= 1e3:
-        raise ScenarioError("friction", friction, "must be between 0 and 1000")
-    form, write = _WRITERS[name]
-    tree = model_of(robot, text, across, friction=friction, form=form)
-    made = ModelText(
-        document(write(tree, across, _limits(robot)), _comment(robot, across, friction))
+    model = modelled(
+        text, name, friction=friction, track_width=track_width, chassis_width=chassis_width
     )
+    stand = Pose(place=np.array([0.0, 0.0, -lowest(model.tree)]))
+    return stored(placed_model(model, name, stand), model.comment, path)
+
+
+def stored(root: XML, comment: str, path: str | os.PathLike[str] | None) -> ModelText:
+    """Write a file, and return its text."""
+    made = ModelText(document(root, comment))
     if path is not None:
         Path(path).write_text(made, encoding="utf-8")
     return made

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Joint, Link, Shape, Tree
 from crawler2d.writing.held import Format
-from crawler2d.writing.solids import lowest
 from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["MJCF", "mjcf_of"]
@@ -19,15 +16,14 @@ MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True)
 _OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
 
 
-def mjcf_of(tree: Tree) -> XML:
-    """Write a model that stands on z = 0, without a ground."""
+def mjcf_of(tree: Tree, stand: Pose) -> XML:
+    """Write a model without a ground, its chassis frame where it stands."""
     bodies: dict[str, XML] = {}
     world = element("worldbody")
     links = tree.by_name
     for link in tree.links:
         joint = tree.joints.get(link.name)
         if joint is None:
-            stand = Pose(place=np.array([0.0, 0.0, -lowest(tree)]))
             body = _body(link, stand.then(link.pose))
             body.insert(0, element("freejoint", name=f"{link.name}_joint"))
             world.append(body)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crawler2d.models.poses import Pose
 from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
 from crawler2d.writing.across import Across
 from crawler2d.writing.held import Format
 from crawler2d.writing.motors import Limits, flipper_joints, moved_links, wheels_by_radius
-from crawler2d.writing.solids import lowest
 from crawler2d.writing.xml import XML, element, exactly, numbers
 
-__all__ = ["SDF", "sdf_of"]
+__all__ = ["SDF", "pose_text", "sdf_of", "surface"]
 
 SDF = Format(name="SDF", moves_surfaces=True, has_hulls=False, reserved=".*::.*|__.*__")
 """SDF has meshes in files of their own only."""
@@ -22,10 +19,9 @@ _VERSION = "1.6"
 _KINDS = {"hinge": "revolute", "fixed": "fixed"}
 
 
-def sdf_of(tree: Tree, across: Across, limits: Limits) -> XML:
-    """Write a model that stands on z = 0."""
-    stand = Pose(place=np.array([0.0, 0.0, -lowest(tree)]))
-    model = element("model", element("pose", text=_pose(stand)), name=tree.name)
+def sdf_of(tree: Tree, across: Across, limits: Limits, stand: Pose) -> XML:
+    """Write a model, its chassis frame where it stands."""
+    model = element("model", element("pose", text=pose_text(stand)), name=tree.name)
     for link in tree.links:
         model.append(_link(link))
         if link.name in tree.joints:
@@ -34,7 +30,8 @@ def sdf_of(tree: Tree, across: Across, limits: Limits) -> XML:
     return element("sdf", model, version=_VERSION)
 
 
-def _pose(pose: Pose) -> str:
+def pose_text(pose: Pose) -> str:
+    """Write a pose: place, then roll, pitch and yaw."""
     return numbers([*pose.place, *pose.rpy])
 
 
@@ -51,7 +48,7 @@ def _link(link: Link) -> XML:
     )
     made = element(
         "link",
-        element("pose", text=_pose(link.pose)),
+        element("pose", text=pose_text(link.pose)),
         element(
             "inertial",
             element("pose", text=numbers([*center.place, 0.0, 0.0, 0.0])),
@@ -61,13 +58,13 @@ def _link(link: Link) -> XML:
         name=link.name,
     )
     for shape in link.shapes:
-        pose = _pose(shape.pose.seen_from(link.pose))
+        pose = pose_text(shape.pose.seen_from(link.pose))
         collision, visual = (
             element(tag, element("pose", text=pose), _geometry(shape), name=f"{shape.name}_{tag}")
             for tag in ("collision", "visual")
         )
         if shape.friction is not None:
-            collision.append(_surface(shape.friction))
+            collision.append(surface(shape.friction))
         made.extend([collision, visual])
     return made
 
@@ -80,7 +77,8 @@ def _geometry(shape: Shape) -> XML:
     return element("geometry", element("cylinder", radius, length))
 
 
-def _surface(friction: Friction) -> XML:
+def surface(friction: Friction) -> XML:
+    """Write coefficients of friction."""
     first, second = friction.first, friction.second
     ode = element("ode", element("mu", text=numbers(first)), element("mu2", text=numbers(second)))
     return element("surface", element("friction", ode))
