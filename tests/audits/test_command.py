@@ -138,7 +138,7 @@ def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     parser = argparse.ArgumentParser()
     command.add_arguments(parser)
     options = parser.parse_args(arguments)
-    assert options.file == Path("-my file.sdf")
+    assert options.file == [Path("-my file.sdf")]
     assert (options.samples, options.repeats, options.seed) == (4, 3, 2**63)
     assert options.no_repairs
     kept = command._reading(options)

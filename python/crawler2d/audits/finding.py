@@ -4,10 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["SEVERITIES", "Finding", "named"]
+__all__ = ["RULES", "SEVERITIES", "Finding", "named"]
 
 SEVERITIES = ("error", "warning", "note")
 """An error: another robot is simulated; a warning: hardly meant; a note: to be known."""
+
+RULES = {
+    "size": "The robot is as long as tracked robots are.",
+    "mass": "The robot is neither as light as a balloon nor as heavy as steel.",
+    "inertia": "Bodies have moments of inertia that a body of their size can have.",
+    "placeholder": "Three equal moments of inertia belong to balls and cubes.",
+    "no track": "A round shape stands wherever a track should be.",
+    "effort": "Motors have a limit of effort, and the tracks push with no more than floors take.",
+    "not driven": "Every wheel has a motor.",
+    "friction": "Wheels and tracks have a friction that surfaces have.",
+    "balance": "The centre of mass of a wheel is on its axle.",
+    "sides": "Left and right are alike.",
+    "overlap": "Wheels of one side do not push each other apart.",
+    "doubt": "Nothing is doubted by the reader or by the simulator.",
+}
+"""Every rule, as what a model that keeps it is like; ``docs/conventions.md`` says when it fires."""
 
 _MOST = 3  # names that are listed one by one
 

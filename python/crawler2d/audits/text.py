@@ -11,18 +11,27 @@ from crawler2d.variation.ranges import Ranges
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
+    from crawler2d.audits.finding import Finding
     from crawler2d.audits.pockets import Pocket
     from crawler2d.audits.repairs import Repaired
 
-__all__ = ["text_of"]
+__all__ = ["text_of", "text_of_lint"]
 
 _WIDTH = 100
 
 
 def text_of(audit: Audited) -> str:
     """Write an audit for a terminal: robot, lint, pockets, verdicts, repairs, and what follows."""
-    parts = [_robot(audit), _lint(audit), _pockets(audit), _verdicts(audit), _conclusion(audit)]
+    parts = [
+        *(_robot(audit), _lint(audit.lint), _pockets(audit.pockets)),
+        *(_verdicts(audit), _conclusion(audit)),
+    ]
     return "\n\n".join("\n".join(part) for part in parts)
+
+
+def text_of_lint(title: str, lint: Sequence[Finding], pockets: Sequence[Pocket]) -> str:
+    """Write what is found without runs, below a title."""
+    return "\n\n".join("\n".join(part) for part in ([title], _lint(lint), _pockets(pockets)))
 
 
 def _robot(audit: Audited) -> Iterator[str]:
@@ -43,20 +52,20 @@ def _robot(audit: Audited) -> Iterator[str]:
         yield from _wrapped(text, 4)
 
 
-def _lint(audit: Audited) -> Iterator[str]:
-    yield "Lint" if audit.lint else "Lint: nothing found"
-    for each in audit.lint:
+def _lint(lint: Sequence[Finding]) -> Iterator[str]:
+    yield "Lint" if lint else "Lint: nothing found"
+    for each in lint:
         where = f" [{each.where}]" if each.where else ""
         yield from _wrapped(f"{each.severity}, {each.rule}: {each.what}{where}")
 
 
-def _pockets(audit: Audited) -> Iterator[str]:
-    if not audit.pockets:
+def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
+    if not pockets:
         yield "Pockets: none, for there are no neighbouring wheels"
         return
     yield "Pockets and slots between wheels: a screen of geometry, no verdict"
     groups: dict[tuple[str, bool], list[Pocket]] = {}
-    for each in audit.pockets:
+    for each in pockets:
         groups.setdefault((each.carrier, each.is_slot), []).append(each)
     for (carrier, is_slot), alike in groups.items():
         what = f"{len(alike)} {'slot' if is_slot else 'pocket'}{'s' * (len(alike) > 1)}"

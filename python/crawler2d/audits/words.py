@@ -50,6 +50,7 @@ __all__ = [
     "repairs_found",
     "reservation",
     "robot_sentence",
+    "seizure",
     "share",
     "span",
     "subject",
@@ -210,6 +211,17 @@ def _seizing(verdict: Verdict) -> str:
     of_all = f"{verdict.instead} of {verdict.there[1]} seized runs"
     belt = f"the belt clears {of_all}, and {percent(verdict.belt_cleared.rate)} of all"
     return f"{verdict.obstacle} ({belt})"
+
+
+def seizure(verdict: Verdict, names: Sequence[str] = ()) -> str:
+    """Say in a sentence that it seizes on an obstacle, where, and what the belt does there."""
+    called = f" ({', '.join(names)})" if names else ""
+    return (
+        f"seizes on {verdict.obstacle} in {share(verdict.seized)} of the runs, most often between"
+        f" wheels {verdict.where} of the {verdict.carrier}{called}; the belt clears"
+        f" {verdict.instead} of {verdict.there[1]} seized runs, and"
+        f" {percent(verdict.belt_cleared.rate)} of all"
+    )
 
 
 def repairs_found(found: Repaired, vary: Mapping[str, Any]) -> str:

@@ -2,8 +2,9 @@
 
 It prints the short form and writes a page with all of it, which replays where the robot seized.
 
-Exit status: 1 if the robot seizes where a belt clears, 2 if the file or an option is bad, else 0;
-130 after Ctrl-C, with what a store keeps.
+Exit status: 1 if the robot seizes where a belt clears (with --lint if lint has errors, with
+--baseline if anything is new since then), 2 if a file or an option is bad, else 0; 130 after
+Ctrl-C, with what a store keeps.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Any, TextIO, get_args
 
 from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
+from crawler2d.audits.linted import Linted, linted
 from crawler2d.audits.patches import patch_of
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.verdicts import least_samples
@@ -22,6 +24,7 @@ from crawler2d.errors import LimitError, ScenarioError, StoreError
 from crawler2d.reading.friction import ENGINES
 from crawler2d.reading.how import TOLERANCE
 from crawler2d.reading.meshes import MeshRule
+from crawler2d.reports import ci
 
 __all__ = ["add_arguments", "run"]
 
@@ -34,7 +37,7 @@ _QUICK = 40
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``python -m crawler2d audit``."""
-    parser.add_argument("file", type=Path, help="SDF, URDF, xacro or MJCF")
+    parser.add_argument("file", type=Path, nargs="+", help="SDF, URDF, xacro or MJCF")
     parser.add_argument("--quick", action="store_true", help="few runs and no repairs")
     parser.add_argument("--json", action="store_true", help="print plain data in place of words")
     samples = f"of what is not known (default: {SAMPLES}; fewer than {least_samples()} cannot show "
@@ -56,6 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="write the file with the wheels of the first repair that is confirmed",
     )
+    ci.add_arguments(parser)
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
     reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
     reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
@@ -74,19 +78,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Audit a file; returns the exit status."""
+    """Audit each file; returns the exit status."""
+    # With --json nothing else may be on the standard output.
+    beside = sys.stderr if options.json else sys.stdout
     try:
-        found = audit(
-            options.file,
-            samples=_given(options.samples, _QUICK if options.quick else SAMPLES),
-            repeats=_given(options.repeats, 1 if options.quick else REPEATS),
-            seed=options.seed,
-            repair=not (options.quick or options.no_repairs),
-            store=options.store,
-            threads=options.threads,
-            **_reading(options),
-        )
-        _show(found, options)
+        ci.refuse_together(options)
+        baseline = ci.baseline_of(options)
+        found: list[tuple[Path, Audit | Linted]] = []
+        for file in options.file:
+            if found:
+                print()
+            found.append((file, _found(file, options, beside)))
+        count = ci.report(found, options, baseline, beside)
     except KeyboardInterrupt as interrupt:
         print(str(interrupt) or "interrupted", file=sys.stderr)
         return 130
@@ -94,22 +97,42 @@ def run(options: argparse.Namespace) -> int:
         told = [f"audit: {error}", *getattr(error, "__notes__", ())]
         print(_as_options("\n  before that: ".join(told)), file=sys.stderr)
         return 2
-    return 1 if found.seizes else 0
+    if options.lint or options.baseline is not None:
+        return 1 if count else 0
+    return 1 if any(isinstance(each, Audit) and each.seizes for _, each in found) else 0
 
 
-def _show(found: Audit, options: argparse.Namespace) -> None:
+def _found(file: Path, options: argparse.Namespace, beside: TextIO) -> Audit | Linted:
+    """Audit a file, or only lint it, and show what was found."""
+    if options.lint:
+        alone = linted(file, **_reading(options))
+        print(alone.in_words)
+        return alone
+    found = audit(
+        file,
+        samples=_given(options.samples, _QUICK if options.quick else SAMPLES),
+        repeats=_given(options.repeats, 1 if options.quick else REPEATS),
+        seed=options.seed,
+        repair=not (options.quick or options.no_repairs),
+        store=options.store,
+        threads=options.threads,
+        **_reading(options),
+    )
+    _show(found, file, options, beside)
+    return found
+
+
+def _show(found: Audit, file: Path, options: argparse.Namespace, beside: TextIO) -> None:
     """Print an audit, write its page, and the file with other wheels if that is asked for."""
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     else:
         print(found.in_words)
-    # With --json nothing else may be on the standard output.
-    beside = sys.stderr if options.json else sys.stdout
     if not options.no_html:
         path: Path | None = options.html
         if path is None:
             _OUT.mkdir(parents=True, exist_ok=True)
-            path = _OUT / f"audit-{options.file.stem}.html"
+            path = _OUT / f"audit-{_short(file, options.file)}.html"
         found.to_html(path, threads=options.threads)
         print(f"\nThe page is in {path}", file=beside)
         if found.reading is not None and found.reading.path.suffix == ".xacro":
@@ -118,6 +141,13 @@ def _show(found: Audit, options: argparse.Namespace) -> None:
             print(f"The lines are those of {expanded}", file=beside)
     if options.patch is not None and found.seizes:
         _patch(found, options.patch, beside)
+
+
+def _short(file: Path, files: list[Path]) -> str:
+    """Name a file without its ending; of several such, as many are model.sdf, with its folders."""
+    if [other.stem for other in files].count(file.stem) == 1:
+        return file.stem
+    return "-".join(part for part in file.parts if part not in (file.anchor, "..", "."))
 
 
 def _patch(found: Audit, path: Path, beside: TextIO) -> None:

@@ -1,0 +1,280 @@
+"""What audits of some files said before, and what of it is new: for a check that must not drift.
+
+A baseline keeps words, counts and intervals, not bits: a rate that is near a bound may flip its
+word when a later version of crawler2d, or another machine, moves single runs. A seizure is new
+
+- on an obstacle on which the robot was said not to seize, or that the baseline does not have;
+- or if the interval of its rate is above the one it had, over all speeds or at one of them.
+
+Lint is new if no finding of its rule had the same words, numbers apart, at this severity or above.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from crawler2d import _core
+from crawler2d.audits.finding import SEVERITIES, Finding
+from crawler2d.audits.issues import SEIZES, Check, Issue
+from crawler2d.audits.share import Share
+from crawler2d.audits.verdicts import Verdict
+from crawler2d.errors import ScenarioError
+from crawler2d.parameters.plain import to_plain
+
+__all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
+
+VERSION = 1
+"""Of the form of the file."""
+
+Plain = dict[str, Any]
+
+# Not those in names, such as left_wheel_3.
+_NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
+_LINE = re.compile(r"(:\d+)(?=[:,; ]|$)")
+_LIST = re.compile(r"\[([^][{}]*)\]")
+_SAME = 1e-6  # [-] of a figure: files round
+_MOST = 4  # fields that are listed one by one
+
+
+def read_baseline(path: Path) -> Plain:
+    """Read a baseline.
+
+    Raises
+    ------
+    ScenarioError
+        If it is none, or of a version of the form that is not known here.
+    OSError
+        If it cannot be read.
+    """
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        version = kept["baseline"]
+        models = kept["models"]
+    except (ValueError, KeyError, TypeError) as error:
+        rule = f"must be a file that --update-baseline wrote ({type(error).__name__}: {error})"
+        raise ScenarioError("baseline", str(path), rule) from None
+    if version != VERSION or not isinstance(models, dict):
+        rule = f"must have the form {VERSION}: write it anew with --update-baseline"
+        raise ScenarioError("baseline", version, rule)
+    return dict(kept)
+
+
+def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) -> None:
+    """Write what was found in some files; what a baseline has of other files stays.
+
+    Lint alone leaves the verdicts that it has.
+    """
+    models: Plain = {} if before is None else dict(before["models"])
+    for check in checks:
+        name = _name(check.path, path)
+        models[name] = {**models.get(name, {}), **entry_of(check)}
+    text = json.dumps({"baseline": VERSION, "models": dict(sorted(models.items()))}, indent=1)
+    # A list in a line: then two versions of the file differ by a line for each thing that moved.
+    text = _LIST.sub(
+        lambda found: f"[{' '.join(map(str.strip, found[1].splitlines())).strip()}]", text
+    )
+    path.write_text(f"{text}\n", encoding="utf-8")
+
+
+def entry_of(check: Check) -> Plain:
+    """Return what is kept of a file."""
+    build = _core.build_info()
+    kept: Plain = {
+        "crawler2d": build["version"],
+        "build": build["build_id"],
+        "robot": to_plain(check.found.robot),
+        "lint": [[each.severity, each.rule, _without_lines(each)] for each in check.found.lint],
+    }
+    if check.found.verdicts:
+        kept["verdicts"] = {each.obstacle: _verdict(each) for each in check.found.verdicts}
+    return kept
+
+
+def against(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]]:
+    """Compare what was found in a file with a baseline.
+
+    Parameters
+    ----------
+    check : Check
+        Of the file.
+    baseline : dict
+        What `read_baseline` returned.
+    path : Path
+        Of the baseline.
+
+    Returns
+    -------
+    Check and list of str
+        With the issues that are known, and what is new, gone or moved, in words.
+    """
+    before: Plain | None = baseline["models"].get(_name(check.path, path))
+    if before is None:
+        return replace(check, known=frozenset()), ["not in the baseline: all of it is new"]
+    now = entry_of(check)
+    known = frozenset(issue for issue in check.issues if not _is_new(issue, now, before))
+    check = replace(check, known=known)
+    told = [*_robot_moved(before["robot"], now["robot"]), *_verdicts_moved(check, now, before)]
+    told += _lint_moved(check, now, before)
+    if told and any(before[name] != now[name] for name in ("crawler2d", "build")):
+        was, is_now = (f"{each['crawler2d']} ({each['build']})" for each in (before, now))
+        told.append(f"crawler2d {was} is now {is_now}: CHANGELOG.md says what moved, under Physics")
+    return check, told
+
+
+def _name(path: Path, baseline: Path) -> str:
+    """Name a file from the folder of the baseline, wherever the command runs."""
+    return Path(os.path.relpath(path.resolve(), baseline.resolve().parent)).as_posix()
+
+
+def _verdict(verdict: Verdict) -> Plain:
+    kept: Plain = {"word": verdict.word}
+    if verdict.where:
+        kept["where"] = f"{verdict.where} of the {verdict.carrier}"
+    rates = [verdict.seized, *verdict.seized_at.values()]
+    return {
+        **kept,
+        "cleared": _share(verdict.cleared),
+        "belt_cleared": _share(verdict.belt_cleared),
+        "seized": [_share(each) for each in rates],
+    }
+
+
+def _share(share: Share) -> list[float]:
+    """Return how often, of how many, and the interval."""
+    hits = round(share.rate * share.runs) if share.runs else 0
+    return [hits, share.runs, round(share.low, 4), round(share.high, 4)]
+
+
+def _is_new(issue: Issue, now: Plain, before: Plain) -> bool:
+    if issue.rule != SEIZES:
+        was = _lint(before).get(_key(issue.rule, issue.text))
+        return was is None or SEVERITIES.index(issue.severity) < SEVERITIES.index(was)
+    label, then = _matched(before, issue.obstacle, now)
+    if label is None or then["word"] == "does not seize":
+        return True
+    pairs = zip(now["verdicts"][issue.obstacle]["seized"], then["seized"], strict=False)
+    return any(low > high for (*_, low, _), (*_, high) in pairs)
+
+
+def _matched(kept: Plain, obstacle: str, now: Plain) -> tuple[str | None, Plain]:
+    """Return the verdict that stands in the place of an obstacle of now, with its label.
+
+    Obstacles are scaled to the robot, whose sizes may have changed: of those whose labels differ in
+    numbers alone, the lowest stands for the lowest, and so on.
+    """
+    place = _places(now)[obstacle]
+    found = {each: label for label, each in _places(kept).items()}.get(place)
+    return found, {} if found is None else kept["verdicts"][found]
+
+
+def _places(kept: Plain) -> dict[str, tuple[str, int]]:
+    """Return the kind of each obstacle, and its rank by size among those of that kind."""
+    kinds: dict[str, list[str]] = {}
+    for label in kept.get("verdicts", {}):
+        kinds.setdefault(_NUMBER.sub("#", label), []).append(label)
+    return {
+        label: (kind, rank)
+        for kind, labels in kinds.items()
+        for rank, label in enumerate(sorted(labels, key=_sizes))
+    }
+
+
+def _sizes(label: str) -> list[float]:
+    return [float(number) for number in _NUMBER.findall(label)]
+
+
+def _lint(kept: Plain) -> dict[tuple[str, str], str]:
+    """Return the worst severity of all that lint found, by what it says."""
+    worst: dict[tuple[str, str], str] = {}
+    for severity, rule, what in sorted(kept["lint"], key=lambda each: SEVERITIES.index(each[0])):
+        worst.setdefault(_key(rule, what), severity)
+    return worst
+
+
+def _key(rule: str, what: str) -> tuple[str, str]:
+    return rule, _NUMBER.sub("#", _LINE.sub("", what))
+
+
+def _robot_moved(before: Plain, now: Plain) -> Iterator[str]:
+    was, is_now = dict(_leaves(before)), dict(_leaves(now))
+    moved = [
+        f"{path} {_figure(was.get(path))} is now {_figure(is_now.get(path))}"
+        for path in dict.fromkeys([*was, *is_now])
+        if not _is_same(was.get(path), is_now.get(path))
+    ]
+    if moved:
+        more = len(moved) - _MOST
+        listed = ", ".join(moved[:_MOST]) + (f" and {more} more" if more > 0 else "")
+        yield f"another robot: {listed}"
+
+
+def _leaves(plain: Any, path: str = "robot") -> Iterator[tuple[str, object]]:
+    if isinstance(plain, Mapping):
+        for name, each in plain.items():
+            yield from _leaves(each, f"{path}.{name}")
+    elif isinstance(plain, list):
+        for number, each in enumerate(plain):
+            yield from _leaves(each, f"{path}[{number}]")
+    else:
+        yield path, plain
+
+
+def _figure(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _is_same(was: object, is_now: object) -> bool:
+    if isinstance(was, (int, float)) and isinstance(is_now, (int, float)):
+        return math.isclose(was, is_now, rel_tol=_SAME, abs_tol=_SAME)
+    return was == is_now
+
+
+def _verdicts_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
+    if not check.found.verdicts:
+        return
+    if "verdicts" not in before:
+        yield "the baseline has lint alone: every seizure is new"
+        return
+    new = {issue.obstacle for issue in check.failing if issue.rule == SEIZES}
+    gone = dict.fromkeys(before["verdicts"])
+    sizes = []
+    for label, here in now["verdicts"].items():
+        found, then = _matched(before, label, now)
+        if found is None:
+            yield f"{label}: {here['word']}; the baseline has no such obstacle"
+            continue
+        del gone[found]
+        if found != label:
+            sizes.append(f"{found} is now {label}")
+        (hits, runs, *_), (was_hits, was_runs, *_) = here["seized"][0], then["seized"][0]
+        counts = f"seizes in {hits} of {runs} runs, was {was_hits} of {was_runs}"
+        if label in new:
+            yield f"{label}: {then['word']} is now {here['word']}: {counts}; this is new"
+        elif here["word"] != then["word"]:
+            kept = "" if here["word"] != SEIZES else "; the intervals overlap: not counted as new"
+            yield f"{label}: {then['word']} is now {here['word']}: {counts}{kept}"
+    if sizes:
+        yield f"obstacles of other sizes: {', '.join(sizes)}"
+    if gone:
+        yield f"not driven over any more: {', '.join(gone)}"
+
+
+def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
+    for issue in check.issues:
+        if not issue.obstacle and check.known is not None and issue not in check.known:
+            yield f"new {issue.severity} of lint, {issue.rule}: {issue.text}"
+    found = _lint(now)
+    for severity, rule, what in before["lint"]:
+        if _key(rule, what) not in found:
+            yield f"{severity} of lint that is gone, {rule}: {what}"
+
+
+def _without_lines(finding: Finding) -> str:
+    return _LINE.sub("", finding.what)

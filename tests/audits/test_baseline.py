@@ -1,0 +1,263 @@
+"""What is new since a baseline fails; words that flip near a bound and lines that move do not."""
+
+import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.baseline import against, entry_of, read_baseline, write_baseline
+from crawler2d.audits.finding import Finding
+from crawler2d.audits.issues import Check, checked
+from crawler2d.audits.share import Share
+from crawler2d.audits.verdicts import Verdict
+from crawler2d.sweeps.statistics import wilson
+from tests.shared import refused
+
+Made = Callable[..., Check]
+
+
+def share(hits: int, runs: int = 80) -> Share:
+    _, low, high = wilson(hits, runs)
+    rate = hits / runs
+    return Share(
+        rate=rate,
+        low=low,
+        high=high,
+        band_low=rate,
+        band_median=rate,
+        band_high=rate,
+        runs=runs,
+        samples=runs,
+    )
+
+
+@pytest.fixture
+def made(of_file: c2d.Audit) -> Made:
+    """Makes checks with verdicts and lint of one's own, all else that of a cart."""
+    seizing = of_file.verdicts[0]
+
+    def verdict(label: str, word: str, hits: int, *at: tuple[int, int]) -> Verdict:
+        return dataclasses.replace(
+            seizing,
+            obstacle=label,
+            word=word,
+            seized=share(hits),
+            seized_at={0.1 * k: share(*each) for k, each in enumerate(at, 1)},
+        )
+
+    def make(*verdicts: Any, lint: tuple[Finding, ...] = (), **changed: Any) -> Check:
+        assert of_file.reading is not None
+        robot = dataclasses.replace(of_file.robot, **changed)
+        found = dataclasses.replace(
+            of_file, robot=robot, lint=lint, verdicts=tuple(verdict(*each) for each in verdicts)
+        )
+        return checked(of_file.reading.path, found)
+
+    return make
+
+
+def compared(before: Check, now: Check, folder: Path) -> tuple[list[str], str]:
+    """What is new, by rule and obstacle, and what is told."""
+    path = folder / "audit.json"
+    write_baseline(path, [before], None)
+    check, told = against(now, read_baseline(path), path)
+    return [issue.obstacle or issue.rule for issue in check.failing], "\n".join(told)
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "is_new"),
+    [
+        # as it was, and a little more often
+        (("seizes", 10), ("seizes", 10), False),
+        (("seizes", 10), ("seizes", 16), False),
+        # a rate near a bound
+        (("not certain", 7), ("seizes", 9), False),
+        (("belt fails, too", 8), ("seizes", 9), False),
+        # far more often
+        (("seizes", 10), ("seizes", 40), True),
+        (("belt fails, too", 5), ("seizes", 40), True),
+        (("not certain", 5), ("seizes", 20), True),
+        # said not to
+        (("does not seize", 1), ("seizes", 9), True),
+        # not seizing is never new
+        (("does not seize", 0), ("not certain", 7), False),
+        (("does not seize", 0), ("belt fails, too", 40), False),
+    ],
+)
+def test_a_seizure_is_new_by_its_interval_or_after_the_word_does_not_seize(
+    made: Made, tmp_path: Path, before: Any, now: Any, is_new: bool
+) -> None:
+    new, told = compared(made(("step 30 mm", *before)), made(("step 30 mm", *now)), tmp_path)
+    assert new == ["step 30 mm"] * is_new
+    assert ("this is new" in told) is is_new
+    moved = before[0] != now[0] or is_new
+    assert (f"step 30 mm: {before[0]} is now {now[0]}" in told) is moved
+
+
+def test_a_seizure_at_one_speed_alone_is_new(made: Made, tmp_path: Path) -> None:
+    before = made(("step 30 mm", "not certain", 4, (4, 27), (0, 27), (0, 26)))
+    new, _ = compared(
+        before, made(("step 30 mm", "seizes", 12, (4, 27), (8, 27), (0, 26))), tmp_path
+    )
+    assert new == ["step 30 mm"]
+    new, _ = compared(
+        before, made(("step 30 mm", "seizes", 9, (8, 27), (1, 27), (0, 26))), tmp_path
+    )
+    assert new == []
+
+
+def test_nothing_moved_is_nothing_told(made: Made, tmp_path: Path) -> None:
+    check = made(("step 30 mm", "seizes", 10), lint=(WARNING,))
+    assert compared(check, check, tmp_path) == ([], "")
+
+
+WARNING = Finding(
+    rule="effort", severity="warning", what="2 of 8 wheels, left_wheel_1", where="a.sdf:12, 14"
+)
+
+
+@pytest.mark.parametrize(
+    ("changed", "new"),
+    [
+        ({"where": "a.sdf:99"}, []),
+        ({"what": "3 of 9 wheels, left_wheel_1"}, []),
+        ({"severity": "note"}, []),
+        ({"what": "2 of 8 wheels, left_wheel_2"}, ["effort"]),
+        ({"rule": "doubt"}, ["doubt"]),
+        ({"severity": "error"}, ["effort"]),
+        ({"rule": "doubt", "severity": "note"}, []),
+    ],
+)
+def test_lint_is_new_by_its_words_and_severity_and_not_by_lines_and_figures(
+    made: Made, tmp_path: Path, changed: Any, new: list[str]
+) -> None:
+    now = dataclasses.replace(WARNING, **changed)
+    found, told = compared(made(lint=(WARNING,)), made(lint=(now,)), tmp_path)
+    assert found == new
+    if new:
+        assert f"new {now.severity} of lint, {now.rule}: {now.what}" in told
+
+
+def test_lines_in_what_a_doubt_says_are_no_change(made: Made, tmp_path: Path) -> None:
+    before, now = (
+        Finding(rule="doubt", severity="warning", what=f"a.sdf:{line}: mesh is left out, got b.stl")
+        for line in (12, 345)
+    )
+    assert compared(made(lint=(before,)), made(lint=(now,)), tmp_path) == ([], "")
+    (kept,) = entry_of(made(lint=(before,)))["lint"]
+    assert kept == ["warning", "doubt", "a.sdf: mesh is left out, got b.stl"]
+
+
+def test_what_is_gone_is_told(made: Made, tmp_path: Path) -> None:
+    before = made(("step 30 mm", "seizes", 10), ("gap 9 mm", "seizes", 10), lint=(WARNING,))
+    new, told = compared(before, made(("step 30 mm", "does not seize", 0)), tmp_path)
+    assert new == []
+    assert "step 30 mm: seizes is now does not seize: seizes in 0 of 80 runs, was 10 of 80" in told
+    assert "not driven over any more: gap 9 mm" in told
+    assert "warning of lint that is gone, effort" in told
+
+
+def test_obstacles_of_another_size_are_the_same_obstacles(made: Made, tmp_path: Path) -> None:
+    before = made(("step 90 mm", "does not seize", 0), ("step 30 mm", "seizes", 10))
+    now = made(("step 35 mm", "seizes", 10), ("step 105 mm", "does not seize", 0), mass=15.0)
+    new, told = compared(before, now, tmp_path)
+    assert new == []
+    assert "obstacles of other sizes: step 30 mm is now step 35 mm, step 90 mm is now step" in told
+    assert "another robot: robot.mass" in told
+    assert "is now 15" in told
+
+
+def test_a_seizure_on_an_obstacle_that_the_baseline_lacks_is_new(
+    made: Made, tmp_path: Path
+) -> None:
+    before = made(("step 30 mm", "seizes", 10))
+    now = made(("step 30 mm", "seizes", 10), ("gap 9 mm", "seizes", 10))
+    new, told = compared(before, now, tmp_path)
+    assert new == ["gap 9 mm"]
+    assert "gap 9 mm: seizes; the baseline has no such obstacle" in told
+
+
+def test_another_version_is_told_where_a_verdict_moved(made: Made, tmp_path: Path) -> None:
+    before, now = made(("step 30 mm", "not certain", 7)), made(("step 30 mm", "seizes", 9))
+    assert "CHANGELOG" not in compared(before, now, tmp_path)[1]
+    path = tmp_path / "audit.json"
+    kept = json.loads(path.read_text("utf-8"))
+    (entry,) = kept["models"].values()
+    entry["crawler2d"] = "0.0.9"
+    path.write_text(json.dumps(kept), encoding="utf-8")
+    _, told = against(now, read_baseline(path), path)
+    assert told[-1].startswith("crawler2d 0.0.9 (")
+    assert f"is now {c2d.__version__} (" in told[-1]
+    assert "CHANGELOG.md" in told[-1]
+    assert against(before, read_baseline(path), path)[1] == []
+
+
+def test_everything_is_new_in_a_file_that_the_baseline_lacks(made: Made, tmp_path: Path) -> None:
+    check = made(("step 30 mm", "seizes", 10))
+    path = tmp_path / "audit.json"
+    write_baseline(path, [check], None)
+    other = dataclasses.replace(check, path=check.path.with_name("other.urdf"))
+    new, told = against(other, read_baseline(path), path)
+    assert new.failing == check.issues
+    assert told == ["not in the baseline: all of it is new"]
+
+
+def test_a_baseline_names_files_from_its_own_folder(
+    made: Made, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "models").mkdir()
+    monkeypatch.chdir(tmp_path)
+    check = dataclasses.replace(made(), path=Path("models/a.urdf"))
+    write_baseline(Path("audit.json"), [check], None)
+    assert list(read_baseline(Path("audit.json"))["models"]) == ["models/a.urdf"]
+    monkeypatch.chdir(tmp_path / "models")
+    path = Path("../audit.json")
+    assert (
+        against(dataclasses.replace(check, path=Path("a.urdf")), read_baseline(path), path)[1] == []
+    )
+
+
+def test_an_update_keeps_what_the_baseline_has_of_other_files(made: Made, tmp_path: Path) -> None:
+    check, path = made(("step 30 mm", "seizes", 10)), tmp_path / "audit.json"
+    other = dataclasses.replace(check, path=check.path.with_name("other.urdf"))
+    write_baseline(path, [check, other], None)
+    whole = read_baseline(path)
+    lint_alone = dataclasses.replace(
+        check,
+        found=dataclasses.replace(check.found, verdicts=()),  # type: ignore[type-var]
+    )
+    write_baseline(path, [lint_alone], whole)
+    assert read_baseline(path) == whole
+
+
+def test_a_baseline_is_a_line_for_each_thing(made: Made, tmp_path: Path) -> None:
+    path = tmp_path / "audit.json"
+    write_baseline(path, [made(("step [30] mm", "seizes", 10), lint=(WARNING,))], None)
+    lines = path.read_text("utf-8").splitlines()
+    assert any(
+        line.strip().startswith('"belt_cleared": [') and line.endswith("],") for line in lines
+    )
+    assert '["warning", "effort", "2 of 8 wheels, left_wheel_1"]' in map(str.strip, lines)
+    assert '"step [30] mm": {' in map(str.strip, lines)
+
+
+@pytest.mark.parametrize(
+    ("text", "path"),
+    [
+        ("", "baseline"),
+        ("[]", "baseline"),
+        ('{"baseline": 1}', "baseline"),
+        ('{"baseline": 2, "models": {}}', "baseline"),
+        ('{"baseline": 1, "models": []}', "baseline"),
+    ],
+)
+def test_a_file_that_is_no_baseline_is_refused(tmp_path: Path, text: str, path: str) -> None:
+    file = tmp_path / "audit.json"
+    file.write_text(text, encoding="utf-8")
+    error = refused(lambda: read_baseline(file))
+    assert error.path == path
+    assert "--update-baseline" in error.rule
