@@ -16,6 +16,7 @@ def main() -> None:
     assert not any(shutil.which(name) for name in ("cargo", "rustc", "cc", "gcc"))
     assert Path(c2d.__file__).is_relative_to(sys.prefix), "not the wheel, but a working copy"
     assert {"LICENSE", "THIRD-PARTY-NOTICES"} <= {file.name for file in files("crawler2d") or ()}
+    assert all(c2d.samples.path(name).is_file() for name in c2d.samples.names())
     command = [sys.executable, "-W", "ignore", "-m", "crawler2d", "audit", str(MODEL), "--quick"]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     print(done.stdout)

@@ -43,7 +43,7 @@ from crawler2d.parameters.track import (
     RoundWheel,
     SegmentalTrack,
 )
-from crawler2d.presets import robots, terrains, unknowns
+from crawler2d.presets import robots, samples, terrains, unknowns
 from crawler2d.results.diagnosis import Diagnosis
 from crawler2d.results.findings import Mechanism
 from crawler2d.results.outcome import Outcome
@@ -118,6 +118,7 @@ __all__ = [
     "rate",
     "read_robot",
     "robots",
+    "samples",
     "scaled",
     "sequential",
     "shifted",

@@ -174,7 +174,7 @@ def test_the_action_audits_the_models_of_a_repository(repository: Path, tmp_path
     action = yaml("action.yml")
     files = {name: tmp_path / name for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
     env = {**python_of_this_test(tmp_path), **{key: str(path) for key, path in files.items()}}
-    few = {"args": "--samples 6 --no-repairs --threads 2", "files": "models/*.urdf"}
+    few = {"args": "--samples 3 --no-repairs --threads 2", "files": "models/*.urdf"}
     done = step(action, "Audit", few, env)
     assert done.returncode == 1, done.stderr
     summary = files["GITHUB_STEP_SUMMARY"].read_text("utf-8")

@@ -75,7 +75,7 @@ def linted(robot: Robot | Reading | str | os.PathLike[str], **reading: Unpack[Ho
     >>> import crawler2d as c2d
     >>> found = linted(c2d.robots.marv(track="public"))
     >>> [each.rule for each in found.lint], len(found.pockets)
-    (['no track'], 0)
+    (['no track'], 15)
     """
     own, read, _ = subject_of(robot, reading)
     return Linted(robot=own, reading=read, lint=lint(own, read), pockets=pockets(own))

@@ -1,0 +1,53 @@
+"""Models of a small tracked robot to try things on: one robot, as SDF, URDF and MJCF.
+
+Nothing of it is of a real robot. It has wheels in the place of tracks, as people do it, so that an
+audit has something to find.
+"""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+from crawler2d.errors import ScenarioError
+
+__all__ = ["names", "path"]
+
+_NAMES = ("rover.sdf", "rover.urdf", "rover.xml")
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all samples: the robot as SDF, URDF and MJCF.
+
+    Examples
+    --------
+    >>> names()
+    ('rover.sdf', 'rover.urdf', 'rover.xml')
+    """
+    return _NAMES
+
+
+def path(name: str = "rover.sdf") -> Path:
+    """Return where a sample is.
+
+    Parameters
+    ----------
+    name : str
+        One of `names`.
+
+    Raises
+    ------
+    ScenarioError
+        If there is none of that name; it has the nearest.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> c2d.read_robot(path("rover.urdf")).robot.in_words
+    'rover: 7 round wheels in a line'
+    """
+    if name not in _NAMES:
+        nearest = difflib.get_close_matches(str(name), _NAMES, n=1, cutoff=0.0)[0]
+        rule = f"must be one of {', '.join(_NAMES)} (did you mean {nearest}?)"
+        raise ScenarioError("name", name, rule)
+    return Path(__file__).with_name(name)

@@ -1,0 +1,96 @@
+"""The models that the package ships are one robot in three formats, and it seizes as is meant."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.linted import linted
+from crawler2d.audits.obstacles import standard_obstacles
+from crawler2d.parameters.plain import to_plain
+from crawler2d.patching.patch import patched
+from tests.shared import refused
+
+NAMES = c2d.samples.names()
+
+
+def leaves(plain: Any, path: str = "robot") -> dict[str, Any]:
+    if isinstance(plain, dict):
+        parts = [(f"{path}.{name}", each) for name, each in plain.items()]
+    elif isinstance(plain, list):
+        parts = [(f"{path}[{number}]", each) for number, each in enumerate(plain)]
+    else:
+        return {path: plain}
+    return {name: leaf for part, each in parts for name, leaf in leaves(each, part).items()}
+
+
+def read(name: str) -> c2d.Reading:
+    if name.endswith(".xml"):
+        pytest.importorskip("mujoco")
+    return c2d.read_robot(c2d.samples.path(name))
+
+
+def test_the_samples_are_of_every_format() -> None:
+    assert {Path(name).suffix for name in NAMES} == {".sdf", ".urdf", ".xml"}
+    assert all(c2d.samples.path(name).is_file() for name in NAMES)
+    folder = c2d.samples.path().parent
+    assert {path.name for path in folder.iterdir() if path.suffix != ".py"} - {
+        "__pycache__"
+    } == set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES[1:])
+def test_each_format_has_the_same_robot(name: str) -> None:
+    first, other = read(NAMES[0]), read(name)
+    expected, found = (leaves(to_plain(each.robot)) for each in (first, other))
+    assert set(found) == set(expected)
+    for path, value in expected.items():
+        if isinstance(value, float):
+            assert found[path] == pytest.approx(value, rel=1e-6, abs=1e-9), path
+        else:
+            assert found[path] == value, path
+    assert other.friction == first.friction
+    assert other.sources.estimates == first.sources.estimates
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sample_is_a_robot_that_could_be(name: str) -> None:
+    read(name)
+    found = linted(c2d.samples.path(name))
+    assert {each.severity for each in found.lint} <= {"note"}
+    assert 10.0 < found.robot.mass < 20.0
+    outline = found.robot.outline
+    assert 0.4 < outline.axle_distance + 2.0 * outline.front_radius < 0.6
+    assert found.reading is not None
+    assert not found.reading.doubts
+    assert len(c2d.samples.path(name).read_text("utf-8").splitlines()) <= 160
+
+
+def test_a_sample_that_is_not_there_is_refused_with_the_nearest() -> None:
+    error = refused(lambda: c2d.samples.path("rover.srdf"))
+    assert (error.path, error.value) == ("name", "rover.srdf")
+    assert "rover.urdf" in error.rule
+    assert "did you mean rover.sdf?" in error.rule
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_wheels_of_a_sample_can_be_changed_in_its_file(name: str, tmp_path: Path) -> None:
+    reading = read(name)
+    robot = reading.robot.with_track(c2d.LineOfWheels(9))
+    changed = tmp_path / name
+    changed.write_text(patched(reading, robot).text, encoding="utf-8")
+    again = c2d.read_robot(changed).robot
+    assert again.track == robot.track
+    assert again.mass == pytest.approx(robot.mass, rel=1e-6)
+
+
+def test_the_sample_seizes_on_stairs_that_a_belt_climbs() -> None:
+    rover = c2d.samples.path()
+    obstacles = standard_obstacles(c2d.read_robot(rover).robot, 0.8)
+    stairs = {label: each for label, each in obstacles.items() if label.startswith("stairs")}
+    found = c2d.audit(rover, stairs, samples=12, repair=False, threads=2, progress=False)
+    (verdict,) = found.verdicts
+    assert verdict.word == "seizes"
+    assert verdict.belt_cleared.rate > 0.9
+    assert verdict.seized.rate > 0.3
