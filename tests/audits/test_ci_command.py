@@ -1,5 +1,6 @@
 """The audit in a robot's own repository: options of the command, the GitHub action, the hooks."""
 
+import argparse
 import json
 import os
 import re
@@ -135,6 +136,15 @@ def test_options_that_do_not_go_together_are_refused_before_any_run(
     assert err.startswith(f"audit: --{'html' if '--html' in arguments else ''}")
     assert len(err.strip().splitlines()) == 1
     assert quick.is_dir()
+
+
+def test_every_option_that_the_page_names_is_one() -> None:
+    parser = argparse.ArgumentParser()
+    command.add_arguments(parser)
+    page = (ROOT / "docs" / "ci.md").read_text("utf-8")
+    named = set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", page))
+    assert len(named) > 8
+    assert named <= {option for each in parser._actions for option in each.option_strings}
 
 
 def yaml(name: str) -> Any:
