@@ -17,7 +17,7 @@ from crawler2d.__main__ import main
 from crawler2d.audits.call import Call, command_of
 from crawler2d.audits.plain import plain_of
 from crawler2d.reports import audit as command
-from tests.reading.carts import FILES, WHEELS, collision, urdf
+from tests.reading.carts import FILES, WHEELS, pair, urdf
 
 
 def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
@@ -122,7 +122,7 @@ CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
 HOWS: Any = [
     {},
     {"engine": "isaac", "forward": "-x", "model": "a b; rm -rf $HOME", "ground_friction": 0.7},
-    {"mesh": "hull", "missing": "refuse", "trusted": True},
+    {"mesh": "refuse", "missing": "refuse", "trusted": True},
     {"tracks": ["-left", "right"], "packages": {"a": "b=c"}, "arguments": {"n": "it's"}},
     {"tolerance": 0.01, "ground_friction": 0.5},
 ]
@@ -143,7 +143,7 @@ def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     assert options.no_repairs
     kept = command._reading(options)
     assert {name: value for name, value in kept.items() if value} == {
-        "mesh": "refuse",
+        "mesh": "hull",
         "missing": "leave_out",
         "tolerance": 0.001,
         **how,
@@ -206,9 +206,9 @@ def test_the_command_advises_its_own_options(capsys: Any, tmp_path: Path) -> Non
 @pytest.mark.parametrize("name", ["package://p/m.stl", "/m.stl"])
 def test_the_command_advises_its_option_for_folders(capsys: Any, tmp_path: Path, name: str) -> None:
     path = tmp_path / "cart.urdf"
-    shape = collision(f'<mesh filename="{name}"/>')
-    path.write_text(urdf(WHEELS, shapes=shape), encoding="utf-8")
-    status, _, err = run(capsys, str(path), "--mesh", "hull")
+    wheels = pair("middle", 0.0, geometry=f'<mesh filename="{name}"/>')
+    path.write_text(urdf(WHEELS, wheels), encoding="utf-8")
+    status, _, err = run(capsys, str(path))
     assert status == 2
     assert "--package NAME=FOLDER" in err
     assert "packages=" not in err

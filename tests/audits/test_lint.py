@@ -40,7 +40,7 @@ def test_a_good_file_has_none(tmp_path: Path) -> None:
 
 
 def test_errors_stand_before_warnings_and_notes(tmp_path: Path) -> None:
-    tensor = '<inertia ixx="9" ixy="0" ixz="0" iyy="9" iyz="0" izz="9"/>'
+    tensor = '<inertia ixx="0.5" ixy="0" ixz="0" iyy="0.5" iyz="0" izz="2"/>'
     text = urdf(WHEELS, pair("middle", 0.0, limit="", radius="0.125"))
     reading = read(tmp_path, text.replace(TENSOR, tensor))
     order = [SEVERITIES.index(each.severity) for each in lint(reading.robot, reading)]

@@ -120,3 +120,13 @@ def refused(folder: Path, text: str, rule: str, name: str = "cart.urdf", **how: 
     with pytest.raises(c2d.ScenarioError, match=rule) as caught:
         read(folder, text, name, **how)
     assert re.match(re.escape(name) + r":\d+", caught.value.path), caught.value.path
+
+
+def left_out(folder: Path, text: str, reason: str, name: str = "cart.urdf", **how: Any) -> None:
+    """Read a text of which a collision shape must be left out, with file, line and reason."""
+    reading = read(folder, text, name, **how)
+    told = [doubt for doubt in reading.doubts if "is left out" in doubt]
+    assert told, reading.doubts
+    for doubt in told:
+        assert re.search(reason, doubt), doubt
+        assert re.match(re.escape(name) + r":\d+", doubt), doubt

@@ -1,4 +1,4 @@
-"""Whatever a model names as a file is read if it may be, or refused at once, with the reason."""
+"""Whatever a model names as a file is read if it may be, or not opened at all, with the reason."""
 
 import os
 import re
@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import FILES, WHEELS, XACRO, collision, read, refused, urdf
+from tests.reading.carts import FILES, WHEELS, XACRO, collision, left_out, read, refused, urdf
 from tests.reading.odd_files import ODD
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has pipes and devices of Unix")
@@ -45,20 +45,21 @@ def with_mesh(name: str) -> str:
 
 
 @odd
-@pytest.mark.parametrize("suffix", ["stl", "obj"])
-def test_a_mesh_that_is_no_file_of_the_model_is_refused(
+@pytest.mark.parametrize("suffix", ["stl", "dae"])
+def test_a_mesh_that_is_no_file_of_the_model_is_left_out(
     tmp_path: Path, what: str, suffix: str
 ) -> None:
     ODD[what](tmp_path / f"mesh.{suffix}")
-    rule = r"must be (a regular file that can be read \(.*\)|in the folder or package of its model)"
-    refused(tmp_path, with_mesh(f"mesh.{suffix}"), f'{rule}.*mesh="leave_out"', mesh="hull")
+    regular = r"must be a regular file that can be read \(.*\)|there is no file"
+    reason = rf"({regular}|must be in the folder or package of its model)"
+    left_out(tmp_path, with_mesh(f"mesh.{suffix}"), reason)
 
 
 @pytest.mark.parametrize("name", ["file:///dev/zero.stl", "/dev/zero.stl", "../dev/zero.stl"])
 def test_dev_zero_is_not_read_as_a_mesh(tmp_path: Path, name: str) -> None:
     (tmp_path / "cart").mkdir()
     rule = r"in a folder that is named: packages=\{name: folder\}"
-    refused(tmp_path / "cart", with_mesh(name), rule, mesh="hull")
+    left_out(tmp_path / "cart", with_mesh(name), rule)
 
 
 @odd
@@ -122,14 +123,17 @@ def mjcf(asset: str) -> str:
 
 @pytest.mark.parametrize("what", ["pipe", "device", "elsewhere"])
 @pytest.mark.parametrize("named", MJCF)
-def test_a_file_that_mjcf_names_and_is_none_is_refused(
+def test_a_file_that_mjcf_names_and_is_none_is_not_opened(
     tmp_path: Path, what: str, named: str
 ) -> None:
+    """What is only seen is not even looked for; nor does a mesh matter that no shape has."""
     pytest.importorskip("mujoco")
     for suffix in ("stl", "png", "skn", "xml"):
         ODD[what](tmp_path / f"part.{suffix}")
-    rule = "must (be a regular file|be in the folder or package|hold the robot itself)"
-    refused(tmp_path, mjcf(MJCF[named]), rule, "cart.xml")
+    if named == "model":
+        refused(tmp_path, mjcf(MJCF[named]), "must hold the robot itself", "cart.xml")
+    else:
+        assert read(tmp_path, mjcf(MJCF[named]), "cart.xml").robot.mass > 0.0
 
 
 def test_mujoco_opens_nothing_by_itself(tmp_path: Path) -> None:
@@ -199,7 +203,7 @@ def test_a_mesh_elsewhere_is_read_only_where_its_folder_is_named(tmp_path: Path,
     (cart / "link.obj").symlink_to(other / "m.obj")
     (cart / "linked").symlink_to(other)
     text = with_mesh(OUTSIDE[way].format(other=other))
-    refused(cart, text, "must be in the folder or package of its model", mesh="hull")
+    left_out(cart, text, "must be in the folder or package of its model")
     reading = read(cart, text, mesh="hull", packages={"other": other})
     assert reading.robot.belly == ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.05), (-0.1, 0.05))
 
@@ -239,20 +243,21 @@ def test_packages_of_the_ros_path_are_read(tmp_path: Path, monkeypatch: pytest.M
 def test_a_mesh_is_not_larger_than_30_megabytes(tmp_path: Path, suffix: str) -> None:
     with (tmp_path / f"m.{suffix}").open("wb") as file:
         file.truncate(100_000_000)
-    refused(tmp_path, with_mesh(f"m.{suffix}"), "must have at most 30000000 bytes", mesh="hull")
+    left_out(tmp_path, with_mesh(f"m.{suffix}"), "must have at most 30000000 bytes")
 
 
 def test_all_meshes_of_a_model_are_not_larger_than_30_megabytes(tmp_path: Path) -> None:
-    (tmp_path / "m.obj").write_text(OBJ + "\n" * 16_000_000)
-    shape = collision('<mesh filename="m.obj"/>')
-    rule = "must, with the other files of its model, have at most 30000000 bytes"
-    refused(tmp_path, urdf(WHEELS, shapes=2 * shape), rule, mesh="hull")
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.obj").write_text(OBJ + "\n" * 16_000_000)
+    shapes = "".join(collision(f'<mesh filename="{name}.obj"/>') for name in ("a", "b"))
+    reason = "must, with the other files of its model, have at most 30000000 bytes, got b.obj"
+    left_out(tmp_path, urdf(WHEELS, shapes=shapes), reason)
 
 
-def test_a_million_corners_are_refused(tmp_path: Path) -> None:
+def test_a_million_corners_are_left_out(tmp_path: Path) -> None:
     (tmp_path / "m.obj").write_text("".join(f"v {k} 0 1\n" for k in range(1_000_000)))
-    rule = "must, with the other meshes, have at most 300000 corners"
-    refused(tmp_path, with_mesh("m.obj"), rule, mesh="hull")
+    reason = "must, with the other meshes, have at most 300000 corners"
+    left_out(tmp_path, with_mesh("m.obj"), reason)
 
 
 @pytest.mark.parametrize("filling", ["\n", " ", "vertex ", "v ", "vertex 1 ", "v 1 1 ", "\t\n"])
@@ -262,33 +267,33 @@ def test_a_text_mesh_takes_time_by_its_size_alone(
 ) -> None:
     """20 MB of empty lines in a text STL were read without an end: their time grew as a square."""
     (tmp_path / f"m.{suffix}").write_text("solid\n" + filling * (20_000_000 // len(filling)))
-    start = time.process_time()
-    with pytest.raises(c2d.ScenarioError, match="must "):
-        read(tmp_path, with_mesh(f"m.{suffix}"), mesh="hull")
-    assert time.process_time() - start < 5.0
+    start = time.perf_counter()
+    left_out(tmp_path, with_mesh(f"m.{suffix}"), "must ")
+    assert time.perf_counter() - start < 12.0
 
 
 @pytest.mark.parametrize("word", ["x", "nan", "inf", "1e9", "-1e300", "1e999", "\u0661", "1.2.3"])
-def test_a_corner_that_is_nowhere_is_refused(tmp_path: Path, word: str) -> None:
+def test_a_mesh_with_a_corner_that_is_nowhere_is_left_out(tmp_path: Path, word: str) -> None:
     (tmp_path / "m.obj").write_text(f"{OBJ}\nv 0 0 {word}")
-    rule = "must (be a mesh whose corners are numbers|have corners that are finite and at most 1e)"
-    refused(tmp_path, with_mesh("m.obj"), rule, mesh="hull")
+    reason = "must (be a mesh that trimesh reads|have corners that are finite and at most 1e)"
+    left_out(tmp_path, with_mesh("m.obj"), reason)
 
 
-def test_a_binary_mesh_with_odd_bits_is_refused(tmp_path: Path) -> None:
+def test_a_binary_mesh_with_odd_bits_is_left_out(tmp_path: Path) -> None:
     facet = struct.pack("<12f", *[float("nan")] * 12) + b"\0\0"
     signalling = facet.replace(b"\0\0\xc0\x7f", b"\1\0\xa0\x7f")
     for data in (facet, signalling):
         (tmp_path / "m.stl").write_bytes(b"\0" * 80 + struct.pack("<I", 1) + data)
-        refused(tmp_path, with_mesh("m.stl"), "must have corners that are finite", mesh="hull")
+        left_out(tmp_path, with_mesh("m.stl"), "must have corners")
 
 
 def test_a_mesh_of_a_package_is_held_to_the_same_rules(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "m.stl")
     text = with_mesh("package://p/m.stl")
-    how: dict[str, Any] = {"mesh": "hull", "packages": {"p": tmp_path}}
-    refused(tmp_path, text, "a pipe is none", **how)
-    refused(tmp_path, text.replace("p/m", "p/../../m"), "in the folder or package", **how)
+    packages = {"p": tmp_path}
+    left_out(tmp_path, text, "a pipe is none", packages=packages)
+    outside = text.replace("p/m", "p/../../m")
+    left_out(tmp_path, outside, "in the folder or package", packages=packages)
 
 
 def test_an_include_is_not_larger_than_a_model(tmp_path: Path) -> None:

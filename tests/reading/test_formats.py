@@ -1,5 +1,6 @@
 """One robot in three formats is one robot; each format is read by its own rules."""
 
+import itertools
 import math
 import pickle
 from pathlib import Path
@@ -244,8 +245,13 @@ def test_a_mesh_is_read_as_its_hull_where_its_file_is_there(tmp_path: Path) -> N
 
 
 def test_a_round_mesh_is_a_wheel(tmp_path: Path) -> None:
-    rim = [(math.cos(a / 32 * math.tau), math.sin(a / 32 * math.tau)) for a in range(32)]
-    facets = "".join(f"vertex {x} {y} {z}\n" for x, y in rim for z in (-0.5, 0.5))
+    rim = [(math.cos(a / 32 * math.tau), math.sin(a / 32 * math.tau)) for a in range(33)]
+    loop = "facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n"
+    facets = "".join(
+        loop.format(f"vertex {x} {y} {-z}\nvertex {x} {y} {z}\nvertex {u} {v} {z}\n")
+        for (x, y), (u, v) in itertools.pairwise(rim)
+        for z in (-0.5, 0.5)
+    )
     (tmp_path / "wheel.stl").write_text(f"solid wheel\n{facets}endsolid")
     mesh = '<mesh filename="wheel.stl" scale="0.08 0.08 0.05"/>'
     wheels = pair("front", 0.2, geometry=mesh) + pair("rear", -0.2, geometry=mesh)
@@ -273,8 +279,8 @@ def test_a_mesh_in_mjcf_is_read_as_its_hull(tmp_path: Path) -> None:
     box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
     text = text.replace(box, '<geom type="mesh" mesh="hull"/>')
     with pytest.raises(c2d.ScenarioError, match=r"cart\.xml:13: geom.* must be no mesh"):
-        read(tmp_path, text, "cart.xml")
-    belly = read(tmp_path, text, "cart.xml", mesh="hull").robot.belly
+        read(tmp_path, text, "cart.xml", mesh="refuse")
+    belly = read(tmp_path, text, "cart.xml").robot.belly
     assert belly == ((-0.2, 0.0), (0.2, 0.0), (0.2, 0.1), (-0.2, 0.1))
 
 

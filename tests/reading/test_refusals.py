@@ -12,6 +12,7 @@ from tests.reading.carts import (
     SIDES,
     WHEELS,
     collision,
+    left_out,
     link,
     pair,
     read,
@@ -104,28 +105,21 @@ def test_friction_without_limit_is_refused_where_the_larger_holds(tmp_path: Path
     refused(tmp_path, urdf(WHEELS, rough), "must have a limit", engine="mujoco")
 
 
-def test_a_mesh_is_refused_unless_its_hull_is_asked_for(tmp_path: Path) -> None:
+def test_a_mesh_that_is_not_there_is_left_out_or_refused_on_request(tmp_path: Path) -> None:
     text = urdf(WHEELS, shapes=collision('<mesh filename="a.stl"/>'))
-    refused(tmp_path, text, 'must be no mesh: mesh="hull" takes its hull')
-    refused(tmp_path, text, "must be a regular file that can be read .No such file", mesh="hull")
-    reading = read(tmp_path, text, mesh="leave_out")
-    assert reading.robot.belly is None
-    assert "is left out: a mesh, got a.stl" in reading.doubts[0]
+    refused(tmp_path, text, 'must be no mesh: mesh="hull" takes its hull', mesh="refuse")
+    left_out(tmp_path, text, rf"left out: there is no file {tmp_path}/a.stl, got a.stl")
+    left_out(tmp_path, text, "left out: a mesh, got a.stl", mesh="leave_out")
+    assert read(tmp_path, text).robot.belly is None
 
 
-def test_a_mesh_of_an_unknown_kind_or_package_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "a.dae").write_text("")
-    for name, rule in (("a.dae", "must be an .stl or .obj"), ("package://p/a.stl", "packages=")):
-        refused(
-            tmp_path,
-            urdf(WHEELS, shapes=collision(f'<mesh filename="{name}"/>')),
-            rule,
-            mesh="hull",
-        )
-
-
-def test_a_shape_that_is_no_shape_of_a_robot_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, urdf(WHEELS, shapes=collision("<plane/>")), "must be a box, cylinder")
+def test_a_mesh_of_an_unknown_kind_or_package_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "a.blend").write_text("")
+    for name, reason in (
+        ("a.blend", "must be a mesh of a kind"),
+        ("package://p/a.stl", "packages="),
+    ):
+        left_out(tmp_path, urdf(WHEELS, shapes=collision(f'<mesh filename="{name}"/>')), reason)
 
 
 def test_a_model_without_anything_that_turns_is_refused(tmp_path: Path) -> None:
@@ -284,12 +278,6 @@ def test_wheels_beside_moved_drums_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("part", "rule"),
     [
-        ('<model name="arm"/>', "must hold its parts itself"),
-        ("<include><uri>model://arm</uri></include>", "must hold its parts itself"),
-        (
-            '<joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint>',
-            "must not fix the robot to the world",
-        ),
         (
             '<link name="b"><inertial auto="true"/></link>'
             '<joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>',

@@ -10,9 +10,10 @@ import numpy as np
 
 from crawler2d.audits.finding import Finding, named
 from crawler2d.audits.lint_model import wheel_links
-from crawler2d.models.tree import Link, Shape
+from crawler2d.models.tree import Link
 from crawler2d.models.where import Where
-from crawler2d.reading.parts import corners_of
+from crawler2d.reading.parts import farthest
+from crawler2d.reading.plausible import size_of
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.sources import lines
 
@@ -38,7 +39,7 @@ def of_bodies(reading: Reading) -> Iterator[Finding]:
         What was read.
     """
     links = [link for link in reading.tree.links if link.mass > 0.0 and link.inertia.any()]
-    whole = _size(reading)
+    whole = size_of(reading.tree)
     mass = reading.robot.mass
     broken = [link for link in links if _breaks_triangle(link)]
     what = "the largest principal moment of inertia exceeds the sum of the others: no body has that"
@@ -93,23 +94,7 @@ def _is_ball(link: Link) -> bool:
 
 def _reach(link: Link) -> float:
     """[m] Return how far the shapes of a link reach from its centre of mass."""
-    return max(_farthest(shape, link.center) for shape in link.shapes)
-
-
-def _farthest(shape: Shape, point: np.ndarray[tuple[int]]) -> float:
-    if shape.kind in ("box", "hull"):
-        return float(np.linalg.norm(corners_of(shape) - point, axis=1).max())
-    own = math.hypot(shape.radius, 0.5 * shape.length) + (
-        shape.radius if shape.kind == "capsule" else 0.0
-    )
-    return float(np.linalg.norm(shape.pose.place - point)) + own
-
-
-def _size(reading: Reading) -> float:
-    """[m] Return how far any shape is from the middle of all: no link without shapes is larger."""
-    shapes = [shape for link in reading.tree.links for shape in link.shapes]
-    middle = np.mean([shape.pose.place for shape in shapes], axis=0)
-    return max(_farthest(shape, middle) for shape in shapes)
+    return max(farthest(shape, link.center) for shape in link.shapes)
 
 
 def _overlaps(reading: Reading) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ import numpy as np
 from crawler2d.models.poses import Array, Pose
 from crawler2d.models.where import MADE, Where
 
-__all__ = ["Friction", "Joint", "Link", "Plugin", "Shape", "Tree"]
+__all__ = ["Friction", "Joint", "Link", "Plugin", "Shape", "Tree", "Unread"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -51,8 +51,8 @@ class Shape:
     ----------
     name : str
         As in the file.
-    kind : {"box", "cylinder", "capsule", "sphere", "mesh", "hull"}
-        A "hull" is that of `points`; a "mesh" is one that was not read.
+    kind : {"box", "cylinder", "capsule", "sphere", "hull"}
+        A "hull" is that of `points`.
     pose : Pose
         Of its frame; the axis of cylinders and capsules is z.
     radius : float
@@ -93,6 +93,25 @@ class Shape:
         return turned
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unread:
+    """A collision shape that was left out: that it is there is all that is known of it.
+
+    Parameters
+    ----------
+    name : str
+        The file of a mesh as it is named, or the kind of the shape.
+    reason : str
+        Why it was left out.
+    at : Where
+        Its line.
+    """
+
+    name: str
+    reason: str
+    at: Where = MADE
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Link:
     """A rigid body.
@@ -111,6 +130,8 @@ class Link:
         [kg m^2] About that.
     shapes : tuple of Shape
         What collides.
+    unread : tuple of Unread
+        What collides besides, but was left out.
     at, pose_at, mass_at : Where
         The lines of the link, of its place and of its mass.
     """
@@ -121,6 +142,7 @@ class Link:
     center: Array
     inertia: Array
     shapes: tuple[Shape, ...]
+    unread: tuple[Unread, ...] = ()
     at: Where = MADE
     pose_at: Where = MADE
     mass_at: Where = MADE

@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.where import Where
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["Element", "real"]
 
@@ -93,6 +94,12 @@ class Element:
                 found[1].refuse(f"{len(found)} of them", "must be given once")
             node = found[0]
         return node
+
+    def first(self, tag: str, doubts: list[Doubt]) -> Element | None:
+        """Return the first child of a name, as simulators do; others are doubted."""
+        found = list(self.all(tag))
+        doubts += [(other.at, tag, "is left out: the first one holds") for other in found[1:]]
+        return found[0] if found else None
 
     def needed(self, path: str) -> Element:
         """Return the one child at a path, which must be there."""

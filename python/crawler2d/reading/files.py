@@ -27,7 +27,7 @@ from crawler2d.errors import ScenarioError
 from crawler2d.reading.packages import MANIFESTS, VARIABLES, Packages, folders
 from crawler2d.reading.telling import Doubt
 
-__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files", "is_absent"]
+__all__ = ["LARGEST_MODEL", "LARGEST_TOGETHER", "Files", "is_absent", "why"]
 
 LARGEST_MODEL = 4_000_000
 """[bytes] Of one file of elements or settings. The largest public models have 150 kB."""
@@ -111,7 +111,7 @@ class Files:
         """Read the model itself; see `read`."""
         return self.read(str(self._model), at="path")
 
-    def read(self, name: str, *, at: str, most: int = LARGEST_MODEL, remedy: str = "") -> bytes:
+    def read(self, name: str, *, at: str, most: int = LARGEST_MODEL) -> bytes:
         """Read a file.
 
         Parameters
@@ -123,8 +123,6 @@ class Files:
             Who names it, as the path of errors.
         most : int
             [bytes] The largest size.
-        remedy : str
-            What else may be done, for errors.
 
         Returns
         -------
@@ -142,20 +140,20 @@ class Files:
         if not inside and not self._packages.hold(path) and path not in self._taken.values():
             rule = (
                 "must be in the folder or package of its model, in another package of its tree, or"
-                f" in a folder that is named: packages={{name: folder}}{remedy}"
+                " in a folder that is named: packages={name: folder}"
             )
             raise ScenarioError(at, name, rule) from _absent(name)
         try:
             data = _read_regular(path, most + 1)
         except OSError as error:
-            rule = f"must be a regular file that can be read ({error.strerror}){remedy}"
+            rule = f"must be a regular file that can be read ({error.strerror})"
             raise ScenarioError(at, name, rule) from error
         if len(data) > most:
-            raise ScenarioError(at, name, f"must have at most {most} bytes{remedy}")
+            raise ScenarioError(at, name, f"must have at most {most} bytes")
         self._left -= len(data)
         if self._left < 0:
             rule = f"must, with the other files of its model, have at most {LARGEST_TOGETHER} bytes"
-            raise ScenarioError(at, name, f"{rule}{remedy}")
+            raise ScenarioError(at, name, rule)
         return data
 
     def package(self, name: str) -> Path | None:
@@ -197,6 +195,13 @@ def is_absent(error: BaseException) -> bool:
 
 def _absent(name: str) -> FileNotFoundError:
     return FileNotFoundError(errno.ENOENT, "is not among the files of the model", name)
+
+
+def why(error: ScenarioError) -> str:
+    """Say why a file could not be read, and which one it is if it is not there."""
+    if isinstance(error.__cause__, FileNotFoundError):
+        return f"there is no file {error.__cause__.filename}"
+    return error.rule
 
 
 def _read_regular(path: Path, most: int) -> bytes:

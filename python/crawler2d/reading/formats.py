@@ -12,6 +12,7 @@ from crawler2d.reading.how import How
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.mjcf import read_mjcf
 from crawler2d.reading.parsing import parsed
+from crawler2d.reading.plausible import bounded
 from crawler2d.reading.scaling import scaled
 from crawler2d.reading.sdf import read_sdf
 from crawler2d.reading.telling import Doubt, noted
@@ -87,11 +88,12 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         text = data.decode("utf-8", errors="replace")
         meshes = Meshes(rule=how.mesh, files=files, doubts=doubts)
         if root.tag == "sdf":
-            tree = read_sdf(root, how.model, meshes)
+            tree = read_sdf(root, how.model, meshes, doubts)
         elif root.tag == "robot":
             tree = read_urdf(root, meshes, doubts, leave_out=how.leaves_out_missing)
         elif root.tag == "mujoco":
             tree = read_mjcf(root, text, how.model, meshes)
         else:
             root.refuse(root.tag, "must be <sdf>, <robot> or <mujoco>")
+        tree = bounded(tree, doubts)
     return Found(tree, text, doubts + files.doubts)

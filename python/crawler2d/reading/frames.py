@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 
 from crawler2d.models.poses import Pose, from_quaternion, from_rpy
 from crawler2d.reading.elements import Element
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["MODEL", "Frames", "pose_of"]
 
 MODEL = "__model__"
 
 
-def pose_of(element: Element) -> tuple[Pose, str]:
+def pose_of(element: Element, doubts: list[Doubt]) -> tuple[Pose, str]:
     """Read the pose of an element, and the name of the frame that it is given in, if any."""
-    pose = element.only("pose")
+    pose = element.first("pose", doubts)
     if pose is None or not (pose.text or pose.attributes):
         return Pose(), ""
     relative = pose.attributes.get("relative_to", "")
@@ -37,15 +38,20 @@ def pose_of(element: Element) -> tuple[Pose, str]:
 
 @dataclass(slots=True)
 class Frames:
-    """Poses by name in the frame of the model, worked out when asked for."""
+    """Poses by name in the frame of the model, worked out when asked for.
 
+    What is in a nested model has names of its own: its scope, such as ``arm::``, goes before them.
+    """
+
+    doubts: list[Doubt]
     given: dict[str, tuple[Pose, str, Element]] = field(default_factory=dict)
     known: dict[str, Pose] = field(default_factory=lambda: {MODEL: Pose()})
 
-    def add(self, name: str, element: Element, usual: str) -> None:
+    def add(self, name: str, element: Element, usual: str, scope: str) -> None:
         """Add a frame, given in the one that it names, or else in the usual one."""
-        pose, relative = pose_of(element)
-        self.given.setdefault(name, (pose, relative or usual, element))
+        pose, relative = pose_of(element, self.doubts)
+        within = scope + relative if relative else usual
+        self.given.setdefault(name, (pose, within, element))
 
     def of(self, name: str, asked: Element) -> Pose:
         """Return the pose of a frame.
@@ -70,7 +76,7 @@ class Frames:
             self.known[name] = self.known[within].then(pose)
         return self.known[name] if not chain else self.known[chain[0]]
 
-    def inside(self, element: Element, usual: str) -> Pose:
+    def inside(self, element: Element, usual: str, scope: str) -> Pose:
         """Return the pose of something that is no frame itself, such as a collision."""
-        pose, relative = pose_of(element)
-        return self.of(relative or usual, element).then(pose)
+        pose, relative = pose_of(element, self.doubts)
+        return self.of(scope + relative if relative else usual, element).then(pose)

@@ -57,7 +57,7 @@ class How:
     engine: str | None = None
     forward: str | None = None
     model: str | None = None
-    mesh: MeshRule = "refuse"
+    mesh: MeshRule = "hull"
     missing: str = "leave_out"
     tracks: Collection[str] = ()
     ground_friction: float | None = None

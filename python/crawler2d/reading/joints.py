@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
+from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Array, Pose, unit
 from crawler2d.models.tree import Joint
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element
+from crawler2d.reading.telling import Doubt
 
-__all__ = ["joint_of", "moving"]
+__all__ = ["joint_of", "moving", "settled"]
 
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
@@ -18,13 +21,15 @@ Limit = tuple[float, Where]
 """A limit of effort or speed, and its line; a negative or an infinite one is none."""
 
 
-def joint_of(element: Element, parent: str, child: str, pose: Pose) -> Joint:
+def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -> Joint:
     """Return a joint as far as its axis plays no part.
 
     Parameters
     ----------
     element : Element
         The joint.
+    name : str
+        Its name.
     parent, child : str
         The links that it joins.
     pose : Pose
@@ -32,7 +37,7 @@ def joint_of(element: Element, parent: str, child: str, pose: Pose) -> Joint:
     """
     kind = element.attribute("type")
     return Joint(
-        name=element.attribute("name"),
+        name=name,
         kind=_KINDS.get(kind, kind),
         parent=parent,
         child=child,
@@ -42,6 +47,32 @@ def joint_of(element: Element, parent: str, child: str, pose: Pose) -> Joint:
         effort_at=element.where,
         velocity_at=element.where,
     )
+
+
+def settled(
+    made: Joint, moves: Callable[[], Joint], *, carries: bool, doubts: list[Doubt]
+) -> Joint:
+    """Return a joint that moves, or a fixed one where what is wrong with it makes no difference.
+
+    Parameters
+    ----------
+    made : Joint
+        What `joint_of` made of it.
+    moves : callable
+        Returns it with its axis and limits, or raises what is wrong with them.
+    carries : bool
+        Whether anything that hangs on it collides.
+    doubts : list of Doubt
+        Where it is noted.
+    """
+    try:
+        return moves()
+    except ScenarioError as error:
+        if carries:
+            raise
+        reason = f"is taken as fixed, for nothing on its joint collides: {error.rule}"
+        doubts.append((error.path, error.value, reason))
+        return replace(made, kind="fixed")
 
 
 def moving(
@@ -74,9 +105,12 @@ def moving(
     Raises
     ------
     ScenarioError
-        If the axis has no direction, or the lower limit is above the upper.
+        If a joint that is not locked has an axis without a direction, or the lower limit is above
+        the upper.
     """
     axis, (lower, upper) = unit(along), bounds
+    if axis is None and lower == upper:
+        return replace(joint, kind="fixed")  # locked, so it needs none
     if axis is None:
         element.refuse("0 0 0", "must have an axis with a direction")
     if lower > upper:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Pose, from_quaternion, unit
-from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree, Unread
 from crawler2d.models.where import Where
 from crawler2d.reading.child import answered
 from crawler2d.reading.elements import Element
-from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.meshes import MOST_CORNERS, Meshes
 from crawler2d.reading.order import checked
+from crawler2d.reading.shapes import collisions, ellipsoid
 
 __all__ = ["read_mjcf"]
 
@@ -92,6 +94,7 @@ class _Model:
         self.plain = plain
         self.at = at
         self.meshes = meshes
+        self.corners = 0  # of all meshes
         self.bodies: list[Plain] = plain["bodies"]
         self.joints: dict[int, list[Plain]] = {}
         for joint in plain["joints"]:
@@ -113,7 +116,10 @@ class _Model:
                 names.append((body["name"], self.where(body)))
                 joints[body["name"]] = self.joint(number, poses[number])
         ends = [(j.name, j.parent, j.child, j.at) for j in joints.values()]
-        order = {each: rank for rank, each in enumerate(checked(names, ends, self.at))}
+        order = {
+            each: rank
+            for rank, each in enumerate(checked(names, ends, self.at, self.meshes.doubts))
+        }
         links = [self.link(number, pose) for number, pose in poses.items()]
         return Tree(
             name=self.plain["name"],
@@ -137,10 +143,25 @@ class _Model:
             if name not in called:
                 raise ScenarioError("model", name, f"must be one of {', '.join(called[:10])}")
             return floating[called.index(name)]
-        if len(floating) != 1:
-            rule = "must have one body with a free joint, or model= must name one"
-            raise ScenarioError(str(self.at), ", ".join(called[:10]) or "none", rule)
-        return floating[0]
+        driving = [n for n in floating if len(floating) == 1 or self.drives(n)]
+        if len(driving) != 1:
+            rule = (
+                "must have one body with a free joint, or one of several with wheels or moved"
+                " surfaces: model= names it"
+            )
+            names = [self.bodies[number]["name"] for number in driving or floating]
+            raise ScenarioError(str(self.at), ", ".join(names[:10]) or "none", rule)
+        return driving[0]
+
+    def drives(self, root: int) -> bool:
+        """Whether anything on a body turns without limit, or has a surface that moves."""
+        on = {root}
+        for number, body in enumerate(self.bodies):  # parents come before their children
+            if number and body["parent"] in on:
+                on.add(number)
+        joints = [joint for number in on for joint in self.joints.get(number, [])]
+        turns = any(joint["kind"] == "hinge" and not joint["range"] for joint in joints)
+        return turns or any(s["body"] in on and any(s["moved"]) for s in self.plain["shapes"])
 
     def joint(self, number: int, pose: Pose) -> Joint:
         body = self.bodies[number]
@@ -187,38 +208,53 @@ class _Model:
     def link(self, number: int, pose: Pose) -> Link:
         body = self.bodies[number]
         axes = pose.then(from_quaternion(body["axes"], body["center"]))
-        shapes = (self.shape(s, pose) for s in self.plain["shapes"] if s["body"] == number)
+        own = [self.shape(s, pose) for s in self.plain["shapes"] if s["body"] == number]
+        shapes, unread = collisions([*own, *self.lacking(number)])
         return Link(
             name=body["name"],
             pose=pose,
             mass=body["mass"],
             center=axes.place,
             inertia=axes.turn @ np.diag(body["inertia"]) @ axes.turn.T,
-            shapes=tuple(shape for shape in shapes if shape is not None),
+            shapes=shapes,
+            unread=unread,
             at=self.where(body),
             pose_at=self.where(body),
             mass_at=self.where(body),
         )
 
-    def shape(self, plain: Plain, body: Pose) -> Shape | None:
+    def lacking(self, number: int) -> Iterator[Unread]:
+        """Yield what a body lacks, and doubt it; what is only seen makes no difference."""
+        for each in self.plain["lacking"]:
+            if each["body"] == number:
+                geom = self.stand_in(each)
+                if each["weighs"]:
+                    reason = "weighs nothing here, but its volume counts in MuJoCo"
+                    self.meshes.doubts.append((geom.at, each["file"], reason))
+                if each["collides"]:
+                    yield self.meshes.missing(geom, each["file"], each["reason"])
+
+    def stand_in(self, plain: Plain) -> Element:
+        """Return an element that has the name and line of a geom."""
+        return Element("geom", {"name": plain["name"]}, None, self.where(plain))
+
+    def shape(self, plain: Plain, body: Pose) -> Shape | Unread | None:
         if not plain["collides"]:
             return None
-        at = self.where(plain)
+        at, geom = self.where(plain), self.stand_in(plain)
         kind, sizes = plain["kind"], plain["size"]
         pose = body.then(from_quaternion(plain["turn"], plain["place"]))
         points = np.zeros((0, 3))
         if kind == "mesh":
-            if self.meshes.rule != "hull":
-                stand_in = Element("geom", {"name": plain["name"]}, None, at)
-                made = Shape(
-                    name=plain["name"], kind="mesh", pose=pose, at=at, pose_at=at, size_at=at
-                )
-                return self.meshes.hull(made, stand_in, plain["name"], [1.0, 1.0, 1.0])
-            self.meshes.count(len(plain["points"]), f"{at}: geom[{plain['name']}]")
+            self.corners += len(plain["points"])
+            if self.meshes.rule != "hull" or self.corners > MOST_CORNERS:
+                reason = f"must, with the other meshes, have at most {MOST_CORNERS} corners"
+                return self.meshes.missing(geom, plain["name"], reason)
             kind, points = "hull", pose.at(np.array(plain["points"], dtype=float).reshape(-1, 3))
+        elif kind == "ellipsoid":
+            kind, points = "hull", pose.at(ellipsoid(sizes))
         elif kind not in ("box", "cylinder", "capsule", "sphere"):
-            rule = "must be a box, cylinder, capsule, sphere or mesh"
-            raise ScenarioError(f"{at}: geom[{plain['name']}]", kind, rule)
+            return self.meshes.left_out(geom, kind, "no shape that a side view knows")
         return Shape(
             name=plain["name"],
             kind=kind,

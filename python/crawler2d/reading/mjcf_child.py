@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError
-from crawler2d.reading.files import LARGEST_TOGETHER, Files
+from crawler2d.reading.files import LARGEST_TOGETHER, Files, why
 from crawler2d.reading.limits import no_more_files, serve
 
 # MuJoCo numbers the kinds of joints and shapes; what is not here is refused by its number.
@@ -27,15 +28,19 @@ def prepare() -> Callable[[dict[str, Any]], dict[str, Any]]:
 
 
 def _described(mujoco: Any, *, text: str, file: str, files: dict[str, Any]) -> dict[str, Any]:
+    lacking: list[_Lacking] = []
     try:
         with no_more_files():
             spec = mujoco.MjSpec.from_string(text)
-        _hand_over(spec, Files(**files), file)
+        _undress(spec)
+        lacking = list(_hand_over(spec, Files(**files), file))
         with no_more_files():
             model = spec.compile()
     except ScenarioError:
         raise
     except Exception as error:  # MuJoCo has several classes of errors for a bad file
+        if lacking:  # without it, perhaps nothing tells what a body weighs
+            raise lacking[0].error from None
         said = " ".join(str(error).split())
         line = re.search(r"line (\d+)", said)
         at = f"{file}:{line[1]}" if line else file
@@ -46,29 +51,67 @@ def _described(mujoco: Any, *, text: str, file: str, files: dict[str, Any]) -> d
         "joints": [_joint(model, joint) for joint in spec.joints],
         "shapes": [_shape(model, geom) for geom in spec.geoms],
         "motors": [_motor(model, actuator) for actuator in spec.actuators],
+        "lacking": [each.plain for each in lacking],
     }
 
 
-def _hand_over(spec: Any, files: Files, file: str) -> None:
-    """Read all files that a model names, and give MuJoCo what they hold in place of their names."""
+@dataclass(frozen=True, slots=True)
+class _Lacking:
+    """A geom that is left out, for its mesh or height map could not be read."""
 
-    def taken(name: str, folder: str, at: str) -> str:
-        if not name:
-            return name
-        place = os.path.join(folder, PurePath(name).name if spec.strippath else name)
-        new = f"{len(spec.assets)}{PurePath(name).suffix}"
-        spec.assets[new] = files.read(place, at=at, most=LARGEST_TOGETHER)
-        return new
+    body: Any
+    what: dict[str, Any]
+    error: ScenarioError
 
-    folders = dict.fromkeys(("meshes", "hfields", "skins"), spec.meshdir)
-    folders["textures"] = spec.texturedir
-    spec.meshdir = spec.texturedir = ""
-    for kind, folder in folders.items():
-        for item in getattr(spec, kind):
-            at = f"{file}:{_line(item)}: {kind}[{item.name}]"
-            item.file = taken(item.file, folder, at)
-            if kind == "textures":
-                item.cubefiles = [taken(name, folder, at) for name in item.cubefiles]
+    @property
+    def plain(self) -> dict[str, Any]:
+        return {"body": self.body.id, **self.what}
+
+
+def _undress(spec: Any) -> None:
+    """Take off what is only seen: its files need not be there, nor be read."""
+    for material in spec.materials:
+        material.textures = [""] * len(material.textures)
+    for kind in (spec.textures, spec.skins):
+        for item in list(kind):
+            spec.delete(item)
+
+
+def _hand_over(spec: Any, files: Files, file: str) -> Iterator[_Lacking]:
+    """Read the meshes and height maps of a model, and give MuJoCo what they hold for their names.
+
+    What cannot be read is taken off the model, with the geoms that it is the shape of.
+    """
+    folder, spec.meshdir = spec.meshdir, ""
+    lowest, highest = spec.compiler.inertiagrouprange
+    for kind, named in (("meshes", "meshname"), ("hfields", "hfieldname")):
+        for item in list(getattr(spec, kind)):
+            if not item.file:
+                continue
+            inner = PurePath(item.file).name if spec.strippath else item.file
+            place = os.path.join(folder, inner)
+            try:
+                at = f"{file}:{_line(item)}: {kind}[{item.name}]"
+                data = files.read(place, at=at, most=LARGEST_TOGETHER)
+            except ScenarioError as error:
+                for geom in list(spec.geoms):
+                    if getattr(geom, named) == item.name:
+                        body = geom.parent
+                        weighs = not body.explicitinertial and lowest <= geom.group <= highest
+                        what = {
+                            "name": geom.name,
+                            "file": place,
+                            "reason": why(error),
+                            "collides": bool(geom.contype or geom.conaffinity),
+                            "weighs": bool(weighs and (geom.mass > 0.0 or geom.density > 0.0)),
+                            "line": _line(geom),
+                        }
+                        spec.delete(geom)
+                        yield _Lacking(body, what, error)
+                spec.delete(item)
+            else:
+                item.file = f"{len(spec.assets)}{PurePath(item.file).suffix}"
+                spec.assets[item.file] = data
 
 
 def _line(item: Any) -> int:

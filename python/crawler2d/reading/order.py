@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Collection, Mapping
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.where import Where
+from crawler2d.reading.telling import Doubt
 
-__all__ = ["checked"]
+__all__ = ["carrying", "checked"]
 
 _MOST_LINKS = 1000
 _LONGEST_NAME = 200
@@ -17,10 +19,15 @@ def checked(
     names: list[tuple[str, Where]],
     joints: list[tuple[str, str, str, Where]],
     at: Where,
+    doubts: list[Doubt],
     *,
+    driving: Collection[str] = (),
     remedy: str = "",
 ) -> list[str]:
-    """Return the links in an order in which parents precede children, if they are one tree.
+    """Return the links of one tree in an order in which parents precede children.
+
+    If there are several trees, that is taken which has the most links that may drive it, and of
+    equal ones the largest.
 
     Parameters
     ----------
@@ -30,13 +37,17 @@ def checked(
         Name, parent and child of each joint.
     at : Where
         Line of the model.
+    doubts : list of Doubt
+        Where trees that are left out, and names that repeat, are noted.
+    driving : collection of str
+        Links that turn without limit, or whose surface moves.
     remedy : str
         What to do about joints of links that are missing, as the end of a rule.
 
     Raises
     ------
     ScenarioError
-        If names repeat, a link is missing, has two parents, hangs on nothing or on itself.
+        If names of links repeat, or a link is missing, has two parents, or hangs on itself.
     """
     seen = _links_of(names, at)
     if len(joints) > _MOST_LINKS:
@@ -46,7 +57,7 @@ def checked(
     parent_of: dict[str, str] = {}
     for name, parent, child, where in joints:
         if name in named:
-            raise ScenarioError(str(where), name, "must be a name that no other joint has")
+            doubts.append((f"{where}: joint[{name}]", name, "is the name of another joint, too"))
         named.add(name)
         for end in (parent, child):
             if end not in seen:
@@ -59,18 +70,45 @@ def checked(
             raise ScenarioError(f"{where}: joint[{name}]", child, rule)
         parent_of[child] = parent
         children[parent].append(child)
-    roots = [name for name, _ in names if name not in parent_of]
-    if len(roots) != 1:
-        got = ", ".join(roots[:5]) if roots else "links in a circle"
-        raise ScenarioError(str(at), got, "must have one link that hangs on no other")
-    order = [roots[0]]
-    for name in order:
-        order.extend(children[name])
-    if len(order) < len(names):
-        raise ScenarioError(
-            str(at), min(seen - set(order)), "must hang on the root, not on itself in a circle"
-        )
-    return order
+    if len(parent_of) == len(seen):
+        rule = "must have one link that hangs on no other"
+        raise ScenarioError(str(at), "links in a circle", rule)
+    trees = {name: [name] for name, _ in names if name not in parent_of}
+    for tree in trees.values():
+        for name in tree:
+            tree.extend(children[name])
+    reached = {name for tree in trees.values() for name in tree}
+    if len(reached) < len(seen):
+        rule = "must hang on the root, not on itself in a circle"
+        raise ScenarioError(str(at), min(seen - reached), rule)
+    drives = set(driving)
+    root = max(trees, key=lambda name: (len(drives.intersection(trees[name])), len(trees[name])))
+    for name, where in names:
+        if name in trees and name != root:
+            reason = f"is left out with all {len(trees[name])} links of its tree: it is not joined"
+            doubts.append((f"{where}: link[{name}]", name, f"{reason} to {root}"))
+    return trees[root]
+
+
+def carrying(
+    order: list[str], parent_of: Mapping[str, str], colliding: Collection[str]
+) -> set[str]:
+    """Return the links that collide, and those from which such hang.
+
+    Parameters
+    ----------
+    order : list of str
+        All links, parents before their children.
+    parent_of : mapping of str to str
+        The link from which each hangs.
+    colliding : collection of str
+        The links with shapes.
+    """
+    found = set(colliding)
+    for name in reversed(order):
+        if name in found and name in parent_of:
+            found.add(parent_of[name])
+    return found
 
 
 def _links_of(names: list[tuple[str, Where]], at: Where) -> set[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from crawler2d.models.poses import Array
 from crawler2d.models.tree import Joint, Link, Shape
 
-__all__ = ["Arm", "Grousers", "Runner", "RunningGear", "corners_of"]
+__all__ = ["Arm", "Grousers", "Runner", "RunningGear", "corners_of", "farthest"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -153,3 +154,12 @@ def corners_of(shape: Shape) -> Array:
         return shape.points
     signs = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     return shape.pose.at(signs * shape.size)
+
+
+def farthest(shape: Shape, point: Array) -> float:
+    """[m] Return how far a shape reaches from a point, or a little more."""
+    if shape.kind in ("box", "hull"):
+        return float(np.linalg.norm(corners_of(shape) - point, axis=1).max())
+    own = math.hypot(shape.radius, 0.5 * shape.length)
+    own += shape.radius if shape.kind == "capsule" else 0.0
+    return float(np.linalg.norm(shape.pose.place - point)) + own

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from crawler2d.models.tree import Plugin, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element
 
-__all__ = ["driven_by", "moved_links", "plugin_of"]
+__all__ = ["driven_by", "moved_links", "named_tracks", "plugin_of"]
 
 _DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
 
@@ -39,15 +39,16 @@ def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
 def moved_links(tree: Tree) -> dict[str, Where]:
     """Return the links whose surface is moved, and the lines that say so."""
     links = tree.by_name
-    return dict(_named(tree)) | {name: links[name].at for name in tree.tracks}
+    named = {name: where for name, where in named_tracks(tree.plugins) if name in links}
+    return named | {name: links[name].at for name in tree.tracks}
 
 
-def _named(tree: Tree) -> Iterator[tuple[str, Where]]:
-    known = {link.name for link in tree.links}
-    for plugin in tree.plugins:
+def named_tracks(plugins: Iterable[Plugin]) -> Iterator[tuple[str, Where]]:
+    """Yield what plugins name as tracks, with the lines; not all of it need be links."""
+    for plugin in plugins:
         if "track" in f"{plugin.name} {plugin.filename}".lower():
             for path, text, where in plugin.settings:
-                if path.rpartition("/")[2] in _TRACKS and text in known:
+                if path.rpartition("/")[2] in _TRACKS:
                     yield text, where
 
 

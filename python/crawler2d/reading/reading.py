@@ -22,6 +22,7 @@ from crawler2d.reading.formats import tree_of
 from crawler2d.reading.friction import ENGINES, Engine
 from crawler2d.reading.how import TOLERANCE, How
 from crawler2d.reading.meshes import MeshRule
+from crawler2d.reading.plausible import refuse_unread
 from crawler2d.reading.silhouettes import Silhouette, silhouettes
 from crawler2d.reading.sources import Sources
 from crawler2d.reading.telling import noted
@@ -133,7 +134,7 @@ def read_robot(
     *,
     forward: Literal["+x", "-x", "+y", "-y"] | None = None,
     model: str | None = None,
-    mesh: MeshRule = "refuse",
+    mesh: MeshRule = "hull",
     missing: Literal["leave_out", "refuse"] = "leave_out",
     tracks: Collection[str] = (),
     ground_friction: float | None = None,
@@ -146,7 +147,7 @@ def read_robot(
     """Read a robot from a file that others simulate with: SDF, URDF, xacro or MJCF.
 
     What a side view cannot hold is refused by name: sides that differ, suspension, steering, wheels
-    that nothing drives, friction that differs from wheel to wheel, meshes. The rules are in
+    that nothing drives, friction that differs from wheel to wheel. The rules are in
     ``docs/conventions.md``, "Reading a model file".
 
     Parameters
@@ -164,7 +165,10 @@ def read_robot(
     model : str, optional
         Name of the model in a world; None takes the only one that can move.
     mesh : {"refuse", "hull", "leave_out"}
-        What to do with collision meshes: "hull" takes the hull of an .stl or .obj file.
+        What to do with collision meshes. "hull" takes the hull of a mesh whose file (.dae, .stl,
+        .obj, .glb or .gltf) is there and can be read, and leaves out, with a doubt, one that
+        is not. "leave_out" leaves all out, "refuse" refuses them. A model whose wheels or tracks
+        would be left out is refused in any case.
     missing : {"leave_out", "refuse"}
         What to do with what is not there. "leave_out" does without, and doubts each: includes,
         calls of macros that no file has, joints of missing links. A file of a package that is not
@@ -202,7 +206,7 @@ def read_robot(
         If the file cannot be read, breaks a rule of its format, or has what a side view cannot
         hold. The error names file, line and element; its notes say what was left out before.
     ImportError
-        If the library for xacro or MJCF is missing; the message names the extra to install.
+        If the library for xacro, MJCF or meshes is missing; the message names the extra to install.
 
     Examples
     --------
@@ -277,6 +281,7 @@ def read_text(data: bytes, path: Path, how: How) -> tuple[Reading, list[Scenario
     """
     found = tree_of(data, path, how)
     tree = replace(found.tree, tracks=_known(how.tracks, found.tree))
+    refuse_unread(tree)
     engine = how.engine or ("mujoco" if tree.format == "MJCF" else "gz")
     ground = ENGINES[engine].usual if how.ground_friction is None else how.ground_friction
     with noted(found.doubts):

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Pose, unit
-from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree, Unread
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element, real
 from crawler2d.reading.frames import MODEL, Frames
-from crawler2d.reading.joints import joint_of, moving
+from crawler2d.reading.joints import joint_of, moving, settled
 from crawler2d.reading.meshes import Meshes
-from crawler2d.reading.order import checked
-from crawler2d.reading.plugins import driven_by, plugin_of
-from crawler2d.reading.shapes import inertia, shape_of
+from crawler2d.reading.order import carrying, checked
+from crawler2d.reading.plugins import driven_by, named_tracks, plugin_of
+from crawler2d.reading.shapes import collisions, inertia, shape_of
+from crawler2d.reading.telling import Doubt
 
 __all__ = ["read_sdf"]
 
@@ -23,7 +26,7 @@ __all__ = ["read_sdf"]
 _USUAL_MASS = _USUAL_FRICTION = 1.0
 
 
-def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
+def read_sdf(root: Element, model: str | None, meshes: Meshes, doubts: list[Doubt]) -> Tree:
     """Read one model.
 
     Parameters
@@ -31,9 +34,12 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     root : Element
         Of the file.
     model : str, optional
-        Name of the model; None takes the only one that is not static.
+        Name of the model; None takes the only one that is not static, or of several the only one
+        that can drive.
     meshes : Meshes
         What is done with meshes.
+    doubts : list of Doubt
+        Where to note what is left out.
 
     Returns
     -------
@@ -49,19 +55,24 @@ def read_sdf(root: Element, model: str | None, meshes: Meshes) -> Tree:
     found = re.fullmatch(r"1\.(\d{1,2})", version, re.ASCII)
     minor = int(found[1]) if found else 0
     if not 4 <= minor <= 11:
-        root.refuse(version, "must be of version 1.4 to 1.11", "@version")
+        cure = '"gz sdf -p FILE" writes a file of an older version anew'
+        root.refuse(version or "none", f"must be of version 1.4 to 1.11; {cure}", "@version")
     chosen = _chosen(root, model)
-    for part in chosen.children:
-        if part.tag in ("model", "include"):
-            part.refuse(
-                part.attributes.get("name", part.tag),
-                "must hold its parts itself: write its links and joints in its place",
-            )
-    return _Model(chosen, minor, meshes).tree()
+    meshes.find(
+        {
+            uri.text: mesh
+            for collision in chosen.within()
+            if collision.tag == "collision"
+            for mesh in collision.within()
+            if mesh.tag == "mesh"
+            for uri in mesh.all("uri")
+        }
+    )
+    return _Model(chosen, minor, meshes, doubts).tree()
 
 
 def _chosen(root: Element, name: str | None) -> Element:
-    """Return the model of a name, or the only one that moves."""
+    """Return the model of a name, or the only one that moves, or the only one that can drive."""
     models = [*root.all("model"), *(m for world in root.all("world") for m in world.all("model"))]
     if name is not None:
         named = [m for m in models if m.attributes.get("name") == name]
@@ -69,10 +80,35 @@ def _chosen(root: Element, name: str | None) -> Element:
             raise ScenarioError("model", name, f"must be one of {_names(models)}")
         return named[0]
     moving = [m for m in models if _flag(m, "static") is not True]
-    if len(moving) != 1:
-        rule = "must hold one model that is not static, or model= must name one"
-        root.refuse(_names(moving) or "none", rule)
-    return moving[0]
+    driving = [m for m in moving if len(moving) == 1 or _drives(m)]
+    if len(driving) != 1:
+        rule = (
+            "must hold one model that is not static, or one of several with wheels or moved tracks:"
+            " model= names it; what a world includes is read from its own file"
+        )
+        root.refuse(_names(driving or moving) or "none", rule)
+    return driving[0]
+
+
+def _drives(model: Element) -> bool:
+    """Whether a model has joints that turn without limit, or a plugin that moves tracks."""
+    plugins = tuple(plugin_of(each) for each in model.within() if each.tag == "plugin")
+    return any(named_tracks(plugins)) or any(
+        _turns(joint) for joint in model.within() if joint.tag == "joint"
+    )
+
+
+def _turns(joint: Element) -> bool:
+    """Whether a joint turns twice or more, as those of wheels do."""
+    lower, upper = (
+        unlimited if found is None else real(found, found.text, unlimited=True)
+        for found, unlimited in (
+            (joint.only("axis/limit/lower"), -math.inf),
+            (joint.only("axis/limit/upper"), math.inf),
+        )
+    )
+    kind = joint.attributes.get("type")
+    return kind == "continuous" or (kind == "revolute" and upper - lower >= 4.0 * math.pi)
 
 
 def _names(models: list[Element]) -> str:
@@ -84,99 +120,167 @@ def _flag(element: Element, tag: str) -> bool | None:
     return None if found is None else found.text.lower() in ("1", "true")
 
 
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A link, joint or frame, with the scope of the nested model that it is in."""
+
+    element: Element
+    scope: str
+
+    @property
+    def name(self) -> str:
+        return self.scope + self.element.attribute("name")
+
+
 class _Model:
     """One model on its way to a tree: its frames are needed at every step."""
 
-    def __init__(self, model: Element, minor: int, meshes: Meshes) -> None:
+    def __init__(self, model: Element, minor: int, meshes: Meshes, doubts: list[Doubt]) -> None:
         self.model = model
         self.minor = minor
         self.meshes = meshes
-        self.frames = Frames()
-        self.links = {link.attribute("name"): link for link in model.all("link")}
-        self.joints = list(model.all("joint"))
+        self.doubts = doubts
+        self.frames = Frames(doubts)
+        self.models = list(self.nested(model, ""))
+
+    def nested(self, model: Element, scope: str) -> Iterator[_Part]:
+        """Yield a model and those in it; what is in other files is left out."""
+        yield _Part(model, scope)
+        for include in model.all("include"):
+            name = (include.only("name") or include.only("uri") or include).text
+            reason = "is left out: it is in another file; what it carries weighs nothing here"
+            self.doubts.append((include.at, name, reason))
+        for inner in model.all("model"):
+            within = f"{scope}{inner.attribute('name')}::"
+            self.frames.add(within + MODEL, inner, scope + MODEL, scope)
+            yield from self.nested(inner, within)
+
+    def parts(self, tag: str) -> list[_Part]:
+        return [
+            _Part(element, each.scope) for each in self.models for element in each.element.all(tag)
+        ]
 
     def tree(self) -> Tree:
-        names = [(link.attribute("name"), link.where) for link in self.model.all("link")]
+        links = {part.name: part for part in self.parts("link")}
+        joints = {}
         ends = []
-        for joint in self.joints:
-            parent, child = (joint.needed(end).text for end in ("parent", "child"))
-            if "world" in (parent, child):
-                joint.refuse("world", "must not fix the robot to the world")
-            ends.append((joint.attribute("name"), parent, child, joint.where))
-        order = checked(names, ends, self.model.where)
-        for link in self.links.values():
-            self.frames.add(link.attribute("name"), link, MODEL)
-        for (name, _, child, _), joint in zip(ends, self.joints, strict=True):
-            self.frames.add(name, joint, child)
-        for frame in self.model.all("frame"):
-            usual = frame.attributes.get("attached_to", "") or MODEL
-            self.frames.add(frame.attribute("name"), frame, usual)
-        plugins = tuple(plugin_of(plugin) for plugin in self.model.all("plugin"))
+        for part in self.parts("joint"):
+            found = self.ends(part)
+            if found is not None:
+                joints[found[1]] = part
+                ends.append((part.name, *found, part.element.where))
+        plugins = tuple(plugin_of(part.element) for part in self.parts("plugin"))
+        turning = [child for child, part in joints.items() if _turns(part.element)]
+        order = checked(
+            [(part.name, part.element.where) for part in self.parts("link")],
+            ends,
+            self.model.where,
+            self.doubts,
+            driving=[*turning, *(name for name, _ in named_tracks(plugins))],
+        )
+        for name, part in links.items():
+            self.frames.add(name, part.element, part.scope + MODEL, part.scope)
+        for name, _, child, _ in ends:
+            self.frames.add(name, joints[child].element, child, joints[child].scope)
+        for part in self.parts("frame"):
+            attached = part.element.attributes.get("attached_to", "") or MODEL
+            self.frames.add(part.name, part.element, part.scope + attached, part.scope)
+        parent_of = {child: parent for _, parent, child, _ in ends if child in order}
+        made = [self.link(links[name]) for name in order]
+        colliding = [link.name for link in made if link.shapes or link.unread]
+        carriers = carrying(order, parent_of, colliding)
         return Tree(
             name=self.model.attributes.get("name", ""),
             format=f"SDF 1.{self.minor}",
             file=self.model.where.file,
-            links=tuple(self.link(self.links[name]) for name in order),
+            links=tuple(made),
             joints={
-                child: self.joint(joint, name, parent, child)
-                for (name, parent, child, _), joint in zip(ends, self.joints, strict=True)
+                child: self.joint(joints[child], parent, child, carries=child in carriers)
+                for child, parent in parent_of.items()
             },
             plugins=plugins,
             driven=driven_by(plugins),
             at=self.model.where,
         )
 
-    def link(self, link: Element) -> Link:
-        name = link.attribute("name")
+    def ends(self, part: _Part) -> tuple[str, str] | None:
+        """Return the links that a joint joins; None if it is left out."""
+        joint = part.element
+        parent, child = (joint.needed(end).text for end in ("parent", "child"))
+        includes = [
+            each.scope + name.text + "::"
+            for each in self.models
+            for include in each.element.all("include")
+            for name in include.all("name")
+        ]
+        reason = ""
+        if "world" in (parent, child):
+            reason = "it holds the robot to the world, where it is to drive"
+        elif joint.attribute("type") == "gearbox":
+            reason = "it couples joints, and carries nothing"
+        elif (part.scope + parent).startswith(tuple(includes)) or (part.scope + child).startswith(
+            tuple(includes)
+        ):
+            reason = "what it joins is in another file"
+        if reason:
+            self.doubts.append((joint.at, part.name, f"is left out: {reason}"))
+            return None
+        return part.scope + parent, part.scope + child
+
+    def link(self, part: _Part) -> Link:
+        link, name = part.element, part.name
         pose = self.frames.of(name, link)
         mass, center, tensor, mass_at = _USUAL_MASS, Pose(), Pose().turn, link.where
-        inertial = link.only("inertial")
+        inertial = link.first("inertial", self.doubts)
         if inertial is not None:
             if inertial.attributes.get("auto", "").lower() in ("1", "true"):
                 inertial.refuse("auto", "must state mass and inertia")
             mass = inertial.real("mass", _USUAL_MASS)
             found = inertial.only("mass")
             mass_at = inertial.where if found is None else found.where
-            center = self.frames.inside(inertial, name)
+            center = self.frames.inside(inertial, name, part.scope)
             given = inertial.only("inertia")
             if given is not None:
                 values = given
                 tensor = inertia(
-                    given, lambda part: values.real(part, 1.0 if part[1] == part[2] else 0.0)
+                    given,
+                    lambda word: values.real(word, 1.0 if word[1] == word[2] else 0.0),
+                    self.doubts,
                 )
         if mass < 0.0:
             link.refuse(mass, "must have a mass >= 0 kg")
         frame = center if inertial is not None else pose
-        shapes = (self.shape(c, name) for c in link.all("collision"))
+        shapes, unread = collisions(self.shape(c, part) for c in link.all("collision"))
         return Link(
             name=name,
             pose=pose,
             mass=mass,
             center=frame.place,
             inertia=frame.turn @ tensor @ frame.turn.T,
-            shapes=tuple(shape for shape in shapes if shape is not None),
+            shapes=shapes,
+            unread=unread,
             at=link.where,
-            pose_at=(link.only("pose") or link).where,
+            pose_at=next(link.all("pose"), link).where,
             mass_at=mass_at,
         )
 
-    def shape(self, collision: Element, link: str) -> Shape | None:
+    def shape(self, collision: Element, part: _Part) -> Shape | Unread | None:
         bitmask = collision.only("surface/contact/collide_bitmask")
         if bitmask is not None and re.fullmatch(r"0x0+|0+", bitmask.text):
             return None  # it meets nothing
-        pose = self.frames.inside(collision, link)
+        pose = self.frames.inside(collision, part.name, part.scope)
         return shape_of(
             collision,
-            name=collision.attributes.get("name", link),
+            name=collision.attributes.get("name", part.name),
             pose=pose,
-            pose_at=collision.only("pose") or collision,
-            friction=self.friction(collision, pose),
+            pose_at=next(collision.all("pose"), collision),
+            friction=self.friction(collision, pose, part.scope),
             numbers=lambda element, name, count: element.needed(name).reals(count),
             mesh_name=lambda mesh: mesh.needed("uri").text,
             meshes=self.meshes,
         )
 
-    def friction(self, collision: Element, pose: Pose) -> Friction | None:
+    def friction(self, collision: Element, pose: Pose, scope: str) -> Friction | None:
         ode = collision.only("surface/friction/ode")
         if ode is None:
             return None
@@ -186,7 +290,7 @@ class _Model:
         if direction is not None:
             for prefix in ("gz", "ignition"):
                 frame = direction.attributes.get(f"{prefix}:expressed_in", "")
-                pose = self.frames.of(frame, direction) if frame else pose
+                pose = self.frames.of(scope + frame, direction) if frame else pose
             along = unit(pose.along(direction.reals(3)))
         return Friction(
             first=first[0],
@@ -196,27 +300,32 @@ class _Model:
             second_at=second[1],
         )
 
-    def joint(self, joint: Element, name: str, parent: str, child: str) -> Joint:
-        pose = self.frames.of(name, joint)
-        made = joint_of(joint, parent, child, pose)
-        axis = joint.only("axis")
+    def joint(self, part: _Part, parent: str, child: str, *, carries: bool) -> Joint:
+        made = joint_of(
+            part.element, part.name, parent, child, self.frames.of(part.name, part.element)
+        )
         if made.kind == "fixed":
             return made
+        return settled(made, lambda: self.moving(made, part), carries=carries, doubts=self.doubts)
+
+    def moving(self, made: Joint, part: _Part) -> Joint:
+        joint = part.element
+        axis = joint.only("axis")
         if axis is None:
             if made.kind in ("hinge", "slide"):
                 joint.refuse("none", "must have an axis")
             return made
         xyz = axis.only("xyz")
-        frame = pose
+        frame = self.frames.of(made.name, joint)
         if xyz is not None and xyz.attributes.get("expressed_in", ""):
-            frame = self.frames.of(xyz.attributes["expressed_in"], xyz)
+            frame = self.frames.of(part.scope + xyz.attributes["expressed_in"], xyz)
         elif self.minor == 4 or (self.minor <= 6 and _flag(axis, "use_parent_model_frame")):
-            frame = Pose()
+            frame = self.frames.of(part.scope + MODEL, axis)
         limit = axis.only("limit")
         values = {
-            part.tag: (real(part, part.text, unlimited=True), part.where)
-            for part in (() if limit is None else limit.children)
-            if part.tag in ("lower", "upper", "effort", "velocity")
+            each.tag: (real(each, each.text, unlimited=True), each.where)
+            for each in (() if limit is None else limit.children)
+            if each.tag in ("lower", "upper", "effort", "velocity")
         }
         stiffness = axis.only("dynamics/spring_stiffness")
         return moving(

@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
 
-from crawler2d.models.poses import Pose
-from crawler2d.models.tree import Friction, Shape
+from crawler2d.models.poses import Array, Pose
+from crawler2d.models.tree import Friction, Shape, Unread
 from crawler2d.reading.elements import Element
 from crawler2d.reading.meshes import Meshes
+from crawler2d.reading.telling import Doubt
 
-__all__ = ["inertia", "shape_of"]
+__all__ = ["collisions", "ellipsoid", "inertia", "shape_of"]
 
 _AXES = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
+
+# The sizes of each shape, with how many numbers each has.
+_SIZES = {
+    "box": (("size", 3),),
+    "capsule": (("radius", 1), ("length", 1)),
+    "cone": (("radius", 1), ("length", 1)),
+    "cylinder": (("radius", 1), ("length", 1)),
+    "ellipsoid": (("radii", 3),),
+    "sphere": (("radius", 1),),
+}
+_CIRCLE = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)  # its chords fall short by 0.12 %
 
 Numbers = Callable[[Element, str, int], list[float]]
 """Reads so many numbers of a name: SDF has them as elements, URDF as attributes."""
@@ -30,8 +43,8 @@ def shape_of(
     numbers: Numbers,
     mesh_name: Callable[[Element], str],
     meshes: Meshes,
-) -> Shape | None:
-    """Read the geometry of a collision; None if it is empty, or a mesh that is to be left out."""
+) -> Shape | Unread | None:
+    """Read the geometry of a collision; None if it is empty, what is left out is unread."""
     geometry = collision.needed("geometry")
     kinds = [child for child in geometry.children if child.tag != "empty"]
     if not kinds:
@@ -39,45 +52,79 @@ def shape_of(
     if len(kinds) > 1:
         kinds[1].refuse(kinds[1].tag, "must be the only shape of its collision")
     (element,) = kinds
+    kind = element.tag
     shape = Shape(
         name=name,
-        kind=element.tag,
+        kind=kind,
         pose=pose,
         friction=friction,
         at=collision.where,
         pose_at=pose_at.where,
-        size_at=element.where,
+        size_at=(element.only("radius") or element).where,
     )
-    if element.tag == "box":
-        return replace(shape, size=np.array(_positive(element, numbers(element, "size", 3))))
-    if element.tag == "mesh":
+    if kind == "mesh":
         scale = [1.0, 1.0, 1.0]
         if element.only("scale") is not None or "scale" in element.attributes:
             scale = numbers(element, "scale", 3)
         return meshes.hull(shape, element, mesh_name(element), scale)
-    if element.tag not in ("cylinder", "capsule", "sphere"):
-        element.refuse(element.tag, "must be a box, cylinder, capsule, sphere or mesh")
-    (radius,) = _positive(element, numbers(element, "radius", 1))
-    length = 0.0
-    if element.tag != "sphere":
-        (length,) = _positive(element, numbers(element, "length", 1))
-    inner = element.only("radius")
-    size_at = element.where if inner is None else inner.where
-    return replace(shape, radius=radius, length=length, size_at=size_at)
+    return _sized(shape, element, numbers, meshes)
 
 
-def _positive(element: Element, sizes: list[float]) -> list[float]:
-    for size in sizes:
-        if not size > 0.0:
-            element.refuse(size, "must have sizes > 0 m")
-    return sizes
+def _sized(shape: Shape, element: Element, numbers: Numbers, meshes: Meshes) -> Shape | Unread:
+    """Return a shape with its sizes."""
+    kind = shape.kind
+    if kind not in _SIZES:
+        return meshes.left_out(element, kind, "no shape that a side view knows")
+    sizes = [size for word, count in _SIZES[kind] for size in numbers(element, word, count)]
+    if min(sizes) < 0.0:
+        element.refuse(min(sizes), "must have sizes >= 0 m")
+    if kind == "capsule" and sizes[1] == 0.0:
+        kind = "sphere"
+    elif 0.0 in sizes:
+        return meshes.left_out(element, kind, "a size of 0, with which it touches nothing")
+    if kind == "box":
+        return replace(shape, size=np.array(sizes))
+    if kind in ("cone", "ellipsoid"):
+        points = _cone(*sizes) if kind == "cone" else ellipsoid(sizes)
+        return replace(shape, kind="hull", points=shape.pose.at(points))
+    radius, length = sizes[0], sizes[1] if kind != "sphere" else 0.0
+    return replace(shape, kind=kind, radius=radius, length=length)
 
 
-def inertia(element: Element, value: Callable[[str], float]) -> np.ndarray[tuple[int, int]]:
-    """Read a tensor of inertia [kg m^2] by the names of its six components."""
+def collisions(
+    found: Iterable[Shape | Unread | None],
+) -> tuple[tuple[Shape, ...], tuple[Unread, ...]]:
+    """Return the shapes of a link, and those that were left out."""
+    every = list(found)
+    shapes = tuple(each for each in every if isinstance(each, Shape))
+    return shapes, tuple(each for each in every if isinstance(each, Unread))
+
+
+def ellipsoid(radii: list[float]) -> Array:
+    """[m] Return points on an ellipsoid about the origin, whose hull stands for it."""
+    turns, heights = np.meshgrid(_CIRCLE, np.linspace(0.0, math.pi, 33))
+    ball = [np.sin(heights) * np.cos(turns), np.sin(heights) * np.sin(turns), np.cos(heights)]
+    points: Array = np.stack(ball, axis=-1).reshape(-1, 3) * radii
+    return points
+
+
+def _cone(radius: float, length: float) -> Array:
+    """[m] Return corners of a cone, with half of its length on either side of the origin."""
+    rim = [radius * np.cos(_CIRCLE), radius * np.sin(_CIRCLE), np.full_like(_CIRCLE, -0.5 * length)]
+    return np.concatenate([np.stack(rim, axis=1), [[0.0, 0.0, 0.5 * length]]])
+
+
+def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]) -> Array:
+    """Read a tensor of inertia [kg m^2] by the names of its six components.
+
+    One with a negative moment is doubted and taken as 0, that of a point: a guess at its size would
+    be worse, and what a link has of its own counts little beside where it is.
+    """
     tensor = np.zeros((3, 3))
     for name, row, column in _AXES:
         tensor[row, column] = tensor[column, row] = value(name)
-    if min(tensor[i, i] for i in range(3)) < 0.0:
-        element.refuse(float(tensor.diagonal().min()), "must have moments of inertia >= 0 kg m^2")
+    least = float(tensor.diagonal().min())
+    if least < 0.0:
+        doubts.append((element.at, least, "is taken as 0 kg m^2: no body has a negative moment"))
+        return np.zeros((3, 3))
     return tensor

@@ -45,19 +45,13 @@ class Silhouette:
 
 
 def silhouettes(tree: Tree, view: SideView, base: Base) -> tuple[Silhouette, ...]:
-    """Return what is seen of every collision shape, with all joints at zero.
-
-    Meshes that were not read are left out: nothing of their shape is known.
-    """
+    """Return what is seen of every collision shape, with all joints at zero."""
     found = []
     for link in tree.links:
         for shape in link.shapes:
-            if shape.kind != "mesh":
-                corners = hull(base.of(silhouette(shape, view, _DRAWN_CHORDS)))
-                outline = np.array(corners).reshape(-1, 2)
-                found.append(
-                    Silhouette(link=link.name, kind=shape.kind, outline=outline, at=shape.at)
-                )
+            corners = hull(base.of(silhouette(shape, view, _DRAWN_CHORDS)))
+            outline = np.array(corners).reshape(-1, 2)
+            found.append(Silhouette(link=link.name, kind=shape.kind, outline=outline, at=shape.at))
     return tuple(found)
 
 

@@ -8,17 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from crawler2d.models.poses import Pose, from_rpy, unit
-from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree
+from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree, Unread
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element, real
-from crawler2d.reading.joints import joint_of, moving
+from crawler2d.reading.joints import joint_of, moving, settled
 from crawler2d.reading.meshes import Meshes
-from crawler2d.reading.order import checked
-from crawler2d.reading.plugins import plugin_of
-from crawler2d.reading.shapes import inertia, shape_of
+from crawler2d.reading.order import carrying, checked
+from crawler2d.reading.plugins import named_tracks, plugin_of
+from crawler2d.reading.shapes import collisions, inertia, shape_of
 from crawler2d.reading.telling import Doubt
 
 __all__ = ["read_urdf"]
+
+_WORLD = "world"  # what holds a robot to it is a joint from a link of this name, which has nothing
 
 
 def read_urdf(
@@ -52,41 +54,81 @@ def read_urdf(
     if not elements:
         rule = "must have a link: a file of macros only is read through the file that calls them"
         root.refuse("no link", rule)
-    ends = []
+    meshes.find(
+        {
+            mesh.attributes.get("filename", "").strip(): mesh
+            for link in root.all("link")
+            for collision in link.all("collision")
+            for mesh in collision.within()
+            if mesh.tag == "mesh"
+        }
+    )
+    ends, ground = [], ""
     for joint in root.all("joint"):
         parent, child = (joint.needed(end).attribute("link") for end in ("parent", "child"))
         if leave_out and not {parent, child} <= elements.keys():
             doubts.append((joint.at, f"{parent} to {child}", "is left out: a link is missing"))
-            continue
-        ends.append((joint, joint.attribute("name"), parent, child))
+        elif parent == _WORLD and parent in elements and not elements[parent].children:
+            ground = parent
+            if joint.attribute("type") != "floating":
+                reason = "is left out: it holds the robot to the world, where it is to drive"
+                doubts.append((joint.at, f"{parent} to {child}", reason))
+        else:
+            ends.append((joint, joint.attribute("name"), parent, child))
+    plugins = tuple(
+        plugin_of(plugin) for block in root.all("gazebo") for plugin in block.all("plugin")
+    )
     order = checked(
-        [(link.attribute("name"), link.where) for link in root.all("link")],
+        [
+            (link.attribute("name"), link.where)
+            for link in root.all("link")
+            if link.attribute("name") != ground
+        ],
         [(name, parent, child, joint.where) for joint, name, parent, child in ends],
         root.where,
+        doubts,
+        driving=[
+            *(child for joint, _, _, child in ends if joint.attribute("type") == "continuous"),
+            *(name for name, _ in named_tracks(plugins)),
+        ],
         remedy='; missing="leave_out" leaves joints of links that are meant to be missing out',
     )
-    by_child = {child: (joint, parent) for joint, _, parent, child in ends}
+    by_child = {child: (joint, parent) for joint, _, parent, child in ends if child in order}
     frictions = _frictions(root)
     poses: dict[str, Pose] = {}
-    links, joints = [], {}
+    links = []
     for name in order:
         pose_at = elements[name].where
-        if name not in by_child:
-            poses[name] = Pose()
-        else:
+        poses[name] = Pose()
+        if name in by_child:
             element, parent = by_child[name]
-            poses[name] = poses[parent].then(_origin(element))
-            joints[name] = _joint(element, parent, name, poses[name])
+            poses[name] = poses[parent].then(_origin(element, doubts))
             pose_at = _place(element).where
-        links.append(_link(elements[name], poses[name], pose_at, frictions.get(name), meshes))
-    gazebo = [plugin for block in root.all("gazebo") for plugin in block.all("plugin")]
+        links.append(
+            _link(
+                elements[name],
+                poses[name],
+                pose_at,
+                friction=frictions.get(name),
+                meshes=meshes,
+                doubts=doubts,
+            )
+        )
+    parent_of = {child: parent for child, (_, parent) in by_child.items()}
+    colliding = [link.name for link in links if link.shapes or link.unread]
+    carriers = carrying(order, parent_of, colliding)
     return Tree(
         name=root.attributes.get("name", ""),
         format="URDF",
         file=root.where.file,
         links=tuple(links),
-        joints=joints,
-        plugins=tuple(plugin_of(plugin) for plugin in gazebo),
+        joints={
+            child: _joint(
+                element, parent, child, poses[child], carries=child in carriers, doubts=doubts
+            )
+            for child, (element, parent) in by_child.items()
+        },
+        plugins=plugins,
         driven=_driven(root),
         at=root.where,
     )
@@ -99,8 +141,8 @@ def _refuse_macros(root: Element) -> None:
             element.refuse(element.tag, "must be expanded: a file with xacro is named *.xacro")
 
 
-def _origin(element: Element) -> Pose:
-    origin = element.only("origin")
+def _origin(element: Element, doubts: list[Doubt]) -> Pose:
+    origin = element.first("origin", doubts)
     if origin is None:
         return Pose()
     xyz, rpy = (
@@ -111,24 +153,31 @@ def _origin(element: Element) -> Pose:
 
 
 def _place(element: Element) -> Element:
-    return element.only("origin") or element
+    return next(element.all("origin"), element)
 
 
 def _link(
-    link: Element, pose: Pose, pose_at: Where, friction: Friction | None, meshes: Meshes
+    link: Element,
+    pose: Pose,
+    pose_at: Where,
+    *,
+    friction: Friction | None,
+    meshes: Meshes,
+    doubts: list[Doubt],
 ) -> Link:
     mass, center, tensor, mass_at = 0.0, pose, np.zeros((3, 3)), link.where
-    inertial = link.only("inertial")
+    inertial = link.first("inertial", doubts)
     if inertial is not None:
         given = inertial.needed("mass")
         (mass,), mass_at = given.reals(1, "value"), given.where
-        center = pose.then(_origin(inertial))
+        center = pose.then(_origin(inertial, doubts))
         values = inertial.needed("inertia")
-        tensor = inertia(values, lambda name: values.reals(1, name)[0])
+        tensor = inertia(values, lambda name: values.reals(1, name)[0], doubts)
     if mass < 0.0:
         link.refuse(mass, "must have a mass >= 0 kg")
-    shapes = (
-        _shape(collision, link, pose, friction, meshes) for collision in link.all("collision")
+    shapes, unread = collisions(
+        _shape(collision, link, pose, friction=friction, meshes=meshes, doubts=doubts)
+        for collision in link.all("collision")
     )
     return Link(
         name=link.attribute("name"),
@@ -136,7 +185,8 @@ def _link(
         mass=mass,
         center=center.place,
         inertia=center.turn @ tensor @ center.turn.T,
-        shapes=tuple(shape for shape in shapes if shape is not None),
+        shapes=shapes,
+        unread=unread,
         at=link.where,
         pose_at=pose_at,
         mass_at=mass_at,
@@ -144,9 +194,15 @@ def _link(
 
 
 def _shape(
-    collision: Element, link: Element, pose: Pose, friction: Friction | None, meshes: Meshes
-) -> Shape | None:
-    place = pose.then(_origin(collision))
+    collision: Element,
+    link: Element,
+    pose: Pose,
+    *,
+    friction: Friction | None,
+    meshes: Meshes,
+    doubts: list[Doubt],
+) -> Shape | Unread | None:
+    place = pose.then(_origin(collision, doubts))
     if friction is not None and friction.direction is not None:
         friction = replace(friction, direction=unit(place.along(friction.direction)))
     return shape_of(
@@ -202,10 +258,16 @@ def _friction(
     )
 
 
-def _joint(element: Element, parent: str, child: str, pose: Pose) -> Joint:
-    made = joint_of(element, parent, child, pose)
+def _joint(
+    element: Element, parent: str, child: str, pose: Pose, *, carries: bool, doubts: list[Doubt]
+) -> Joint:
+    made = joint_of(element, element.attribute("name"), parent, child, pose)
     if made.kind not in ("hinge", "slide"):
         return made
+    return settled(made, lambda: _moving(made, element, pose), carries=carries, doubts=doubts)
+
+
+def _moving(made: Joint, element: Element, pose: Pose) -> Joint:
     kind, axis, limit = element.attribute("type"), element.only("axis"), element.only("limit")
     if limit is None and kind != "continuous":
         element.refuse("none", "must have a limit")

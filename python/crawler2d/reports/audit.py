@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
     reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
     reading.add_argument("--model", help="name of the model in a world")
-    reading.add_argument("--mesh", choices=get_args(MeshRule), default="refuse")
+    reading.add_argument("--mesh", choices=get_args(MeshRule), default="hull")
     reading.add_argument("--missing", choices=["leave_out", "refuse"], default="leave_out")
     reading.add_argument(
         "--track", action="append", default=[], help="a link that moves; repeatable"
@@ -127,7 +127,7 @@ def _show(found: Audit, file: Path, options: argparse.Namespace, beside: TextIO)
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
     else:
-        print(found.in_words)
+        print(_as_options(found.in_words))  # doubts advise as errors do
     if not options.no_html:
         path: Path | None = options.html
         if path is None:

@@ -1,0 +1,345 @@
+"""What cannot carry the robot does not stop the reader; what can is refused or doubted aloud."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from crawler2d.reading.formats import tree_of
+from crawler2d.reading.how import How
+from crawler2d.reading.plausible import refuse_unread
+from tests.reading.carts import (
+    FILES,
+    SIDES,
+    TENSOR,
+    WHEELS,
+    collision,
+    left_out,
+    link,
+    pair,
+    read,
+    refused,
+    tracked,
+    urdf,
+)
+from tests.robots.tree_keys import keys
+
+LIMIT = '<limit lower="-1" upper="1" effort="9" velocity="1"/>'
+
+
+def sensor(joint: str, shape: str = "", name: str = "lidar") -> str:
+    """A link on top of the hull, which nothing drives on."""
+    return link(name, joint, "0 0 0.3").replace("</link>", f"{shape}</link>")
+
+
+def doubts(folder: Path, text: str, name: str = "cart.urdf", **how: Any) -> list[str]:
+    """Read a cart, which must be the one without the oddity, and return what it doubts."""
+    reading = read(folder, text, name, **how)
+    assert reading.robot.outline.axle_distance == 0.4
+    for doubt in reading.doubts:
+        assert re.match(re.escape(name) + r":\d+", doubt), doubt
+    return list(reading.doubts)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        '<sphere radius="0"/>',
+        '<box size="0.1 0 0.1"/>',
+        '<cylinder radius="0.1" length="0"/>',
+        '<plane normal="0 0 1"/>',
+        "<heightmap/>",
+        "<bloc/>",
+    ],
+)
+def test_a_shape_that_touches_nothing_is_left_out_of_a_sensor(tmp_path: Path, shape: str) -> None:
+    text = urdf(WHEELS, sensor('type="fixed">', collision(shape)))
+    (doubt,) = doubts(tmp_path, text)
+    assert "/geometry/" in doubt
+    assert "is left out: " in doubt
+
+
+@pytest.mark.parametrize("shape", ['<sphere radius="0"/>', "<bloc/>", '<mesh filename="w.stl"/>'])
+def test_a_wheel_without_a_shape_is_refused_although_there_are_others(
+    tmp_path: Path, shape: str
+) -> None:
+    text = urdf(WHEELS, pair("middle", 0.0, geometry=shape))
+    refused(
+        tmp_path, text, "for it may be a wheel or a track, .*; so do right_middle: put the file"
+    )
+
+
+def test_a_spinning_part_above_the_wheels_needs_no_shape(tmp_path: Path) -> None:
+    mesh = collision('<mesh filename="dish.stl"/>')
+    text = urdf(WHEELS, sensor('type="continuous"><axis xyz="0 1 0"/>', mesh))
+    (doubt,) = doubts(tmp_path, text)
+    assert f"is left out: there is no file {tmp_path}/dish.stl" in doubt
+
+
+def test_a_model_whose_only_shapes_were_left_out_is_refused(tmp_path: Path) -> None:
+    mesh = collision('<mesh filename="package://tank/track.stl"/>')
+    tracks = "".join(
+        link(f"{side}_track", 'type="fixed">').replace("</link>", f"{mesh}</link>")
+        for side, _ in SIDES
+    )
+    rule = r"link\[left_track\] must have a collision shape .*; so do right_track: .*with tracks="
+    refused(tmp_path, urdf(tracks), rule)
+    refused(tmp_path, urdf(tracks), rule, tracks=["left_track", "right_track"])
+
+
+def test_a_moved_track_without_a_shape_is_refused_beside_wheels(tmp_path: Path) -> None:
+    mesh = collision('<mesh filename="t.stl"/>')
+    track = link("belt", 'type="fixed">').replace("</link>", f"{mesh}</link>")
+    refused(tmp_path, urdf(WHEELS, track), r"link\[belt\] must have a collision", tracks=["belt"])
+
+
+def test_a_capsule_of_length_0_is_a_sphere(tmp_path: Path) -> None:
+    ball = pair("front", 0.2, geometry='<capsule radius="0.08" length="0"/>') + pair("rear", -0.2)
+    assert doubts(tmp_path, urdf(ball)) == []
+
+
+def test_an_ellipsoid_is_a_wheel_if_it_is_round_about_its_axle(tmp_path: Path) -> None:
+    text = (FILES / "cart.sdf").read_text()
+    found = re.search(r"<cylinder>\s*<radius>0.125</radius>\s*<length>[^<]*</length>", text)
+    assert found
+    ball = "<ellipsoid><radii>0.125 0.125 0.03</radii></ellipsoid>"
+    changed = re.sub(re.escape(found[0]) + r"\s*</cylinder>", ball, text)
+    outline = read(tmp_path, changed, "cart.sdf").robot.outline
+    assert outline.front_radius == pytest.approx(0.125, rel=1e-9)
+
+
+def test_a_cone_belongs_to_the_belly(tmp_path: Path) -> None:
+    cone = collision('<cone radius="0.1" length="0.2"/>')
+    belly = read(tmp_path, urdf(WHEELS, shapes=cone)).robot.belly
+    assert belly is not None
+    assert np.allclose(sorted(belly), [(-0.1, -0.1), (0.0, 0.1), (0.1, -0.1)], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("joint", "reason"),
+    [
+        ('type="revolute"><axis xyz="0 0 0"/>' + LIMIT, "must have an axis with a direction"),
+        ('type="revolute"><axis xyz="0 0 1"/>', "must have a limit"),
+        (
+            'type="revolute"><axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1"/>',
+            "must have a lower limit of at most the upper",
+        ),
+    ],
+)
+def test_a_joint_that_carries_nothing_is_fixed_if_it_is_wrong(
+    tmp_path: Path, joint: str, reason: str
+) -> None:
+    (doubt,) = doubts(tmp_path, urdf(WHEELS, sensor(joint)))
+    assert f"is taken as fixed, for nothing on its joint collides: {reason}" in doubt
+    box = collision('<box size="0.1 0.1 0.1"/>')
+    refused(tmp_path, urdf(WHEELS, sensor(joint, box)), reason)
+
+
+@pytest.mark.parametrize(
+    "joint",
+    [
+        'type="fixed"><axis xyz="0 0 0"/>',
+        'type="revolute"><axis xyz="0 0 0"/><limit lower="0" upper="0" effort="1" velocity="1"/>',
+        'type="floating">',
+        'type="planar">',
+        'type="screw">',
+    ],
+)
+def test_a_joint_that_needs_no_axis_has_none(tmp_path: Path, joint: str) -> None:
+    box = collision('<box size="0.1 0.1 0.1"/>')
+    assert doubts(tmp_path, urdf(WHEELS, sensor(joint, box))) == []
+
+
+def test_two_joints_of_one_name_are_doubted(tmp_path: Path) -> None:
+    text = urdf(WHEELS).replace('name="left_front_joint"', 'name="left_rear_joint"')
+    assert any("is the name of another joint, too" in doubt for doubt in doubts(tmp_path, text))
+
+
+def test_a_negative_moment_of_inertia_is_that_of_a_point(tmp_path: Path) -> None:
+    text = urdf(WHEELS)
+    wrong = text.replace(TENSOR, TENSOR.replace("0.1", "-0.1"))
+    (doubt,) = doubts(tmp_path, wrong)
+    assert "is taken as 0 kg m^2: no body has a negative moment, got -0.1" in doubt
+    less = read(tmp_path, text).robot.moment_of_inertia - 0.2
+    assert read(tmp_path, wrong).robot.moment_of_inertia == pytest.approx(less)
+
+
+def test_an_inertia_that_no_body_in_the_robot_has_is_limited(tmp_path: Path) -> None:
+    gps = sensor('type="fixed">').replace('<mass value="0.5"/>', '<mass value="0.01"/>')
+    tensor = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+    gps = re.sub(r"<inertia .*?/>", tensor, gps)
+    (doubt,) = doubts(tmp_path, urdf(WHEELS, gps))
+    assert "0.01 kg have no more within" in doubt
+    usual = read(tmp_path, urdf(WHEELS)).robot.moment_of_inertia
+    assert usual < read(tmp_path, urdf(WHEELS, gps)).robot.moment_of_inertia < usual + 0.01
+
+
+def test_a_false_inertia_that_makes_no_difference_stays_as_it_is(tmp_path: Path) -> None:
+    """As the flippers of 1e-5 kg with 1e-3 kg m2 do, which are in public models."""
+    tiny = sensor('type="fixed">').replace('<mass value="0.5"/>', '<mass value="1e-5"/>')
+    tensor = '<inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/>'
+    assert doubts(tmp_path, urdf(WHEELS, re.sub(r"<inertia .*?/>", tensor, tiny))) == []
+
+
+def test_the_first_of_several_inertials_and_origins_holds(tmp_path: Path) -> None:
+    twice = '<inertial><mass value="70"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+    text = urdf(WHEELS, shapes=f"{twice}</inertial>")
+    (doubt,) = doubts(tmp_path, text)
+    assert "link[hull]/inertial is left out: the first one holds" in doubt
+    assert read(tmp_path, text).robot.mass == 12.0
+    moved = urdf(WHEELS, sensor('type="fixed"><origin xyz="0 0 1"/>'))
+    assert any("origin is left out" in each for each in doubts(tmp_path, moved))
+
+
+def test_a_negative_mass_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, urdf(WHEELS, mass="-8"), "must have a mass >= 0 kg")
+
+
+def test_of_several_trees_that_with_the_wheels_is_read(tmp_path: Path) -> None:
+    many = "".join(f'<link name="stray{number}"/>' for number in range(9))
+    first = urdf(WHEELS).replace('<link name="hull">', f'{many}<link name="hull">', 1)
+    told = doubts(tmp_path, first)
+    assert len(told) == 9
+    assert "is left out with all 1 links of its tree: it is not joined to hull" in told[0]
+
+
+@pytest.mark.parametrize("kind", ["fixed", "floating"])
+def test_a_robot_held_to_the_world_is_read_as_free(tmp_path: Path, kind: str) -> None:
+    held = f'<joint name="w" type="{kind}"><parent link="world"/><child link="hull"/></joint>'
+    text = urdf(WHEELS, '<link name="world"/>', held)
+    told = doubts(tmp_path, text)
+    assert [("holds the robot to the world" in each) for each in told] == [True] * (kind == "fixed")
+    assert read(tmp_path, text).tree.links[0].name == "hull"
+
+
+DRUMS = ((-0.4, 0.0, 0.1), (0.4, 0.0, 0.1))
+
+
+def in_model(part: str) -> str:
+    return tracked(DRUMS).replace("</model>", f"{part}</model>")
+
+
+@pytest.mark.parametrize(
+    ("part", "reason"),
+    [
+        ("<include><uri>model://arm</uri></include>", "it is in another file"),
+        (
+            '<include><uri>model://arm</uri><name>a</name></include><joint name="j" type="fixed">'
+            "<parent>hull</parent><child>a::base</child></joint>",
+            "what it joins is in another file",
+        ),
+        (
+            '<joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint>',
+            "it holds the robot to the world",
+        ),
+        (
+            '<joint name="g" type="gearbox"><parent>left</parent><child>right</child></joint>',
+            "it couples joints",
+        ),
+    ],
+)
+def test_what_an_sdf_model_does_not_hold_itself_is_left_out(
+    tmp_path: Path, part: str, reason: str
+) -> None:
+    left_out(tmp_path, in_model(part), f"({reason}|it is in another file)", "tank.sdf")
+    reading = read(tmp_path, in_model(part), "tank.sdf")
+    assert any(reason in doubt for doubt in reading.doubts)
+    assert reading.robot.outline.axle_distance == pytest.approx(0.8)
+
+
+def test_a_nested_model_is_part_of_the_robot(tmp_path: Path) -> None:
+    """Its frame is given in that of the model, and its names are its own."""
+    mast = """<model name="mast"><pose>0 0 0.5 0 0 0</pose>
+      <link name="hull"><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz>
+      </inertia></inertial></link>
+      <link name="top"><pose relative_to="hull">0.1 0 0.2 0 0 0</pose>
+      <inertial><mass>1</mass></inertial></link>
+      <joint name="leftj" type="fixed"><parent>hull</parent><child>top</child></joint></model>
+      <joint name="m" type="fixed"><parent>hull</parent><child>mast::hull</child></joint>"""
+    plain = read(tmp_path, tracked(DRUMS), "tank.sdf")
+    reading = read(tmp_path, in_model(mast), "tank.sdf")
+    assert reading.robot.mass == pytest.approx(plain.robot.mass + 3.0)
+    links = reading.tree.by_name
+    assert links["mast::hull"].pose.place == pytest.approx([0.0, 0.0, 0.5])
+    assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.7])
+
+
+def test_of_several_models_the_one_that_can_drive_is_read(tmp_path: Path) -> None:
+    cart = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
+    door = """<model name="door"><link name="frame"/><link name="leaf"/>
+      <joint name="h" type="revolute"><parent>frame</parent><child>leaf</child><axis>
+      <limit><lower>0</lower><upper>1.5</upper></limit></axis></joint></model>"""
+    crate = '<model name="crate"><link name="box"/></model>'
+    world = '<sdf version="1.9"><world name="w">{}</world></sdf>'
+    text = world.format(f"{crate}{door}<model{cart}</model>")
+    assert read(tmp_path, text, "w.sdf").robot.name == "cart"
+    refused(tmp_path, world.format(crate + door), "one of several with wheels .* door", "w.sdf")
+    two = f"<model{cart}</model><model{cart.replace('cart', 'other', 1)}</model>{crate}"
+    refused(tmp_path, world.format(two), "model= names it; .* got cart, other$", "w.sdf")
+
+
+def test_of_several_bodies_the_one_that_can_drive_is_read(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    crate = '<body name="crate"><freejoint/><geom size="0.1"/></body>'
+    text = (FILES / "cart.xml").read_text().replace("</worldbody>", f"{crate}</worldbody>")
+    assert (
+        read(tmp_path, text, "cart.xml").robot
+        == read(tmp_path, text, "cart.xml", model="hull").robot
+    )
+
+
+def test_an_older_sdf_is_refused_with_what_converts_it(tmp_path: Path) -> None:
+    for version in ('version="1.3"', ""):
+        text = tracked(DRUMS).replace('version="1.7"', version)
+        refused(tmp_path, text, '"gz sdf -p FILE" writes a file', "tank.sdf")
+
+
+def test_an_ellipsoid_of_mujoco_is_a_hull(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'
+    text = (FILES / "cart.xml").read_text()
+    assert box in text
+    ball = '<geom type="ellipsoid" size="0.2 0.1 0.05"/>'
+    belly = read(tmp_path, text.replace(box, ball), "cart.xml").robot.belly
+    assert belly is not None
+    assert np.ptp(np.array(belly), axis=0) == pytest.approx([0.4, 0.1], rel=1e-3)
+
+
+def test_a_mesh_of_mjcf_that_is_only_seen_need_not_be_there(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text()
+    assets = """<asset><mesh name="m" file="m.stl"/><texture name="t" type="2d" file="t.png"/>
+      <material name="paint" texture="t"/></asset><worldbody>"""
+    seen = '<geom type="mesh" mesh="m" contype="0" conaffinity="0" material="paint" mass="0"/>'
+    text = text.replace("<worldbody>", assets).replace("<freejoint/>", f"<freejoint/>{seen}", 1)
+    reading = read(tmp_path, text, "cart.xml")
+    assert not any("m.stl" in doubt for doubt in reading.doubts)
+    touching = text.replace('contype="0" conaffinity="0"', "")
+    (doubt,) = [d for d in read(tmp_path, touching, "cart.xml").doubts if "m.stl" in d]
+    assert f"is left out: there is no file {tmp_path}/m.stl" in doubt
+    box = '<body><geom type="box" size="0.1 0.1 0.1" mass="1"/>{}</body>'
+    heavy = text.replace(seen, box.format(seen.replace(' mass="0"', "")))
+    told = read(tmp_path, heavy, "cart.xml").doubts
+    assert any("weighs nothing here, but its volume counts" in doubt for doubt in told)
+
+
+@pytest.mark.parametrize("name", ["tractor", "marv_model", "sekirei2020", "marv"])
+def test_nothing_in_a_public_tree_that_cannot_carry_it_stops_the_reader(name: str) -> None:
+    pytest.importorskip("xacrodoc")
+    key = keys()[name]
+    how = How(packages=key.packages, arguments=key.arguments)
+    refuse_unread(tree_of(key.file.read_bytes(), key.file, how).tree)
+
+
+def test_the_public_tank_of_meshes_is_refused_with_what_it_lacks() -> None:
+    pytest.importorskip("xacrodoc")
+    key = keys()["tank"]
+    data = key.file.read_bytes()
+    missing = b'<xacro:include filename="controller.xacro"/>'
+    assert missing in data
+    tree = tree_of(data.replace(missing, b""), key.file, How(packages=key.packages)).tree
+    with pytest.raises(c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* put the file"):
+        refuse_unread(tree)
