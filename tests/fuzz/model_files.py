@@ -6,17 +6,19 @@ Where one names a file, a fault may name another in its place, such as a pipe or
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 import random
 import re
 import struct
 import zlib
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import crawler2d as c2d
 from crawler2d.common.ends import Disc
 from crawler2d.parameters.track import Track
-from tests.reading import carts
+from tests.reading import carts, mesh_files
 from tests.reading.odd_files import ODD
 from tests.robots.robot_files import FOLDER
 
@@ -51,23 +53,15 @@ TRIANGLES = [
 ]
 
 
-def _facet(corners: tuple[int, int, int]) -> str:
-    rows = "".join("vertex {:g} {:g} {:g}\n".format(*RIM[n]) for n in corners)
-    return f"facet normal 0 0 0\nouter loop\n{rows}endloop\nendfacet\n"
-
-
+_SOLID: dict[str, Any] = {"corners": RIM, "faces": TRIANGLES}
+_PICTURE = '<library_images><image id="i"><init_from>part.png</init_from></image></library_images>'
 MESHES = {
-    "part.stl": f"solid part\n{''.join(map(_facet, TRIANGLES))}endsolid part\n".encode(),
-    "binary.stl": b"\0" * 80
-    + struct.pack("<I", len(TRIANGLES))
-    + b"".join(
-        struct.pack("<12fH", 0, 0, 0, *(part for n in corners for part in RIM[n]), 0)
-        for corners in TRIANGLES
-    ),
-    "part.obj": "".join(
-        ["v {:g} {:g} {:g}\n".format(*corner) for corner in RIM]
-        + ["f {} {} {}\n".format(*(n + 1 for n in corners)) for corners in TRIANGLES]
-    ).encode(),
+    "part.stl": mesh_files.text_stl(**_SOLID),
+    "binary.stl": mesh_files.stl(**_SOLID),
+    "part.obj": mesh_files.obj("mtllib part.obj", **_SOLID),
+    "part.dae": mesh_files.dae(nodes=_PICTURE, **_SOLID),
+    "part.glb": mesh_files.glb(mesh_files.gltf(**_SOLID), **_SOLID),
+    "part.gltf": json.dumps(mesh_files.gltf("inside", **_SOLID)).encode(),
 }
 """A wheel as a mesh, in each form."""
 
@@ -182,7 +176,7 @@ NUMBERS = (
 
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:e[+-]?\d+)?")
 _TAG = re.compile(rb"</?[A-Za-z_:]+")
-_FILE = re.compile(rb"(?<=[\"'>])[\w./:$() -]+\.(?:stl|obj|dae|png|yaml|xacro)(?=[\"'<])")
+_FILE = re.compile(rb"(?<=[\"'>])[\w./:$() -]+\.(?:stl|obj|dae|glb|png|yaml|xacro)(?=[\"'<])")
 _WORD = re.compile(rb"(?<=[>\"'])[A-Za-z_]\w+(?=[<\"'])")
 
 ELSEWHERE = {

@@ -1,4 +1,4 @@
-"""Meshes of a box in every format that is read, made by hand or by trimesh, and hostile ones."""
+"""Meshes in every format that is read, written by hand, and hostile ones."""
 
 from __future__ import annotations
 
@@ -7,39 +7,41 @@ import io
 import json
 import struct
 import zipfile
+from collections.abc import Sequence
 
 import numpy as np
 
+Rows = Sequence[Sequence[float]]
+
 LOW, HIGH = (-0.1, -0.05, 0.0), (0.1, 0.05, 0.03)
-CORNERS = [
+CORNERS: Rows = [
     (x, y, z) for x in (LOW[0], HIGH[0]) for y in (LOW[1], HIGH[1]) for z in (LOW[2], HIGH[2])
 ]
-FACES = [
+FACES: Rows = [
     *((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)),
     *((2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),
 ]
 
 
-def stl() -> bytes:
-    facets = b"".join(
-        struct.pack("<12fH", 0, 0, 0, *CORNERS[a], *CORNERS[b], *CORNERS[c], 0) for a, b, c in FACES
-    )
-    return b"\0" * 80 + struct.pack("<I", len(FACES)) + facets
+def stl(corners: Rows = CORNERS, faces: Rows = FACES) -> bytes:
+    rows = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("end", "<u2")])
+    rows["corners"] = np.array(corners)[np.array(faces, int)]
+    return b"\0" * 80 + struct.pack("<I", len(faces)) + rows.tobytes()
 
 
-def text_stl() -> bytes:
+def text_stl(corners: Rows = CORNERS, faces: Rows = FACES) -> bytes:
     rows = [
         "facet normal 0 0 0\nouter loop\n"
-        + "".join("vertex {} {} {}\n".format(*CORNERS[n]) for n in face)
+        + "".join("vertex {} {} {}\n".format(*corners[int(n)]) for n in face)
         + "endloop\nendfacet\n"
-        for face in FACES
+        for face in faces
     ]
     return f"solid box\n{''.join(rows)}endsolid box\n".encode()
 
 
-def obj(before: str = "") -> bytes:
-    rows = ["v {} {} {}".format(*corner) for corner in CORNERS]
-    rows += ["f {} {} {}".format(*(n + 1 for n in face)) for face in FACES]
+def obj(before: str = "", corners: Rows = CORNERS, faces: Rows = FACES) -> bytes:
+    rows = ["v {} {} {}".format(*corner) for corner in corners]
+    rows += ["f {} {} {}".format(*(n + 1 for n in face)) for face in faces]
     return "\n".join([before, *rows, ""]).encode()
 
 
@@ -61,31 +63,44 @@ BOX = '<instance_geometry url="#box"/>'
 
 
 def dae(
-    unit: float = 1.0, up: str = "Z_UP", before: str = "", nodes: str = "", scene: str = ""
+    unit: float = 1.0,
+    up: str = "Z_UP",
+    before: str = "",
+    nodes: str = "",
+    scene: str = "",
+    corners: Rows = CORNERS,
+    faces: Rows = FACES,
 ) -> bytes:
-    """Make COLLADA; of a box in metres whose node may be anything."""
-    numbers = [number / unit for corner in CORNERS for number in corner]
+    """Make COLLADA of corners in metres, with what is before it, as nodes and as its scene."""
+    numbers = [number / unit for corner in corners for number in corner]
     text = DAE.format(
         before=before,
         unit=unit,
         up=up,
         count=len(numbers),
         numbers=" ".join(str(number) for number in numbers),
-        corners=len(CORNERS),
-        faces=len(FACES),
-        indices=" ".join(str(n) for face in FACES for n in face),
+        corners=len(corners),
+        faces=len(faces),
+        indices=" ".join(str(n) for face in faces for n in face),
         nodes=nodes,
         scene=scene or f'<node id="n">{BOX}</node>',
     )
     return text.encode()
 
 
-def gltf(uri: str = "", count: int = len(CORNERS), view: int = 0) -> dict[str, object]:
+def gltf(
+    uri: str = "",
+    count: int = 0,
+    placed: bool = True,
+    corners: Rows = CORNERS,
+    faces: Rows = FACES,
+) -> dict[str, object]:
     """Make the JSON of glTF, whose buffer is in it, at another place, or the part of a GLB."""
-    data = _buffer()
+    data = _buffer(corners, faces)
     if uri == "inside":
         uri = f"data:application/octet-stream;base64,{base64.b64encode(data).decode()}"
-    size = 12 * len(CORNERS)
+    size = 12 * len(corners)
+    kinds = {"componentType": 5126, "count": count or len(corners), "type": "VEC3"}
     return {
         "asset": {"version": "2.0"},
         "scene": 0,
@@ -93,15 +108,8 @@ def gltf(uri: str = "", count: int = len(CORNERS), view: int = 0) -> dict[str, o
         "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
         "accessors": [
-            {
-                **({"bufferView": 0} if view == 0 else {}),
-                "componentType": 5126,
-                "count": count,
-                "type": "VEC3",
-                "min": LOW,
-                "max": HIGH,
-            },
-            {"bufferView": 1, "componentType": 5125, "count": 3 * len(FACES), "type": "SCALAR"},
+            {**kinds, "bufferView": 0} if placed else kinds,
+            {"bufferView": 1, "componentType": 5125, "count": 3 * len(faces), "type": "SCALAR"},
         ],
         "bufferViews": [
             {"buffer": 0, "byteLength": size},
@@ -111,17 +119,17 @@ def gltf(uri: str = "", count: int = len(CORNERS), view: int = 0) -> dict[str, o
     }
 
 
-def glb(tree: dict[str, object] | None = None) -> bytes:
-    words = json.dumps(gltf() if tree is None else tree).encode()
+def glb(tree: dict[str, object], corners: Rows = CORNERS, faces: Rows = FACES) -> bytes:
+    words = json.dumps(tree).encode()
     words += b" " * (-len(words) % 4)
-    data = _buffer()
+    data = _buffer(corners, faces)
     parts = struct.pack("<II", len(words), 0x4E4F534A) + words
     parts += struct.pack("<II", len(data), 0x004E4942) + data
     return struct.pack("<III", 0x46546C67, 2, 12 + len(parts)) + parts
 
 
-def _buffer() -> bytes:
-    return np.array(CORNERS, "<f4").tobytes() + np.array(FACES, "<u4").tobytes()
+def _buffer(corners: Rows, faces: Rows) -> bytes:
+    return np.array(corners, "<f4").tobytes() + np.array(faces, "<u4").tobytes()
 
 
 def nested_nodes(levels: int) -> tuple[str, str]:
@@ -135,11 +143,16 @@ def nested_nodes(levels: int) -> tuple[str, str]:
     return nodes, '<node id="n"><instance_node url="#a0"/></node>'
 
 
-def zipped(data: bytes, size: int = 0) -> bytes:
-    """Pack a file, with so many zeros beside it."""
+def zipped(data: bytes) -> bytes:
+    """Pack a file with 50 MB of blanks after it."""
     file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("m.dae", data + b" " * size)
+    with (
+        zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("m.dae", "w") as part,
+    ):
+        part.write(data)
+        for _ in range(50):
+            part.write(b" " * 1_000_000)
     return file.getvalue()
 
 
@@ -158,7 +171,7 @@ BOXES = {
     "metres.dae": dae(),
     "millimetres.dae": dae(unit=0.001),
     "y_up.dae": dae(up="Y_UP"),
-    "box.glb": glb(),
+    "box.glb": glb(gltf()),
     "box.gltf": json.dumps(gltf("inside")).encode(),
 }
 """By name; all of them are the same box."""
@@ -168,10 +181,10 @@ HOSTILE = {
     "entities.dae": dae(before=ENTITIES).replace(b"0.1 ", b"&i; "),
     "external.dae": dae(before='<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]>'),
     "nodes.dae": dae(nodes=_NODES, scene=_SCENE),
-    "zip.dae": zipped(dae(), 300_000_000),
+    "zip.dae": zipped(dae()),
     "deep.dae": dae(scene="<node>" * 5000 + "</node>" * 5000),
     "count.glb": glb(gltf(count=2**40)),
-    "zeros.glb": glb(gltf(count=2**31, view=-1)),
+    "zeros.glb": glb(gltf(count=2**31, placed=False)),
     "far.gltf": json.dumps(gltf("../../etc/passwd")).encode(),
     "web.gltf": json.dumps(gltf("http://localhost:9/b.bin")).encode(),
     "faces.stl": b"\0" * 80 + struct.pack("<I", 2**32 - 1) + b"\0" * 50,
