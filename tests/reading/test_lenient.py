@@ -68,7 +68,7 @@ def test_a_wheel_without_a_shape_is_refused_although_there_are_others(
 ) -> None:
     text = urdf(WHEELS, pair("middle", 0.0, geometry=shape))
     refused(
-        tmp_path, text, "for it may be a wheel or a track, .*; so do right_middle: put the file"
+        tmp_path, text, "for it may be a wheel or a track, .*; so must right_middle: put its mesh"
     )
 
 
@@ -85,7 +85,7 @@ def test_a_model_whose_only_shapes_were_left_out_is_refused(tmp_path: Path) -> N
         link(f"{side}_track", 'type="fixed">').replace("</link>", f"{mesh}</link>")
         for side, _ in SIDES
     )
-    rule = r"link\[left_track\] must have a collision shape .*; so do right_track: .*with tracks="
+    rule = r"link\[left_track\] must have a collision shape .*; so must right_track: .*with tracks="
     refused(tmp_path, urdf(tracks), rule)
     refused(tmp_path, urdf(tracks), rule, tracks=["left_track", "right_track"])
 
@@ -341,5 +341,5 @@ def test_the_public_tank_of_meshes_is_refused_with_what_it_lacks() -> None:
     missing = b'<xacro:include filename="controller.xacro"/>'
     assert missing in data
     tree = tree_of(data.replace(missing, b""), key.file, How(packages=key.packages)).tree
-    with pytest.raises(c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* put the file"):
+    with pytest.raises(c2d.ScenarioError, match=r"there is no file .*wheel\.stl.* put its mesh"):
         refuse_unread(tree)

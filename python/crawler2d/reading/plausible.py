@@ -73,13 +73,18 @@ def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
 def _refuse(names: list[str], links: dict[str, Link]) -> None:
     link = links[names[0]]
     unread = link.unread[0]
-    others = f"; so do {', '.join(names[1:6])}" if len(names) > 1 else ""
+    others = f"; so must {_listed(names[1:])}" if len(names) > 1 else ""
     rule = (
         "must have a collision shape that can be read, for it may be a wheel or a track, which"
-        f" nothing may guess ({unread.reason}){others}: put the file there, give the link a"
-        " cylinder or a box, or name links whose surface moves with tracks="
+        f" nothing may guess ({unread.reason}){others}: put its mesh there, give it a cylinder or a"
+        " box, or name links whose surface moves with tracks="
     )
     raise ScenarioError(f"{unread.at}: link[{link.name}]", unread.name, rule)
+
+
+def _listed(names: list[str]) -> str:
+    more = len(names) - 5
+    return ", ".join(names[:5]) + (f" and {more} more" if more > 0 else "")
 
 
 def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
@@ -94,28 +99,32 @@ def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
     tree : Tree
         The model.
     doubts : list of Doubt
-        Where each such link is noted.
+        Where they are noted, the worst with its line.
     """
     if not any(link.shapes for link in tree.links):
         return tree
     size = size_of(tree)
-    links, found = [], []
+    links = []
+    false: list[tuple[Link, float, float]] = []
     for link in tree.links:
         largest = float(np.linalg.eigvalsh(link.inertia)[-1])
         most = link.mass * size**2
-        if largest > most * (1.0 + 1e-6):
-            reason = (
-                f"is taken as {most:.3g} kg m^2: {link.mass:.3g} kg have no more within"
-                f" {size:.3g} m, the reach of the robot"
-            )
-            found.append((f"{link.mass_at}: link[{link.name}]/inertia", largest, reason))
-            links.append(replace(link, inertia=link.inertia * (most / largest)))
-        else:
-            links.append(link)
+        is_false = largest > most * (1.0 + 1e-6)
+        if is_false:
+            false.append((link, largest, most))
+        tensor = link.inertia * (most / largest) if is_false else link.inertia
+        links.append(replace(link, inertia=tensor))
     usual = _largest_moment(links)
     if _largest_moment(tree.links) <= (1.0 + _MATTERS) * usual:
         return tree
-    doubts += found
+    worst, largest, most = max(false, key=lambda each: each[1])
+    others = [link.name for link, _, _ in false if link is not worst]
+    alike = f"; likewise those of {_listed(others)}" if others else ""
+    reason = (
+        f"is taken as {most:.3g} kg m^2: {worst.mass:.3g} kg have no more within {size:.3g} m, the"
+        f" reach of the robot{alike}"
+    )
+    doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
     return replace(tree, links=tuple(links))
 
 
