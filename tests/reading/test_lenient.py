@@ -267,6 +267,40 @@ def test_a_nested_model_is_part_of_the_robot(tmp_path: Path) -> None:
     assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.7])
 
 
+def by_slices(radius: float, length: float, density: float) -> tuple[float, float, float]:
+    """Mass, and moments across and along, of a capsule cut into thin discs."""
+    ends = 0.5 * length + radius
+    z, step = np.linspace(-ends, ends, 200_001, retstep=True)
+    beyond = np.maximum(np.abs(z) - 0.5 * length, 0.0)
+    squares = np.maximum(radius**2 - beyond**2, 0.0)
+    own = density * np.pi * squares * step
+    across = (own * (squares / 4.0 + z**2)).sum()
+    return float(own.sum()), float(across), float((own * squares / 2.0).sum())
+
+
+@pytest.mark.parametrize(
+    ("shape", "wanted"),
+    [
+        ("<box><size>0.2 0.1 0.3</size></box>", (3.0, 0.025, 0.0125)),
+        ("<sphere><radius>0.1</radius></sphere>", by_slices(0.1, 0.0, 500.0)),
+        (
+            "<capsule><radius>0.1</radius><length>0.3</length></capsule>",
+            by_slices(0.1, 0.3, 500.0),
+        ),
+    ],
+)
+def test_mass_and_inertia_are_worked_out_where_the_file_asks_for_it(
+    tmp_path: Path, shape: str, wanted: tuple[float, float, float]
+) -> None:
+    part = f"""<link name="b"><pose>0 0 0.5 0 0 0</pose><inertial auto="true"><density>500</density>
+      </inertial><collision name="c"><geometry>{shape}</geometry></collision></link>
+      <joint name="w" type="fixed"><parent>hull</parent><child>b</child></joint>"""
+    link = read(tmp_path, in_model(part), "tank.sdf").tree.by_name["b"]
+    found = (link.mass, link.inertia[0, 0], link.inertia[2, 2])
+    assert found == pytest.approx(wanted, rel=1e-6)
+    assert link.center == pytest.approx([0.0, 0.0, 0.5])
+
+
 def test_of_several_models_the_one_that_can_drive_is_read(tmp_path: Path) -> None:
     cart = (FILES / "cart.sdf").read_text().partition("<model")[2].rpartition("</model>")[0]
     door = """<model name="door"><link name="frame"/><link name="leaf"/>

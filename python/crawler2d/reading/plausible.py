@@ -11,7 +11,8 @@ from crawler2d.errors import ScenarioError
 from crawler2d.models.tree import Link, Tree
 from crawler2d.reading.parts import farthest
 from crawler2d.reading.plugins import moved_links
-from crawler2d.reading.rounds import below, is_moved, radius_about
+from crawler2d.reading.rounds import below, radius_about
+from crawler2d.reading.surfaces import surfaces_of
 from crawler2d.reading.telling import Doubt
 from crawler2d.reading.wheels import wheel_of
 
@@ -63,11 +64,9 @@ def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
     for joint in tree.joints.values():
         for _, shape in wheel_of(tree, joint, hanging):
             yield float(joint.place[2]) + (radius_about(shape, joint.place, joint.axis) or 0.0)
-    moved = moved_links(tree)
-    for link in tree.links:
-        for shape in link.shapes:
-            if shape.radius > 0.0 and is_moved(link, shape, moved):
-                yield float(shape.pose.place[2]) + shape.radius
+    for shape in surfaces_of(tree).moved:
+        if shape.radius > 0.0:
+            yield float(shape.pose.place[2]) + shape.radius
 
 
 def _refuse(names: list[str], links: dict[str, Link]) -> None:

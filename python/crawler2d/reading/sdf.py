@@ -17,13 +17,14 @@ from crawler2d.reading.joints import joint_of, moving, settled
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import carrying, checked
 from crawler2d.reading.plugins import driven_by, named_tracks, plugin_of
-from crawler2d.reading.shapes import collisions, inertia, shape_of
+from crawler2d.reading.shapes import collisions, inertia, shape_of, solid
 from crawler2d.reading.telling import Doubt
 
 __all__ = ["read_sdf"]
 
 # What SDF takes where a file says nothing: a link of 1 kg, a friction of 1.
 _USUAL_MASS = _USUAL_FRICTION = 1.0
+_USUAL_DENSITY = 1000.0  # [kg/m^3] Where masses are to be worked out: that of water.
 
 
 def read_sdf(root: Element, model: str | None, meshes: Meshes, doubts: list[Doubt]) -> Tree:
@@ -207,34 +208,28 @@ class _Model:
         """Return the links that a joint joins; None if it is left out."""
         joint = part.element
         parent, child = (joint.needed(end).text for end in ("parent", "child"))
-        includes = [
-            each.scope + name.text + "::"
-            for each in self.models
-            for include in each.element.all("include")
-            for name in include.all("name")
-        ]
+        ends = part.scope + parent, part.scope + child
+        known = {each.name for each in self.parts("link")}
         reason = ""
         if "world" in (parent, child):
             reason = "it holds the robot to the world, where it is to drive"
         elif joint.attribute("type") == "gearbox":
             reason = "it couples joints, and carries nothing"
-        elif (part.scope + parent).startswith(tuple(includes)) or (part.scope + child).startswith(
-            tuple(includes)
-        ):
+        elif self.parts("include") and not known.issuperset(ends):
             reason = "what it joins is in another file"
         if reason:
             self.doubts.append((joint.at, part.name, f"is left out: {reason}"))
             return None
-        return part.scope + parent, part.scope + child
+        return ends
 
     def link(self, part: _Part) -> Link:
         link, name = part.element, part.name
         pose = self.frames.of(name, link)
         mass, center, tensor, mass_at = _USUAL_MASS, Pose(), Pose().turn, link.where
+        shapes, unread = collisions(self.shape(c, part) for c in link.all("collision"))
         inertial = link.first("inertial", self.doubts)
-        if inertial is not None:
-            if inertial.attributes.get("auto", "").lower() in ("1", "true"):
-                inertial.refuse("auto", "must state mass and inertia")
+        is_auto = inertial is not None and inertial.attributes.get("auto", "") in ("1", "true")
+        if inertial is not None and not is_auto:
             mass = inertial.real("mass", _USUAL_MASS)
             found = inertial.only("mass")
             mass_at = inertial.where if found is None else found.where
@@ -250,13 +245,19 @@ class _Model:
         if mass < 0.0:
             link.refuse(mass, "must have a mass >= 0 kg")
         frame = center if inertial is not None else pose
-        shapes, unread = collisions(self.shape(c, part) for c in link.all("collision"))
+        place, tensor = frame.place, frame.turn @ tensor @ frame.turn.T
+        if inertial is not None and is_auto:
+            if unread or any(shape.kind == "hull" for shape in shapes) or not shapes:
+                rule = "must state mass and inertia, or be of boxes, cylinders, capsules, spheres"
+                inertial.refuse("auto", rule)
+            mass_at = inertial.where
+            mass, place, tensor = solid(shapes, inertial.real("density", _USUAL_DENSITY))
         return Link(
             name=name,
             pose=pose,
             mass=mass,
-            center=frame.place,
-            inertia=frame.turn @ tensor @ frame.turn.T,
+            center=place,
+            inertia=tensor,
             shapes=shapes,
             unread=unread,
             at=link.where,

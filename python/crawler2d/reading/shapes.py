@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from crawler2d.reading.elements import Element
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.telling import Doubt
 
-__all__ = ["collisions", "ellipsoid", "inertia", "shape_of"]
+__all__ = ["collisions", "ellipsoid", "inertia", "shape_of", "solid"]
 
 _AXES = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
 
@@ -128,3 +128,31 @@ def inertia(element: Element, value: Callable[[str], float], doubts: list[Doubt]
         doubts.append((element.at, least, "is taken as 0 kg m^2: no body has a negative moment"))
         return np.zeros((3, 3))
     return tensor
+
+
+def solid(shapes: Sequence[Shape], density: float) -> tuple[float, Array, Array]:
+    """Return mass [kg], centre [m] and inertia [kg m^2] about it, of shapes that are filled."""
+    parts = [_filled(shape, density) for shape in shapes]
+    masses = np.array([own for own, _ in parts])
+    places = np.array([shape.pose.place for shape in shapes])
+    center = masses @ places / masses.sum()
+    tensor = np.zeros((3, 3))
+    for shape, (own, moments), away in zip(shapes, parts, places - center, strict=True):
+        tensor += shape.pose.turn @ np.diag(moments) @ shape.pose.turn.T
+        tensor += own * (away @ away * np.eye(3) - np.outer(away, away))
+    return float(masses.sum()), center, tensor
+
+
+def _filled(shape: Shape, density: float) -> tuple[float, list[float]]:
+    """Return mass [kg] and principal moments [kg m^2] of a shape in its own frame."""
+    if shape.kind == "box":
+        mass = density * float(np.prod(shape.size))
+        squares = shape.size**2
+        return mass, [mass * (sum(squares) - own) / 12.0 for own in squares]
+    radius, length = shape.radius, shape.length
+    straight = density * math.pi * radius**2 * length
+    ends = 0.0 if shape.kind == "cylinder" else density * 4.0 / 3.0 * math.pi * radius**3
+    across = straight * (radius**2 / 4.0 + length**2 / 12.0)
+    across += ends * (0.4 * radius**2 + length**2 / 4.0 + 0.375 * length * radius)
+    along = straight * radius**2 / 2.0 + ends * 0.4 * radius**2
+    return straight + ends, [across, across, along]
