@@ -331,6 +331,20 @@ def test_an_older_sdf_is_refused_with_what_converts_it(tmp_path: Path) -> None:
         refused(tmp_path, text, '"gz sdf -p FILE" writes a file', "tank.sdf")
 
 
+def test_a_body_with_two_joints_that_carries_nothing_is_fixed(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = (FILES / "cart.xml").read_text()
+    shape = '<geom size="0.05" contype="{0}" conaffinity="{0}"/>'
+    head = f'<body name="head"><joint axis="0 0 1"/><joint axis="0 1 0"/>{shape}</body>'
+    for collides in (0, 1):
+        with_head = text.replace("<freejoint/>", f"<freejoint/>{head.format(collides)}", 1)
+        if collides:
+            refused(tmp_path, with_head, "must have at most one joint", "cart.xml")
+        else:
+            doubts = read(tmp_path, with_head, "cart.xml").doubts
+            assert any("body[head] is taken as fixed" in doubt for doubt in doubts)
+
+
 def test_an_ellipsoid_of_mujoco_is_a_hull(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     box = '<geom type="box" pos="0 0 0.0625" size="0.25 0.125 0.0625"/>'

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import crawler2d as c2d
-from tests.reading.carts import FILES, TENSOR, WHEELS, XACRO, read, urdf
+from tests.reading.carts import FILES, WHEELS, XACRO, read, urdf
 
 BOMB = """<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa">
 <!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>

@@ -95,6 +95,8 @@ class _Model:
         self.at = at
         self.meshes = meshes
         self.corners = 0  # of all meshes
+        every = (*plain["shapes"], *plain["lacking"])
+        self.colliding: set[int] = {each["body"] for each in every if each["collides"]}
         self.bodies: list[Plain] = plain["bodies"]
         self.joints: dict[int, list[Plain]] = {}
         for joint in plain["joints"]:
@@ -153,12 +155,17 @@ class _Model:
             raise ScenarioError(str(self.at), ", ".join(names[:10]) or "none", rule)
         return driving[0]
 
-    def drives(self, root: int) -> bool:
-        """Whether anything on a body turns without limit, or has a surface that moves."""
+    def below(self, root: int) -> set[int]:
+        """Return a body and those that hang on it."""
         on = {root}
         for number, body in enumerate(self.bodies):  # parents come before their children
             if number and body["parent"] in on:
                 on.add(number)
+        return on
+
+    def drives(self, root: int) -> bool:
+        """Whether anything on a body turns without limit, or has a surface that moves."""
+        on = self.below(root)
         joints = [joint for number in on for joint in self.joints.get(number, [])]
         turns = any(joint["kind"] == "hinge" and not joint["range"] for joint in joints)
         return turns or any(s["body"] in on and any(s["moved"]) for s in self.plain["shapes"])
@@ -167,6 +174,14 @@ class _Model:
         body = self.bodies[number]
         child, parent = body["name"], self.bodies[body["parent"]]["name"]
         found = self.joints.get(number, [])
+        if len(found) > 1:
+            path = f"{self.where(body)}: body[{child}]"
+            got, rule = f"{len(found)} joints", "must have at most one joint"
+            if self.below(number) & self.colliding:
+                raise ScenarioError(path, got, rule)
+            reason = f"is taken as fixed, for nothing on its joints collides: {rule}"
+            self.meshes.doubts.append((path, got, reason))
+            found = []
         if not found:
             return Joint(
                 name=f"of {child}",
@@ -179,9 +194,6 @@ class _Model:
                 effort_at=self.where(body),
                 velocity_at=self.where(body),
             )
-        if len(found) > 1:
-            path = f"{self.where(body)}: body[{child}]"
-            raise ScenarioError(path, f"{len(found)} joints", "must have at most one joint")
         (joint,) = found
         motor = self.motors.get(joint["name"], {})
         lower, upper = joint["range"] or (-math.inf, math.inf)
