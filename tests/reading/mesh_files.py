@@ -183,6 +183,7 @@ HOSTILE = {
     "nodes.dae": dae(nodes=_NODES, scene=_SCENE),
     "zip.dae": zipped(dae()),
     "deep.dae": dae(scene="<node>" * 5000 + "</node>" * 5000),
+    "unit.dae": dae().replace(b'meter="1.0"', b'meter="0"'),
     "count.glb": glb(gltf(count=2**40)),
     "zeros.glb": glb(gltf(count=2**31, placed=False)),
     "far.gltf": json.dumps(gltf("../../etc/passwd")).encode(),

@@ -172,9 +172,19 @@ def test_an_inertia_that_no_body_in_the_robot_has_is_limited(tmp_path: Path) -> 
     tensor = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     gps = re.sub(r"<inertia .*?/>", tensor, gps)
     (doubt,) = doubts(tmp_path, urdf(WHEELS, gps))
-    assert "0.01 kg have no more within" in doubt
+    assert re.search(r"is taken as \S+ kg m\^2, but 0.01 kg have at most", doubt)
     usual = read(tmp_path, urdf(WHEELS)).robot.moment_of_inertia
     assert usual < read(tmp_path, urdf(WHEELS, gps)).robot.moment_of_inertia < usual + 0.01
+
+
+def test_a_heavy_link_keeps_an_inertia_that_it_cannot_have(tmp_path: Path) -> None:
+    tensor = '<inertia ixx="9" ixy="0" ixz="0" iyy="9" iyz="0" izz="9"/>'
+    text = urdf(WHEELS)
+    (doubt,) = doubts(tmp_path, text.replace(TENSOR, tensor))
+    assert "link[hull]/inertia is kept, but 8 kg have at most" in doubt
+    usual = read(tmp_path, text).robot.moment_of_inertia
+    found = read(tmp_path, text.replace(TENSOR, tensor)).robot.moment_of_inertia
+    assert found == pytest.approx(usual + 8.8)
 
 
 def test_a_false_inertia_that_makes_no_difference_stays_as_it_is(tmp_path: Path) -> None:

@@ -150,10 +150,10 @@ class Files:
             raise ScenarioError(at, name, rule) from error
         if len(data) > most:
             raise ScenarioError(at, name, f"must have at most {most} bytes")
-        self._left -= len(data)
-        if self._left < 0:
+        if len(data) > self._left:
             rule = f"must, with the other files of its model, have at most {LARGEST_TOGETHER} bytes"
             raise ScenarioError(at, name, rule)
+        self._left -= len(data)
         return data
 
     def package(self, name: str) -> Path | None:

@@ -83,7 +83,10 @@ def _unit(data: bytes) -> float:
     parser.StartElementHandler = start
     parser.StartDoctypeDeclHandler = doctype
     parser.Parse(data, True)
-    return units[0] if units else 1.0
+    unit = units[0] if units else 1.0
+    if not unit > 0.0:
+        raise ValueError(f"its unit is {unit:g} m")
+    return unit
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ __all__ = ["bounded", "refuse_unread", "size_of"]
 
 _UPRIGHT = 0.5  # [-] Upward part of an axis from which it is no axle, but that of a lidar, say.
 
+_LIGHT = 0.01  # [-] Share of the robot's mass below which a link is light.
 _MATTERS = 0.01  # [-] Share of the robot's moment of inertia from which a false one is doubted.
 
 
@@ -89,9 +90,10 @@ def _listed(names: list[str]) -> str:
 def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
     """Return the tree with no moment of inertia that its mass cannot have inside of the robot.
 
-    One that is larger is scaled down to that of the mass on the outermost point of the robot, and
-    doubted. Files have such where somebody took a figure that an engine does not stumble over. As
-    long as all of them together make no difference to the robot, they stay as they are.
+    One that is larger is doubted, and scaled down to that of the mass on the outermost point of the
+    robot if the link is light and no wheel: files have such where somebody took a figure that an
+    engine does not stumble over. Heavy links, and what turns without limit, keep what their file
+    states. As long as all of them together make no difference to the robot, they stay as they are.
 
     Parameters
     ----------
@@ -103,28 +105,34 @@ def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
     if not any(link.shapes for link in tree.links):
         return tree
     size = size_of(tree)
+    whole = sum(link.mass for link in tree.links)
+    hanging = below(tree)
+    turning = {n for child, j in tree.joints.items() if j.is_unlimited for n in hanging[child]}
     links = []
-    false: list[tuple[Link, float, float]] = []
+    false: dict[bool, list[tuple[float, float, Link]]] = {True: [], False: []}
     for link in tree.links:
         largest = float(np.linalg.eigvalsh(link.inertia)[-1])
         most = link.mass * size**2
-        is_false = largest > most * (1.0 + 1e-6)
-        if is_false:
-            false.append((link, largest, most))
-        tensor = link.inertia * (most / largest) if is_false else link.inertia
-        links.append(replace(link, inertia=tensor))
-    usual = _largest_moment(links)
-    if _largest_moment(tree.links) <= (1.0 + _MATTERS) * usual:
-        return tree
-    worst, largest, most = max(false, key=lambda each: each[1])
-    others = [link.name for link, _, _ in false if link is not worst]
-    alike = f"; likewise those of {_listed(others)}" if others else ""
-    reason = (
-        f"is taken as {most:.3g} kg m^2: {worst.mass:.3g} kg have no more within {size:.3g} m, the"
-        f" reach of the robot{alike}"
-    )
-    doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
-    return replace(tree, links=tuple(links))
+        scale = 1.0
+        if largest > most * (1.0 + 1e-6):
+            is_light = link.mass < _LIGHT * whole
+            if not is_light or link.name not in turning:
+                false[is_light].append((largest, most, link))
+                scale = most / largest if is_light else 1.0
+        links.append(replace(link, inertia=scale * link.inertia))
+    is_same = _largest_moment(tree.links) <= (1.0 + _MATTERS) * _largest_moment(links)
+    for is_light, found in false.items():
+        if not found or (is_light and is_same):
+            continue
+        largest, most, worst = max(found, key=lambda each: each[0])
+        others = [link.name for _, _, link in found if link is not worst]
+        reason = (
+            f"is {f'taken as {most:.3g} kg m^2' if is_light else 'kept'}, but {worst.mass:.3g} kg"
+            f" have at most {most:.3g} kg m^2 within {size:.3g} m, the reach of the robot"
+            f"{f'; likewise those of {_listed(others)}' if others else ''}"
+        )
+        doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
+    return tree if is_same else replace(tree, links=tuple(links))
 
 
 def _largest_moment(links: Sequence[Link]) -> float:
