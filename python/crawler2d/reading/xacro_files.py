@@ -137,16 +137,19 @@ class XacroFiles:
         """Give the paths of an include, without those that are left out."""
         assert self._include is not None
         at, optional = place_of(self._include), self._include.getAttribute("optional")
+        name = ""
         try:
             for path in paths:
-                self._checked[path] = self._read(str(Path(path).absolute()), at)
+                name = str(Path(path).absolute())
+                self._checked[path] = self._read(name, at)
                 yield path
         except ScenarioError as error:
             optional_too = optional in ("true", "True", "1")
             if not is_absent(error) or not (self.leave_out or optional_too):
                 raise
             if not optional_too:
-                name = str(getattr(error.__cause__, "filename", error.value))  # of any length
+                # One of a package that is not there has no path. An error may cut names short.
+                name = name or str(getattr(error.__cause__, "filename", error.value))
                 self.left_out.append((at, name))
                 self.doubts.append((at, name, f"is left out: the file {error.rule}"))
 
