@@ -133,6 +133,20 @@ def test_every_public_main_file_of_xacro_is_tried() -> None:
     assert files == DOUBTS.keys() == LINKS.keys()
 
 
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        *((name, name) for name in ("marv", "tank", "tractor", "sekirei2020")),
+        ("sekirei2020_gazebo", "sekirei2020"),  # without its belts, whose macros are not there
+    ],
+)
+def test_what_is_expanded_has_the_mass_of_its_key(name: str, key: str) -> None:
+    text, _ = expand(keys()[name].file)
+    masses = [each for each in parsed(text.encode(), name).within() if each.tag == "mass"]
+    total = sum(float(mass.attribute("value")) for mass in masses)
+    assert total == pytest.approx(keys()[key].figures["mass"], abs=1e-6)
+
+
 def test_marv_is_expanded_with_the_settings_of_its_repository() -> None:
     key = keys()["marv"]
     found, _ = expand(key.file)
