@@ -1,13 +1,13 @@
-"""The page of an audit in a real browser: it fits, and its replays open, play and close."""
+"""The page of an audit in a real browser: it fits, begins with a replay, and that plays."""
 
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Frame, Page
+from playwright.sync_api import Browser, Page
 
 import crawler2d as c2d
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
-from tests.browser.seen import COLOURS, DRAWN, Open, clock
+from tests.browser.seen import COLOURS, DRAWN, Open, checksum, clock
 
 HOSTILE = "</script><img src=x onerror=\"document.title='broken'\">`${document.title='broken'}`"
 NAME = HOSTILE.replace("<", "&lt;").replace('"', "&quot;")
@@ -24,112 +24,177 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The page of a file in which everything that has a name has a hostile one."""
     path = tmp_path_factory.mktemp("cart") / "cart <i>.urdf"
     path.write_text(seizing_file(NAME, NAME), encoding="utf-8")
-    steps = {f"{HOSTILE}{label}": each for label, each in STEP.items()}
+    steps = {f"{HOSTILE}{each}": c2d.terrains.step(each) for each in (0.06, 0.075)}
     return c2d.audit(path, steps, samples=4, repeats=1, repair=False, **QUIET).to_html()
 
 
-def replay(page: Page, number: int) -> Frame:
-    """Wait for a replay, in view: frames that are not draw nothing."""
-    place = page.locator("iframe").nth(number)
-    place.wait_for()
-    place.scroll_into_view_if_needed()
-    frame = page.frames[1 + number]
-    frame.wait_for_selector("#play")
-    return frame
+def wide(place: str) -> str:
+    """Return what finds, in a page, what stands out of its place sideways and does not scroll."""
+    return f"""() => [...document.querySelectorAll("{place}")].filter(each =>
+        each.scrollWidth > each.clientWidth + 1
+        && getComputedStyle(each).overflowX === "visible").map(each => each.outerHTML)"""
 
 
-@pytest.mark.parametrize("width", [360, 768, 1000, 1240, 1900])
+def playing(page: Page) -> bool:
+    return page.get_attribute("#play", "aria-label") == "pause"
+
+
+@pytest.mark.parametrize("width", [360, 390, 768, 1000, 1280, 1900])
 def test_the_page_fits_every_width(
     open_page: Open, hostile: str, repaired: str, width: int
 ) -> None:
     for html in (hostile, repaired):
         page = open_page(html)
         page.set_viewport_size({"width": width, "height": 800})
-        page.click("a[href='#replay-0']")
-        replay(page, 1)
         page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
         page.evaluate(DRAWN)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        # Nothing of a table stands out of it.
-        wide = """all => all.filter(each => each.scrollWidth > each.clientWidth + 1).length"""
-        assert page.eval_on_selector_all("table, td, tbody th", wide) == 0
+        # Nothing stands out of its place, but wide tables and texts, which scroll there.
+        assert page.evaluate(wide("main *:not(svg *, option)")) == []
+        boxes = page.eval_on_selector_all(
+            "svg, canvas:not([hidden] *), .scroll, pre",
+            "all => all.map(e => e.getBoundingClientRect()).map(box => [box.left, box.right])",
+        )
+        assert all(0 <= left < right <= width for left, right in boxes)
 
 
-def test_a_click_opens_the_replay_of_model_and_belt(open_page: Open, repaired: str) -> None:
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])
+def test_the_replay_is_in_the_first_screen(
+    open_page: Open, repaired: str, width: int, height: int
+) -> None:
+    page = open_page(repaired, reduced_motion="reduce")
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate(DRAWN)
+    boxes = [each.bounding_box() for each in page.locator("canvas").all()]
+    first, second = (box for box in boxes if box is not None)
+    assert first["y"] + first["height"] < height
+    if width == 1280:
+        assert second["y"] == pytest.approx(first["y"], abs=0.5)
+        assert page.locator(".diagnosis").is_visible()
+    else:
+        assert second["y"] < height
+    for canvas in page.locator("canvas").all():
+        assert canvas.evaluate(COLOURS) > 20
+
+
+def test_the_replay_plays_by_itself_and_both_runs_have_one_clock(
+    open_page: Open, repaired: str
+) -> None:
     page = open_page(repaired)
-    assert len(page.frames) == 1
-    page.click("a[href='#replay-0']")
-    page.locator("iframe").nth(1).wait_for()
-    assert page.evaluate("document.activeElement.localName") == "summary"
-    box = page.locator(".replay summary").bounding_box()
-    assert box is not None
-    assert 0 <= box["y"] < 400
-    for number, ending in ((0, "seized"), (1, "cleared")):
-        frame = replay(page, number)
-        assert ending in frame.inner_text(".outcome")
-        assert frame.eval_on_selector("#scene", COLOURS) > 20
-    belt = replay(page, 1)
-    start = clock(belt)
-    belt.click("#play")
+    assert playing(page)
+    start = clock(page)
     page.wait_for_timeout(400)
-    belt.click("#play")
-    assert clock(belt) > start
+    page.click("#play")
+    assert clock(page) > start
+    assert not playing(page)
+    drawn = [checksum(page, f".pair figure:nth-child({k}) canvas") for k in (1, 2)]
+    page.fill("#scrub", "0")
+    assert clock(page) == 0.0
+    again = [checksum(page, f".pair figure:nth-child({k}) canvas") for k in (1, 2)]
+    assert all(before != after for before, after in zip(drawn, again, strict=True))
 
 
-def test_a_replay_that_is_closed_is_gone_and_opens_again(open_page: Open, repaired: str) -> None:
-    page = open_page(repaired)
-    for _ in range(2):
-        page.click(".replay summary")
-        replay(page, 1)
-        page.click(".replay summary")
-        page.wait_for_selector("iframe", state="detached")
+def test_a_run_that_is_over_stays_as_it_ended(open_page: Open, repaired: str) -> None:
+    page = open_page(repaired, reduced_motion="reduce")
+    repaired_one = ".pair figure:nth-child(2) canvas"
+    end, ended = clock(page), checksum(page, repaired_one)
+    page.fill("#scrub", str(end - 1.0))  # the robot that is repaired has cleared before
+    assert clock(page) < end
+    assert checksum(page, repaired_one) == ended
 
 
-def test_the_keyboard_is_enough(open_page: Open, repaired: str) -> None:
-    page = open_page(repaired)
-    page.focus("a[href='#replay-0']")
+def test_nothing_moves_for_those_who_want_no_motion(open_page: Open, repaired: str) -> None:
+    page = open_page(repaired, reduced_motion="reduce")
+    assert not playing(page)
+    now, end = page.inner_text("#clock").removesuffix(" s").split(" / ")
+    assert now == end
+    drawn = checksum(page, "canvas")
+    page.wait_for_timeout(200)
+    assert checksum(page, "canvas") == drawn
+
+
+def test_another_obstacle_is_shown_by_the_list_and_by_the_table(
+    open_page: Open, hostile: str
+) -> None:
+    page = open_page(hostile, reduced_motion="reduce")
+    assert page.locator("#obstacle option").count() == 2
+    for number, show in (
+        (1, lambda: page.select_option("#obstacle", "1")),
+        (0, lambda: page.click("a[href='#replay-0']")),
+        (1, lambda: page.evaluate("location.hash = '#replay-1'")),
+    ):
+        show()
+        page.wait_for_selector(f"#replay-{number}:not([hidden])")
+        assert page.locator(".runs:visible").count() == 1
+        assert page.input_value("#obstacle") == str(number)
+        for canvas in page.locator(f"#replay-{number} canvas").all():
+            page.evaluate(DRAWN)
+            assert canvas.evaluate(COLOURS) > 20
+    top = page.locator("#stage").bounding_box()
+    assert top is not None
+    assert abs(top["y"]) < 5
+
+
+def test_the_keyboard_is_enough(open_page: Open, hostile: str) -> None:
+    page = open_page(hostile, reduced_motion="reduce")
+    page.focus("a[href='#replay-1']")
     page.keyboard.press("Enter")
-    replay(page, 1)
-    page.keyboard.press("Space")  # the focus is on the head of the box
-    page.wait_for_selector("iframe", state="detached")
-    page.keyboard.press("Enter")
-    frame = replay(page, 0)
+    page.wait_for_selector("#replay-1:not([hidden])")
+    page.wait_for_selector("#play:focus")
+    page.keyboard.press("Space")
+    assert playing(page)
+    page.keyboard.press("Space")
     page.keyboard.press("Tab")
-    frame.wait_for_selector(":focus")  # a frame has a process of its own
     page.keyboard.press("Home")
-    frame.wait_for_selector("#clock:text('0.00 /')")
+    assert clock(page) == 0.0
+    canvas = "#replay-1 canvas"
+    page.focus(canvas)
+    drawn = checksum(page, canvas)
+    page.keyboard.press("+")
+    assert checksum(page, canvas) != drawn
+    page.keyboard.press("0")
+    assert checksum(page, canvas) == drawn
 
 
-def test_an_address_with_a_replay_opens_it(open_page: Open, repaired: str) -> None:
+def test_the_wheel_scrolls_the_page_until_a_picture_is_clicked(
+    open_page: Open, repaired: str
+) -> None:
+    page = open_page(repaired, reduced_motion="reduce")
+    drawn = checksum(page, "canvas")
+    page.hover("canvas")
+    page.mouse.wheel(0, 50)
+    page.wait_for_timeout(200)
+    assert page.evaluate("scrollY") > 0
+    assert checksum(page, "canvas") == drawn
+    page.click("canvas")
+    page.mouse.wheel(0, -50)
+    page.wait_for_timeout(200)
+    assert checksum(page, "canvas") != drawn
+    assert page.evaluate("scrollY") > 0
+
+
+def test_headings_are_in_order(open_page: Open, repaired: str) -> None:
     page = open_page(repaired)
-    page.evaluate("location.hash = '#replay-0'")
-    replay(page, 1)
-
-
-def test_a_replay_cannot_reach_the_page(open_page: Open, repaired: str) -> None:
-    page = open_page(repaired)
-    page.click("a[href='#replay-0']")
-    reach = "() => { try { return window.parent.document.title } catch (e) { return e.name } }"
-    assert replay(page, 0).evaluate(reach) == "SecurityError"
+    levels = page.eval_on_selector_all("h1, h2, h3", "all => all.map(each => each.localName)")
+    assert levels == ["h1", *["h2"] * 5]
 
 
 def test_hostile_names_are_shown_and_do_nothing(open_page: Open, hostile: str) -> None:
     page = open_page(hostile)
-    page.click("a[href='#replay-0']")
-    model = replay(page, 0)
     assert page.inner_text("h1").startswith("</script><img")
     assert "broken'}`" in page.title()
-    for frame in (page, model):
-        assert frame.locator("img").count() == 0
-    assert model.eval_on_selector("#scene", COLOURS) > 20
+    assert page.locator("img").count() == 0
+    assert page.eval_on_selector("canvas", COLOURS) > 20
 
 
-def test_without_scripts_everything_but_the_replays_is_there(
+def test_without_scripts_everything_but_the_replay_is_there(
     browser: Browser, repaired: str
 ) -> None:
     page = browser.new_page(java_script_enabled=False)
     page.set_content(repaired)
-    assert page.locator("noscript").inner_text().startswith("The replays need JavaScript")
+    assert page.locator("noscript").inner_text().startswith("The replay needs JavaScript")
+    assert not page.locator("canvas, #play").first.is_visible()
+    assert page.locator(".diagnosis").is_visible()
     assert page.locator("tbody tr").count() > 10
     page.close()
 
@@ -146,8 +211,9 @@ def test_dark_is_dark_and_light_is_light(open_page: Open, repaired: str) -> None
 
 def test_every_control_and_picture_has_a_name(open_page: Open, repaired: str) -> None:
     page = open_page(repaired)
-    unnamed = """() => [...document.querySelectorAll("a, summary, table, svg, iframe")].filter(e =>
-        !(e.ariaLabel || e.title || e.textContent?.trim())).length"""
+    unnamed = """() => [...document.querySelectorAll(
+        "a, summary, button, select, input, [tabindex], [role=img], section")].filter(e =>
+        !(e.ariaLabel || e.textContent?.trim())).length"""
     assert page.evaluate(unnamed) == 0
 
 
@@ -155,6 +221,7 @@ def test_drawings_are_not_stretched(open_page: Open, repaired: str, tmp_path: Pa
     page = open_page(repaired)
     for width in (360, 1240):
         page.set_viewport_size({"width": width, "height": 800})
+        page.eval_on_selector_all("details", "all => all.forEach(each => each.open = true)")
         page.screenshot(path=tmp_path / f"{width}.png", full_page=True)
         sizes = page.eval_on_selector_all(
             "svg",

@@ -1,36 +1,85 @@
-"use strict";
-(() => {
-  const read = (id) => JSON.parse(document.getElementById(id).textContent);
+// The page of an audit: the runs over one obstacle side by side, on one clock.
 
-  // A replay is made when its box is opened, and ends when that is closed.
-  const fill = (box) => {
-    for (const place of box.querySelectorAll("[data-replay]")) {
-      const [before, between, after] = read(place.dataset.replay);
-      const frame = document.createElement("iframe");
-      frame.title = place.dataset.title;
-      frame.sandbox = "allow-scripts";
-      frame.srcdoc = before + read("replay-style") + between + read("replay-script") + after;
-      place.replaceChildren(frame);
-    }
-  };
-  for (const box of document.querySelectorAll("details.replay")) {
-    box.addEventListener("toggle", () => {
-      if (box.open) fill(box);
-      else for (const place of box.querySelectorAll("[data-replay]")) place.replaceChildren();
+const made = new Map(); // the scenes of each obstacle that was looked at
+const player = new Player(draw);
+let scenes = [];
+let colors = readColors();
+
+// A run that is over stays as it ended.
+function draw(time) {
+  for (const scene of scenes) scene.draw(Math.min(time, scene.recording.end), colors);
+  element("scrub").value = String(time);
+  element("scrub").setAttribute("aria-valuetext", `${time.toFixed(1)} seconds`);
+  element("clock").textContent = `${time.toFixed(1)} / ${player.end.toFixed(1)} s`;
+}
+
+// Both pictures have one scale, and arrows of one length for one force.
+function scenesOf(number) {
+  const runs = JSON.parse(element(`runs-${number}`).textContent);
+  const extent = [0, 1, 2, 3].map((side) =>
+    Math[side % 2 ? "max" : "min"](...runs.map((run) => run.extent[side])));
+  const { length } = runs[0].robot;
+  const canvases = element(`replay-${number}`).querySelectorAll("canvas");
+  const both = runs.map((run, k) =>
+    new Scene(canvases[k], { ...run, extent, robot: { ...run.robot, length } }, new Recording(run)));
+  const { forceScale, speedScale } = both[0];
+  for (const scene of both) {
+    Object.assign(scene, { forceScale, speedScale });
+    const { canvas, camera } = scene;
+    const changed = () => player.changed();
+    watchPointer(canvas, camera, changed, true);
+    canvas.addEventListener("keydown", ({ key }) => {
+      if (key === "+" || key === "-") camera.zoom(key === "+" ? 1.25 : 0.8);
+      else if (key === "0") camera.reset();
+      changed();
     });
   }
+  return both;
+}
 
-  // The way to a replay opens it.
-  const follow = () => {
-    const target = document.getElementById(location.hash.slice(1));
-    if (!target?.matches("details.replay")) return;
-    target.open = true;
-    target.querySelector("summary").focus({ preventScroll: true });
-    target.scrollIntoView();
-  };
-  addEventListener("hashchange", follow);
+function resize() {
+  for (const { canvas, camera } of scenes) fit(canvas, camera);
+  player.changed();
+}
+
+// Shows an obstacle: it plays, or for those who want no motion stands as it ended.
+function choose(number) {
+  for (const each of document.querySelectorAll(".runs")) each.hidden = each.id !== `replay-${number}`;
+  element("obstacle").value = number;
+  if (!made.has(number)) made.set(number, scenesOf(number));
+  scenes = made.get(number);
+  player.time = player.end = Math.max(...scenes.map(({ recording }) => recording.end));
+  element("scrub").max = String(player.end);
+  // Slow robots are shown in a quarter of a minute, too.
+  const speeds = [...element("speed").options].map(({ value }) => Number(value));
+  element("speed").value = String(speeds.find((speed) => speed >= 1 && player.end / speed < 15) ?? 10);
+  player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  resize();
+}
+
+// The way to a replay shows it.
+function follow() {
+  const number = /^#replay-(\d+)$/.exec(location.hash)?.[1];
+  if (!number || !element(`runs-${number}`)) return false;
+  choose(number);
+  element("stage").scrollIntoView();
+  element("play").focus({ preventScroll: true });
+  return true;
+}
+
+function main() {
+  element("obstacle").addEventListener("change", (event) => choose(event.target.value));
+  element("scrub").addEventListener("input", (event) => player.seek(Number(event.target.value)));
   for (const link of document.querySelectorAll('a[href^="#replay-"]')) {
     link.addEventListener("click", () => setTimeout(follow));
   }
-  follow();
-})();
+  addEventListener("hashchange", follow);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    colors = readColors();
+    player.changed();
+  });
+  new ResizeObserver(resize).observe(element("stage"));
+  if (!follow()) choose("0");
+}
+
+if (element("runs-0")) main();

@@ -1,13 +1,15 @@
-"""The figures of an audited robot with their sources, its wheels, and what is not known of it."""
+"""Tables of an audit: figures of the robot with their sources, its wheels, how it was made."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from crawler2d import _core
 from crawler2d.audits import words
+from crawler2d.audits.call import command_of
 from crawler2d.audits.names import names_of
-from crawler2d.audits.page.grid import grid
 from crawler2d.common.markup import escaped
 from crawler2d.common.units import unit_of
 from crawler2d.parameters.paths import read_path
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
     from crawler2d.parameters.robot import Robot
 
-__all__ = ["field_name", "figures", "unknowns", "wheels"]
+__all__ = ["command", "field_name", "figures", "folded", "grid", "made", "unknowns", "wheels"]
 
 _STATED = (
     "mass",
@@ -37,6 +39,31 @@ _STATED = (
     "drivetrain.max_torque",
 )
 """Of a robot that was not read from a file, whose other fields are where it was made."""
+
+_LONG = re.compile(r"\d+\.\d{4,}")
+"""Numbers with more digits than are worth reading."""
+
+
+def grid(head: Sequence[str], rows: Iterable[Sequence[str]], *, label: str, look: str = "") -> str:
+    """Write a table whose first column names its rows; one that is too wide scrolls by itself.
+
+    The titles are text and the cells HTML; `label` says what it is, `look` is a class for the style
+    sheet.
+    """
+    titles = "".join(f'<th scope="col">{escaped(title)}</th>' for title in head)
+    body = "".join(
+        f'<tr><th scope="row">{first}</th>{"".join(f"<td>{cell}</td>" for cell in others)}</tr>'
+        for first, *others in rows
+    )
+    return (
+        f'<div class="scroll {look}" role="group" aria-label="{escaped(label)}" tabindex="0">'
+        f"<table><thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>"
+    )
+
+
+def folded(head: str, inside: str) -> str:
+    """Fold something away below a line of text."""
+    return f"<details><summary>{escaped(head)}</summary>{inside}</details>"
 
 
 def figures(audit: Audited) -> str:
@@ -143,3 +170,52 @@ def _value(robot: Robot, path: str) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(f'{each:.4g}' for each in value)}){after}"
     return f"{value:.4g}{after}" if isinstance(value, float) else f"{value}{after}"
+
+
+def made(audit: Audited) -> str:
+    """Write how the audit was made, and what differed from run to run."""
+    rows = [(escaped(name), escaped(value)) for name, value in _made(audit)]
+    measures = (
+        (escaped(name), escaped(_LONG.sub(lambda found: f"{float(found[0]):.4g}", str(each))))
+        for name, each in audit.obstacles.items()
+    )
+    head = ("obstacle", "measures [m], [rad]")
+    return (
+        folded(
+            "runs, drive, seed and versions", grid(("what", "how"), rows, label="how it was made")
+        )
+        + folded(
+            "what differed from run to run", unknowns(audit.vary, "what differed from run to run")
+        )
+        + folded("obstacles", grid(head, measures, label="obstacles"))
+    )
+
+
+def _made(audit: Audited) -> Iterator[tuple[str, str]]:
+    yield "runs behind the verdicts", f"{audit.table['outcome'].size}: {words.population(audit)}"
+    if audit.repaired is not None:
+        fresh = audit.repaired.table["outcome"].size
+        yield "runs that confirm repairs", f"{fresh}, with draws that nothing before has had"
+    yield "belt beside it", audit.belt.reason
+    yield "drive", str(audit.drive)
+    yield "seed of the draws", str(audit.call.seed)
+    if audit.reading is not None:
+        yield "file", f"{audit.reading.tree.file}, {audit.reading.tree.format}"
+        yield "rule of friction", f"that of {audit.reading.engine}"
+    build = _core.build_info()
+    yield "crawler2d", ", ".join(f"{name} {value}" for name, value in build.items())
+
+
+def command(audit: Audited) -> str:
+    """Write the command that makes the audit again, or else the call."""
+    call, read = audit.call, audit.reading
+    command = None if read is None else command_of(call, str(read.path))
+    if command is not None:
+        return command
+    arguments = ["robot" if read is None else repr(str(read.path))]
+    arguments += [f"{name}=..." for name in call.own]
+    arguments += [f"{name}={value!r}" for name, value in call.reading.items()]
+    arguments += [
+        f"{name}={getattr(call, name)}" for name in ("samples", "repeats", "seed", "repair")
+    ]
+    return f"crawler2d.audit({', '.join(arguments)}).to_html(path)"

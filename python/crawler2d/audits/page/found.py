@@ -1,24 +1,22 @@
-"""What an audit found, as parts of a page: lint, verdicts with their replays, repairs."""
+"""What an audit found, as parts of its page: the answer, lint, verdicts, repairs."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from crawler2d.audits import words
-from crawler2d.audits.page.figures import field_name
-from crawler2d.audits.page.grid import grid
-from crawler2d.audits.page.robot_drawn import robot_drawn
+from crawler2d.audits.page.drawn import robot_drawn
+from crawler2d.audits.page.figures import folded, grid
 from crawler2d.common.markup import escaped
-from crawler2d.common.units import unit_of
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
-    from crawler2d.audits.page.replayed import Replayed
+    from crawler2d.audits.finding import Finding
     from crawler2d.audits.repairs import Repair
 
-__all__ = ["lint", "repairs", "replays", "verdicts"]
-
+__all__ = ["answer", "best", "change", "lint", "repairs", "verdicts"]
 
 _JAMS = (
     "the last columns tell of the runs that seized: between which wheels most are jammed, and how"
@@ -29,95 +27,93 @@ _JAMS = (
 )
 
 
+def best(audit: Audited) -> Repair | None:
+    """Return the repair to show: by wheels, which a file can be given, before belts."""
+    return min(
+        audit.repairs, key=lambda each: (not each.confirmed, each.kind == "belt"), default=None
+    )
+
+
+def change(audit: Audited, repair: Repair) -> str:
+    """Say what a repair changes; why the belts are those that they are stands elsewhere."""
+    return repair.what.removesuffix(f" ({audit.belt.reason})")
+
+
+def answer(audit: Audited) -> str:
+    """Say in a sentence or two where the robot seizes, and what ends that."""
+    every, repair = audit.verdicts, best(audit)
+    judged = [each for each in every if each.word == "seizes"]
+    seized = judged or [each for each in every if each.where]
+    if not seized:
+        unsure = sum(each.word == "not certain" for each in every)
+        but = f"; {unsure} of them take more runs to be certain of" if unsure else ""
+        return (
+            f'<strong class="good">It seized in no run over {len(every)} obstacles</strong>{but}.'
+        )
+    worst = max(seized, key=lambda each: each.seized.rate)
+    said = f"It seizes on {len(seized)} of {len(every)} obstacles where a belt clears"
+    if not judged:
+        runs = f"in runs over {len(seized)} of {len(every)} obstacles"
+        said = f"By the rule it seizes nowhere, but {runs}"
+    wheels = " and ".join(worst.where.split("-"))
+    text = (
+        f'<strong class="{"bad" if judged else "warning"}">{said}</strong>'
+        f"{', most often on' if len(seized) > 1 else ':'} {escaped(worst.obstacle)}"
+        f" ({words.percent(worst.seized.rate)} of the runs), between wheels {wheels} of the"
+        f" {worst.carrier}."
+    )
+    if repair is None:
+        return text
+    if repair.confirmed:
+        what = escaped(change(audit, repair))
+        return f"{text} What ends that, confirmed in fresh runs: <strong>{what}</strong>."
+    return f"{text} No repair was confirmed."
+
+
 def lint(audit: Audited) -> str:
-    """List what lint found, errors first."""
+    """List what lint found: errors, and the rest folded."""
     if not audit.lint:
         return "<p>Nothing found.</p>"
+    errors = [each for each in audit.lint if each.severity == "error"]
+    others = [each for each in audit.lint if each.severity != "error"]
+    counts = Counter(each.severity for each in others)
+    head = ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())
+    return _findings(errors) + (folded(head, _findings(others)) if others else "")
+
+
+def _findings(found: Sequence[Finding]) -> str:
     rows = "".join(
         f'<li><strong class="{escaped(each.severity)}">{escaped(each.severity)}</strong>'
         f" <b>{escaped(each.rule)}</b>: {escaped(each.what)}"
         f"{f' <code>{escaped(each.where)}</code>' if each.where else ''}</li>"
-        for each in audit.lint
+        for each in found
     )
-    return f'<ul class="lint">{rows}</ul>'
+    return f'<ul class="lint">{rows}</ul>' if rows else ""
 
 
-def verdicts(audit: Audited, replayed: Sequence[Replayed]) -> str:
+def verdicts(audit: Audited, replays: Mapping[str, int]) -> str:
     """Write the verdicts, each with where it jams, what frees it, and the way to its replay."""
-    numbers = {each.verdict.obstacle: number for number, each in enumerate(replayed)}
-    head = (*words.VERDICT_HEAD, *words.JAM_HEAD[1:], "replay")
+    jams = any(each.where for each in audit.verdicts)
+    head = (*words.VERDICT_HEAD, *(words.JAM_HEAD[1:] if jams else ()))
     rows = []
     for each in audit.verdicts:
-        cells = [escaped(cell) for cell in words.verdict(each)]
+        name, *cells = (escaped(cell) for cell in words.verdict(each))
+        if each.obstacle in replays:
+            name = f'<a href="#replay-{replays[each.obstacle]}">{name}</a>'
         cells[-1] = f'<strong class="{_class(each.word)}">{cells[-1]}</strong>'
-        jam = words.jam(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
-        number = numbers.get(each.obstacle)
-        link = "" if number is None else f'<a href="#replay-{number}">replay</a>'
-        rows.append((*cells, *(escaped(cell) for cell in jam), link))
-    notes = [words.calls(audit), words.lost(audit)]
-    if numbers:
-        notes.insert(0, _JAMS)
-    below = "".join(f"<p>{escaped(note[0].upper() + note[1:])}.</p>" for note in notes if note)
-    short = (*words.VERDICT_HEAD, "runs", "slow to fast", "friction", "replay")
-    return grid(head, rows, label="verdicts", short=short) + below
-
-
-def replays(replayed: Sequence[Replayed]) -> str:
-    """Write a closed box for each replay, which the script of the page fills when it is opened."""
-    if not replayed:
-        return "<p>It seized in no run.</p>"
-    return "".join(_replay(number, each) for number, each in enumerate(replayed))
-
-
-def _replay(number: int, each: Replayed) -> str:
-    where = f"{each.verdict.where} of the {each.verdict.carrier}"
-    there, seized = each.verdict.there
-    draw = (
-        f"Sample {each.sample}, repeat {each.repeat} of the runs, counted from 0; {there} of"
-        f" {seized} seizures on this obstacle are there."
-        f"{_drawn('Of the robot and its floor', each.of_robot)}{_drawn('Of this run', each.of_run)}"
-    )
-    boxes = _box(number, "model", f"the model: {words.end(each.run)}")
-    if each.belt is not None:
-        title = f"the belt with the same draws: {words.end(each.belt)}"
-        boxes += _box(number, "belt", title)
-    return (
-        f'<details class="replay" id="replay-{number}"><summary>{escaped(each.verdict.obstacle)}:'
-        f" jammed between wheels {escaped(where)}</summary><p>{escaped(draw)}</p>"
-        f'<div class="pair">{boxes}</div></details>'
-    )
-
-
-def _drawn(of: str, values: Mapping[str, float]) -> str:
-    """Say which values a run has of what is not known, or of what differs from run to run."""
-    return f" {of}: {', '.join(map(_said, values.items()))}." if values else ""
-
-
-def _said(drawn: tuple[str, float]) -> str:
-    path, value = drawn
-    unit = unit_of(path)
-    number = f"{value:.0f}" if value.is_integer() else f"{value:.4g}"
-    return f"{field_name(path)} {number}{'' if unit in (None, '1') else f' {unit}'}"
-
-
-def _box(number: int, model: str, title: str) -> str:
-    data = f"replay-{number}-{model}"
-    return (
-        f'<section aria-label="{escaped(title)}"><h3>{escaped(title)}</h3>'
-        f'<div class="frame" data-replay="{data}" data-title="{escaped(title)}"></div></section>'
-    )
+        if jams:
+            jam = words.jam(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
+            cells += map(escaped, jam)
+        rows.append((name, *cells))
+    said = [each for each in words.conclusion(audit) if each != words.reservation(audit)]
+    notes = [*said, *map(_sentence, (words.calls(audit), words.lost(audit), _JAMS if jams else ""))]
+    below = "".join(f"<p>{escaped(note)}</p>" for note in notes if note)
+    table = grid(head, rows, label="verdicts", look="wide")
+    return table + folded("in words, and what the columns tell", below)
 
 
 def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
-    """Write the repairs: what came of each, the robot with it, and what changes in the file.
-
-    Parameters
-    ----------
-    audit : Audited
-        The audit.
-    diffs : mapping of str to str
-        Changes of the audited file as text, by `Repair.what`; a repair without one shows none.
-    """
+    """Write what came of each repair, the robot with it, and what of `diffs` it has, by `what`."""
     found = audit.repaired
     if found is None:
         asked = "It seizes nowhere by the rule." if not audit.seizes else "None were searched for."
@@ -147,24 +143,26 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
             )
         )
     said = [words.repairs_found(found, audit.vary), *map(words.hopeless, found.hopeless)]
-    text = "".join(f"<p>{escaped(line[0].upper() + line[1:])}.</p>" for line in said)
+    text = "".join(f"<p>{escaped(_sentence(line))}</p>" for line in said)
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
-    table = grid(head, rows, label="repairs", short=head[1:4])
-    return f'{text}{table}<div class="repairs">{drawn}</div>'
+    return (
+        f'{text}{grid(head, rows, label="repairs", look="many")}<div class="repairs">{drawn}</div>'
+    )
 
 
 def _picture(repair: Repair, diff: str | None) -> str:
-    picture = robot_drawn(repair.robot, f"the robot: {repair.what}", width=560.0, height=300.0)
+    picture = robot_drawn(repair.robot, f"the robot: {repair.what}", width=560.0, height=200.0)
     change = ""
     if diff is not None:
-        change = (
-            "<details><summary>what changes in the file</summary>"
-            f'<pre tabindex="0">{escaped(diff)}</pre></details>'
-        )
+        change = folded("what changes in the file", f'<pre tabindex="0">{escaped(diff)}</pre>')
     return (
         f'<figure class="robot">{picture}<figcaption>{escaped(repair.what)}</figcaption>{change}'
         "</figure>"
     )
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
 def _class(word: str) -> str:

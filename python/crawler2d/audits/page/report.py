@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING
 from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.page import found
-from crawler2d.audits.page.figures import figures, unknowns, wheels
-from crawler2d.audits.page.made import made
-from crawler2d.audits.page.pocket_drawn import pockets_drawn
-from crawler2d.audits.page.replayed import replayed
-from crawler2d.audits.page.robot_drawn import robot_drawn
+from crawler2d.audits.page.drawn import pockets_drawn, robot_drawn
+from crawler2d.audits.page.figures import command, figures, folded, made, unknowns, wheels
+from crawler2d.audits.page.replayed import replay, replayed
 from crawler2d.common.markup import escaped
 from crawler2d.pictures.page.parts import (
     as_json,
     page_template,
     policy,
     read_part,
-    replay_script,
     replay_style,
+    scene_script,
 )
-from crawler2d.pictures.page.replay import replay_pieces
+from crawler2d.pictures.page.recording import recording
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
@@ -32,110 +30,87 @@ if TYPE_CHECKING:
 __all__ = ["audit_page"]
 
 _HERE = "crawler2d.audits.page"
+_MOST = 300
+"""Samples of a run in the page: those of slow and of long runs are farther apart."""
 
 
 def audit_page(
     audit: Audited, diffs: Mapping[str, str] | None = None, *, threads: int | None = None
 ) -> str:
-    """Write the page of an audit; see `Audit.to_html`.
-
-    Parameters
-    ----------
-    audit : Audited
-        The audit.
-    diffs : mapping of str to str, optional
-        Changes of the audited file as text, by `Repair.what`.
-    threads : int, optional
-        For the runs that are replayed; see `simulate_many`.
-
-    Returns
-    -------
-    str
-        The page.
-    """
+    """Write the page of an audit, with `diffs` by `Repair.what`; see `Audit.to_html`."""
     runs = replayed(audit, threads=threads)
-    style = read_part("page.css") + read_part("audit.css", _HERE)
-    script = read_part("audit.js", _HERE)
-    read = audit.reading
-    shapes = () if read is None else read.silhouettes
+    style = replay_style() + read_part("audit.css", _HERE)
+    script = scene_script(read_part("audit.js", _HERE))
     # One pass, so that a name of the file stays text even if it looks like a placeholder.
     return Template(page_template("audit.html", _HERE)).substitute(
         title=escaped(f"{audit.robot.name}: audit"),
-        subject=escaped(words.subject(audit)),
-        badge=_badge(audit),
-        conclusion=escaped(" ".join(_conclusion(audit))),
-        sentence=escaped(words.robot_sentence(audit)),
-        robot=robot_drawn(audit.robot, "side view of the robot", shapes),
-        legend=_legend(audit),
-        figures=figures(audit),
-        wheels=wheels(audit),
-        unknown=unknowns(audit.unknown, "what is not known"),
-        notes="" if read is None else _listed(read.notes),
-        lint=found.lint(audit),
-        pockets=pockets_drawn(audit.robot, audit.pockets),
+        name=escaped(audit.robot.name),
+        subject=escaped(words.subject(audit).removeprefix(f"{audit.robot.name}: ")),
+        reservation=_reservation(audit),
+        answer=found.answer(audit),
+        options=_options(runs),
+        replays="".join(replay(audit, each, number) for number, each in enumerate(runs)),
+        verdicts=found.verdicts(
+            audit, {each.place.verdict.obstacle: number for number, each in enumerate(runs)}
+        ),
         population=escaped(words.population(audit)),
         belt=escaped(audit.belt.reason),
-        verdicts=found.verdicts(audit, runs),
-        replays=found.replays(runs),
+        lint=found.lint(audit),
         repairs=found.repairs(audit, diffs or {}),
+        robot=_robot(audit),
+        command=escaped(command(audit)),
         made=made(audit),
         version=escaped(str(_core.build_info()["version"])),
         style=style,
         script=script,
-        style_hashes=policy(style, replay_style()),
-        script_hashes=policy(script, replay_script()),
-        data=_data(runs),
+        style_hashes=policy(style),
+        script_hashes=policy(script),
+        data="\n".join(
+            f'<script type="application/json" id="runs-{number}">'
+            f"{as_json([recording(run, most=_MOST) for run in each.runs])}</script>"
+            for number, each in enumerate(runs)
+        ),
     )
 
 
-def _conclusion(audit: Audited) -> list[str]:
-    """Return the sentences of the conclusion, with the least changed repair that is confirmed."""
-    sentences = words.conclusion(audit)
-    confirmed = [each for each in audit.repairs if each.confirmed]
-    if audit.repaired is not None:
-        sentences.append(f"Repairs: {words.repairs_found(audit.repaired, audit.vary)}.")
-    if confirmed:
-        text = words.repair_sentence(confirmed[0])
-        sentences.append(f"{text[0].upper()}{text[1:]}.")
-    return sentences
+def _reservation(audit: Audited) -> str:
+    text = words.reservation(audit)
+    return f'<p class="reservation">{escaped(text)}</p>' if text else ""
 
 
-def _badge(audit: Audited) -> str:
-    if audit.seizes:
-        return "<li>seizes where the belt clears</li>"
-    is_sure = all(each.word != "not certain" for each in audit.verdicts)
-    look = "cleared" if is_sure else "timed-out"
-    return f'<li class="{look}">not found to seize where the belt clears</li>'
+def _options(runs: Sequence[Replayed]) -> str:
+    """List the obstacles that can be replayed."""
+    return "".join(
+        f'<option value="{number}">{escaped(place.verdict.obstacle)}:'
+        f" {words.percent(place.verdict.seized.rate)} seized</option>"
+        for number, (place, *_) in enumerate(runs)
+    )
 
 
-def _legend(audit: Audited) -> str:
+def _robot(audit: Audited) -> str:
+    """Draw the robot over the shapes of its file; its figures are folded."""
+    read = audit.reading
+    shapes = () if read is None else read.silhouettes
     drawn = (
         '<span class="swatch belly"></span> belly; + centre of mass. Wheels have the numbers that'
         " verdicts and replays name, those of the left side."
     )
-    if audit.reading is None:
-        return drawn
-    return (
-        '<span class="swatch collision"></span> collision shapes of the file, all joints at zero;'
-        f' <span class="swatch"></span> the robot that was read from them; {drawn}'
-    )
-
-
-def _listed(notes: Sequence[str]) -> str:
-    items = "".join(f"<li>{escaped(note)}</li>" for note in notes)
-    return f"<h3>Decided while reading</h3><ul>{items}</ul>" if notes else ""
-
-
-def _data(runs: Sequence[Replayed]) -> str:
-    """Write the replays as inert text: each without the style and script that all have."""
-    parts: dict[str, object] = {}
-    if runs:
-        parts = {"replay-style": replay_style(), "replay-script": replay_script()}
-    for number, each in enumerate(runs):
-        parts[f"replay-{number}-model"] = replay_pieces(each.run)
-        if each.belt is not None:
-            parts[f"replay-{number}-belt"] = replay_pieces(each.belt)
-    return "\n".join(
-        f'<script type="application/json" id="{name}">{as_json(part)}</script>'
-        for name, part in parts.items()
-    )
+    if read is not None:
+        drawn = (
+            '<span class="swatch collision"></span> collision shapes of the file, all joints at'
+            f' zero; <span class="swatch"></span> the robot that was read from them; {drawn}'
+        )
+    picture = robot_drawn(audit.robot, "side view of the robot", shapes)
+    parts = [
+        f'<figure class="robot">{picture}<figcaption>{drawn}</figcaption></figure>',
+        folded("wheels by number", wheels(audit)),
+        folded("pockets and slots between wheels", pockets_drawn(audit.robot, audit.pockets)),
+        folded("figures" if read is None else "figures with their sources", figures(audit)),
+        folded(
+            "not known, and drawn for every sample", unknowns(audit.unknown, "what is not known")
+        ),
+    ]
+    if read is not None and read.notes:
+        notes = "".join(f"<li>{escaped(note)}</li>" for note in read.notes)
+        parts.append(folded("decided while reading", f"<ul>{notes}</ul>"))
+    return f"<p>{escaped(words.robot_sentence(audit))}</p>{''.join(parts)}"

@@ -1,4 +1,4 @@
-// Marks of both pictures, in pixels: arrows, diamonds, labels, and round numbers.
+// Marks of both pictures, in pixels: arrows, diamonds, labels, and round numbers; their colours.
 
 // [px] Arrow lengths of a typical large force and slip velocity; arrows are clipped at LONGEST times that.
 const FORCE_LENGTH = 110;
@@ -69,4 +69,17 @@ function label(ctx, text, x, y, color, halo, width) {
   ctx.strokeText(text, left, y);
   ctx.fillStyle = color;
   ctx.fillText(text, left, y);
+}
+
+// The colours of the style sheet, their names in camel case.
+function readColors() {
+  const style = getComputedStyle(document.documentElement);
+  const names = [
+    "ink", "quiet", "line", "ground", "ground-line", "grid", "track", "track-fill", "chassis",
+    "chassis-fill", "halo", "force", "speed", "intrusion", "intrusion-fill", "stop", "stop-fill",
+    "goal", "angle",
+  ];
+  const camel = (name) => name.replace(/-(.)/g, (_, letter) => letter.toUpperCase());
+  const value = (name) => style.getPropertyValue(`--${name}`).trim();
+  return Object.fromEntries(names.map((name) => [camel(name), value(name)]));
 }

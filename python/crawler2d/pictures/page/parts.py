@@ -8,12 +8,12 @@ import json
 from importlib.resources import files
 from typing import Any
 
-__all__ = ["as_json", "page_template", "policy", "read_part", "replay_script", "replay_style"]
+__all__ = ["as_json", "page_template", "policy", "read_part", "replay_style", "scene_script"]
 
 _HERE = "crawler2d.pictures.page"
 
-# Joined into one script; each part uses only those before it.
-_SCRIPTS = (
+# What draws a run from the side; each part uses only those before it.
+_SCENE = (
     "data.js",
     "camera.js",
     "marks.js",
@@ -21,9 +21,8 @@ _SCRIPTS = (
     "robot.js",
     "lane.js",
     "scene.js",
-    "strip.js",
     "pointer.js",
-    "replay.js",
+    "player.js",
 )
 
 # Escaped as \u sequences, these mean the same in JSON and nothing in HTML.
@@ -40,9 +39,9 @@ def replay_style() -> str:
     return read_part("page.css") + read_part("replay.css")
 
 
-def replay_script() -> str:
-    """Return the script of a replay."""
-    return '"use strict";\n(() => {\n' + "\n".join(map(read_part, _SCRIPTS)) + "})();\n"
+def scene_script(*parts: str) -> str:
+    """Join what draws a run from the side and what a page does with that into one script."""
+    return '"use strict";\n(() => {\n' + "\n".join([*map(read_part, _SCENE), *parts]) + "})();\n"
 
 
 def page_template(name: str, package: str = _HERE) -> str:
@@ -50,10 +49,10 @@ def page_template(name: str, package: str = _HERE) -> str:
     return read_part("head.html") + read_part(name, package)
 
 
-def policy(*texts: str) -> str:
-    """Name scripts, or styles, for the security policy of a page."""
-    hashes = (hashlib.sha256(text.encode()).digest() for text in texts)
-    return " ".join(f"'sha256-{base64.b64encode(each).decode('ascii')}'" for each in hashes)
+def policy(text: str) -> str:
+    """Name a script, or a style, for the security policy of a page."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
 def as_json(data: Any) -> str:

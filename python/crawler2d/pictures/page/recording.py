@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST_FRAMES", "recording"]
 
 MOST_FRAMES = 3000
-"""Largest number of samples in a page, give or take the last one; longer runs are thinned."""
+"""Samples in the page of a run, give or take the last one."""
 
 # Finer than a pixel at any sensible zoom, coarse enough for 16 bits in a typical run.
 _LENGTH, _ANGLE, _TIME = 1e-5, 1e-4, 1e-4
@@ -32,7 +32,7 @@ _SPEED = 1e-4
 _ARROW = 1e-2
 
 
-def recording(run: Record, time: float | None = None) -> dict[str, Any]:
+def recording(run: Record, time: float | None = None, *, most: int = MOST_FRAMES) -> dict[str, Any]:
     """Collect the data that the page of a run draws.
 
     Parameters
@@ -41,6 +41,8 @@ def recording(run: Record, time: float | None = None) -> dict[str, Any]:
         A run with history.
     time : float, optional
         [s] Instant to open at; None takes the end if the run ended in a stop, else the start.
+    most : int
+        Largest number of samples, give or take the last one; longer runs are thinned.
 
     Returns
     -------
@@ -48,7 +50,7 @@ def recording(run: Record, time: float | None = None) -> dict[str, Any]:
         Plain data without non-finite numbers; arrays in the form of `packed`.
     """
     count = run.time.size
-    every = max(1, math.ceil(count / MOST_FRAMES))
+    every = max(1, math.ceil(count / most))
     kept = np.unique(np.append(np.arange(0, count, every), count - 1))
     if time is None:
         stops = run.events["end"][run.events["kind"] == "stop"]

@@ -2,53 +2,26 @@
 
 const data = JSON.parse(document.getElementById("recording").textContent);
 const recording = new Recording(data);
-const element = (id) => document.getElementById(id);
 const scene = new Scene(element("scene"), data, recording);
 const strip = new Strip(element("strip"), recording);
 const { camera } = scene;
 const embedded = window.self !== window.top;
-const state = { time: recording.time[data.first], playing: false, drawn: 0, queued: false };
+const player = new Player(draw, (time) => recording.time[recording.nearestFrame(time)]);
+const changed = () => player.changed();
 let colors = readColors();
 
-// The colours of the style sheet, their names in camel case.
-function readColors() {
-  const style = getComputedStyle(document.documentElement);
-  const names = [
-    "ink", "quiet", "line", "ground", "ground-line", "grid", "track", "track-fill", "chassis",
-    "chassis-fill", "halo", "force", "speed", "intrusion", "intrusion-fill", "stop", "stop-fill",
-    "goal", "angle",
-  ];
-  const camel = (name) => name.replace(/-(.)/g, (_, letter) => letter.toUpperCase());
-  const value = (name) => style.getPropertyValue(`--${name}`).trim();
-  return Object.fromEntries(names.map((name) => [camel(name), value(name)]));
+function draw(time) {
+  scene.draw(time, colors);
+  strip.draw(time, colors);
+  tell(time);
 }
 
-function changed() {
-  if (state.queued) return;
-  state.queued = true;
-  requestAnimationFrame(draw);
-}
-
-function draw(now) {
-  state.queued = false;
-  if (state.playing) {
-    const passed = Math.max(0, now - state.drawn) / 1000;
-    state.drawn = now;
-    state.time = Math.min(recording.end, state.time + passed * Number(element("speed").value));
-    if (state.time >= recording.end) play(false);
-    else changed();
-  }
-  scene.draw(state.time, colors);
-  strip.draw(state.time, colors);
-  tell();
-}
-
-function tell() {
-  const moment = recording.at(state.time);
-  const seconds = state.time.toFixed(2);
+function tell(time) {
+  const moment = recording.at(time);
+  const seconds = time.toFixed(2);
   const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const degrees = (moment.angle * 180) / Math.PI;
-  element("scrub").value = String(recording.nearestFrame(state.time));
+  element("scrub").value = String(recording.nearestFrame(time));
   element("scrub").setAttribute("aria-valuetext", `${seconds} seconds`);
   element("clock").textContent = `${seconds} / ${recording.end.toFixed(2)} s`;
   element("readout").textContent =
@@ -56,44 +29,19 @@ function tell() {
     `track ${shown(moment.speed, 2)} m/s`;
 }
 
-function play(on) {
-  state.playing = on;
-  if (on) {
-    if (state.time >= recording.end) state.time = recording.begin;
-    state.drawn = performance.now();
-  } else state.time = recording.time[recording.nearestFrame(state.time)]; // snap to a recorded sample
-  element("play").setAttribute("aria-label", on ? "pause" : "play");
-  element("play-shape").setAttribute("d", on ? "M3 2.5h3.6v11H3zM9.4 2.5H13v11H9.4z" : "M4 2.5v11l9-5.5z");
-  changed();
-}
-
 // Goes to a frame and pauses there.
 function seek(frame) {
-  state.time = recording.time[Math.max(0, Math.min(recording.count - 1, frame))];
-  if (state.playing) play(false);
-  changed();
+  player.seek(recording.time[Math.max(0, Math.min(recording.count - 1, frame))]);
 }
 
 function follow(on) {
   element("follow").checked = on;
-  camera.follow(on, recording.at(state.time));
+  camera.follow(on, recording.at(player.time));
   changed();
 }
 
 function reset() {
   camera.reset();
-  changed();
-}
-
-function fit() {
-  const ratio = window.devicePixelRatio || 1;
-  for (const part of [camera, strip]) {
-    const canvas = part === camera ? scene.canvas : strip.canvas;
-    const { clientWidth, clientHeight } = canvas;
-    canvas.width = Math.max(1, Math.round(clientWidth * ratio));
-    canvas.height = Math.max(1, Math.round(clientHeight * ratio));
-    part.resize(Math.max(1, clientWidth), Math.max(1, clientHeight));
-  }
   changed();
 }
 
@@ -125,10 +73,10 @@ function press(event) {
   const on = event.target;
   const slides = on === element("scrub");
   if (!slides && on.matches?.("button, select, summary, input") && !"fF0+-".includes(event.key)) return;
-  const frame = recording.nearestFrame(state.time);
+  const frame = recording.nearestFrame(player.time);
   const step = event.shiftKey ? 10 : 1;
   const actions = {
-    " ": () => event.repeat || play(!state.playing),
+    " ": () => event.repeat || player.play(!player.playing),
     ArrowLeft: () => seek(frame - step),
     ArrowRight: () => seek(frame + step),
     Home: () => seek(0),
@@ -148,9 +96,9 @@ function press(event) {
 }
 
 function main() {
+  Object.assign(player, { time: recording.time[data.first], begin: recording.begin, end: recording.end });
   element("scrub").max = String(recording.count - 1);
   element("follow").checked = camera.follows;
-  element("play").addEventListener("click", () => play(!state.playing));
   element("scrub").addEventListener("input", (event) => seek(Number(event.target.value)));
   element("follow").addEventListener("change", (event) => follow(event.target.checked));
   element("reset").addEventListener("click", reset);
@@ -185,8 +133,13 @@ function main() {
     colors = readColors();
     changed();
   });
-  new ResizeObserver(fit).observe(scene.canvas);
-  fit();
+  const resize = () => {
+    fit(scene.canvas, camera);
+    fit(strip.canvas, strip);
+    changed();
+  };
+  new ResizeObserver(resize).observe(scene.canvas);
+  resize();
 }
 
 main();

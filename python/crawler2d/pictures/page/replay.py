@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import re
 from string import Template
 from typing import TYPE_CHECKING
 
@@ -14,8 +13,9 @@ from crawler2d.pictures.page.parts import (
     as_json,
     page_template,
     policy,
-    replay_script,
+    read_part,
     replay_style,
+    scene_script,
 )
 from crawler2d.pictures.page.recording import recording
 from crawler2d.pictures.page.words import all_figures, figures, sentence, verdict
@@ -24,32 +24,12 @@ if TYPE_CHECKING:
     from crawler2d.results.findings import Mechanism
     from crawler2d.results.record import Record
 
-__all__ = ["replay_page", "replay_pieces"]
-
-# Where its style and its script go, which are the same in every page.
-_SAME = re.compile(r"\$(?:style|script)(?!\w)")
+__all__ = ["replay_page"]
 
 
 def replay_page(run: Record, time: float | None = None) -> str:
     """Write the page of a run; see `Run.to_html`."""
-    before, between, after = replay_pieces(run, time)
-    return f"{before}{replay_style()}{between}{replay_script()}{after}"
-
-
-def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str]:
-    """Write the page of a run without what all such pages have.
-
-    Parameters
-    ----------
-    run, time
-        See `Run.to_html`.
-
-    Returns
-    -------
-    tuple of 3 str
-        What stands before the style, between that and the script, and after the script; see
-        `replay_style` and `replay_script`.
-    """
+    style, script = replay_style(), scene_script(read_part("strip.js"), read_part("replay.js"))
     data = recording(run, time)
     title = run.title
     subject, _, ending = title.rpartition(": ")
@@ -70,15 +50,14 @@ def replay_pieces(run: Record, time: float | None = None) -> tuple[str, str, str
         "all_figures": _listed(all_figures(run)),
         "version": escaped(str(_core.build_info()["version"])),
         "identity": run.scenario.identity[:16],
-        "style_hashes": policy(replay_style()),
-        "script_hashes": policy(replay_script()),
+        "style": style,
+        "script": script,
+        "style_hashes": policy(style),
+        "script_hashes": policy(script),
         "data": as_json(data),
     }
     # One pass, so that a robot's name stays text even if it looks like a placeholder.
-    before, between, after = (
-        Template(piece).substitute(values) for piece in _SAME.split(page_template("page.html"))
-    )
-    return before, between, after
+    return Template(page_template("page.html")).substitute(values)
 
 
 def _thinned(every: int, samples: int) -> str:
