@@ -216,7 +216,7 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
 
 
 def test_what_is_not_known_is_there_with_its_range(of_file: c2d.Audit, file_page: Page) -> None:
-    rows = file_page.rows("what is not known")
+    rows = file_page.rows("not known, and drawn for every sample")
     assert [row[1] for row in rows] == [
         words.range_of(path, each) for path, each in of_file.unknown.items()
     ]
@@ -347,8 +347,22 @@ def test_a_repair_that_seizes_in_the_very_run_is_said_to(found: c2d.Audit) -> No
     repaired = found.repaired._replace(repairs=(same,))
     page = Page(dataclasses.replace(found, repaired=repaired).to_html())
     ((_, told),) = page.all("p", **{"class": "diagnosis"})
-    assert told.endswith("In this very run the other one seizes, too.")
+    assert told.endswith("In this very run the robot beside it seizes, too.")
     assert answer(page).endswith("No repair was confirmed.")
+
+
+def test_a_repair_that_breaks_a_rule_with_the_draws_leaves_the_robot_alone(
+    found: c2d.Audit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert found.repaired is not None
+    broken = found.robot.with_track(c2d.LineOfWheels(300, wheel_radius=0.0608))
+    repair = dataclasses.replace(found.repairs[0], robot=broken)
+    repaired = found.repaired._replace(repairs=(repair,))
+    # It breaks the rule without the draws, too, and cannot be drawn.
+    monkeypatch.setattr("crawler2d.audits.page.found.robot_drawn", lambda *_, **__: "")
+    page = Page(dataclasses.replace(found, repaired=repaired).to_html())
+    assert any("no result: " in text and "track.count" in text for _, text in page.all("p"))
+    assert len(list(page.all("canvas"))) == len(page.data("runs-0")) == 1
 
 
 def test_the_page_has_the_records_of_its_runs_thinned(

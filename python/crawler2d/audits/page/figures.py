@@ -66,13 +66,19 @@ def folded(head: str, inside: str) -> str:
     return f"<details><summary>{escaped(head)}</summary>{inside}</details>"
 
 
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> str:
+    """Fold a table away below its name; cells are text."""
+    cells = [[escaped(cell) for cell in row] for row in rows]
+    return folded(label, grid(head, cells, label=label) if rows else "<p>None.</p>")
+
+
 def figures(audit: Audited) -> str:
     """Write every figure with its source; of a robot without a file those that matter."""
     read, robot = audit.reading, audit.robot
     if read is None:
         paths = [f"robot.{path}" for path in _STATED if _has(robot, path)]
-        rows = [(escaped(field_name(path)), escaped(_value(robot, path))) for path in paths]
-        return grid(("figure", "value"), rows, label="figures of the robot")
+        rows = [(field_name(path), _value(robot, path)) for path in paths]
+        return _table(("figure", "value"), rows, "figures of the robot")
     sourced = [
         (
             escaped(field_name(path)),
@@ -81,23 +87,18 @@ def figures(audit: Audited) -> str:
         )
         for path, source in read.sources.items()
     ]
-    return grid(("figure", "value", "source"), sourced, label="figures with their sources")
+    label = "figures with their sources"
+    return folded(label, grid(("figure", "value", "source"), sourced, label=label))
 
 
 def unknowns(ranges: Mapping[str, Any], label: str) -> str:
     """Write over which ranges something was drawn, and where these come from."""
-    if not ranges:
-        return "<p>Nothing.</p>"
     sources = ranges.sources if isinstance(ranges, Ranges) else {}
     rows = [
-        (
-            escaped(field_name(path)),
-            escaped(words.range_of(path, each)),
-            escaped(sources.get(path, "")),
-        )
+        (field_name(path), words.range_of(path, each), sources.get(path, ""))
         for path, each in ranges.items()
     ]
-    return grid(("field", "range", "source of the range"), rows, label=label)
+    return _table(("field", "range", "source of the range"), rows, label)
 
 
 def wheels(audit: Audited) -> str:
@@ -108,20 +109,15 @@ def wheels(audit: Audited) -> str:
     lines: dict[str, int] = {}
     if read is not None:
         lines = dict(zip(read.wheels["name"].tolist(), read.wheels["line"].tolist(), strict=True))
-
-    def rows() -> Iterator[tuple[str, ...]]:
-        columns = (table[key][left].tolist() for key in ("body", "carrier", "x", "y", "radius"))
-        for body, carrier, x, y, radius in zip(*columns, strict=True):
-            name = names.get(int(body), "")
-            where = f"{read.tree.file}:{lines[name]}" if read is not None and name else ""
-            place = f"({1e3 * x:.1f}, {1e3 * y:.1f})"
-            cells = (str(body), carrier, place, f"{1e3 * radius:.1f}", name, where)
-            yield tuple(escaped(cell) for cell in cells)
-
-    if not left.any():
-        return "<p>None: it runs on belts or skids.</p>"
+    rows = []
+    columns = (table[key][left].tolist() for key in ("body", "carrier", "x", "y", "radius"))
+    for body, carrier, x, y, radius in zip(*columns, strict=True):
+        name = names.get(int(body), "")
+        where = f"{read.tree.file}:{lines[name]}" if read is not None and name else ""
+        place = f"({1e3 * x:.1f}, {1e3 * y:.1f})"
+        rows.append((str(body), carrier, place, f"{1e3 * radius:.1f}", name, where))
     head = ("number", "carrier", "x, y [mm]", "radius [mm]", "in the file", "line")
-    return grid(head, rows(), label="wheels of the left side")
+    return _table(head, rows, "wheels of the left side")
 
 
 _NAMES = {
@@ -174,20 +170,14 @@ def _value(robot: Robot, path: str) -> str:
 
 def made(audit: Audited) -> str:
     """Write how the audit was made, and what differed from run to run."""
-    rows = [(escaped(name), escaped(value)) for name, value in _made(audit)]
-    measures = (
-        (escaped(name), escaped(_LONG.sub(lambda found: f"{float(found[0]):.4g}", str(each))))
+    measures = [
+        (name, _LONG.sub(lambda found: f"{float(found[0]):.4g}", str(each)))
         for name, each in audit.obstacles.items()
-    )
-    head = ("obstacle", "measures [m], [rad]")
+    ]
     return (
-        folded(
-            "runs, drive, seed and versions", grid(("what", "how"), rows, label="how it was made")
-        )
-        + folded(
-            "what differed from run to run", unknowns(audit.vary, "what differed from run to run")
-        )
-        + folded("obstacles", grid(head, measures, label="obstacles"))
+        _table(("what", "how"), list(_made(audit)), "how it was made")
+        + unknowns(audit.vary, "what differed from run to run")
+        + _table(("obstacle", "measures [m], [rad]"), measures, "obstacles")
     )
 
 

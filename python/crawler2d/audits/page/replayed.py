@@ -76,7 +76,13 @@ def replayed(audit: Audited, *, threads: int | None = None) -> list[Replayed]:
         # What the core doubts is in the lint.
         warnings.simplefilter("ignore", ScenarioWarning)
         flat = [scenario for pair in scenarios for scenario in pair]
-        made = simulate_many(flat, threads=threads, sample_interval=_INTERVAL, trials=TRIED)
+        made = simulate_many(
+            flat,
+            threads=threads,
+            sample_interval=_INTERVAL,
+            trials=TRIED,
+            on_error="record",  # what is beside the robot may break a rule with these draws
+        )
     runs = iter(made)
     return [
         Replayed(place, [next(runs) for _ in pair], name)
@@ -144,6 +150,8 @@ def replay(audit: Audited, each: Replayed, number: int) -> str:
 
 
 def _figure(name: str, run: Run) -> str:
+    if run.error is not None:
+        return f"<p><b>{escaped(name)}</b> no result: {escaped(str(run.error))}</p>"
     end = f"{words.end(run)} after {run.metrics['time']:.1f} s"
     look = {"seized": "bad", "cleared": "good"}.get(words.end(run), "quiet")
     return (
@@ -164,7 +172,7 @@ def _told(audit: Audited, each: Replayed) -> str:
     if not seized:
         said = f"It seized in no run; this is the one that came closest. {said}"
     if any(other.outcome == Outcome.SEIZED for other in others):
-        said += " In this very run the other one seizes, too."
+        said += " In this very run the robot beside it seizes, too."
     draws = (
         f"Sample {place.sample}, repeat {place.repeat} of the runs, counted from 0{among}. Drawn"
         f" for it: {', '.join(_drawn(audit, place)) or 'nothing'}."

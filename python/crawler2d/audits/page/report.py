@@ -65,11 +65,7 @@ def audit_page(
         script=script,
         style_hashes=policy(style),
         script_hashes=policy(script),
-        data="\n".join(
-            f'<script type="application/json" id="runs-{number}">'
-            f"{as_json([recording(run, most=_MOST) for run in each.runs])}</script>"
-            for number, each in enumerate(runs)
-        ),
+        data="\n".join(_data(each, number) for number, each in enumerate(runs)),
     )
 
 
@@ -85,6 +81,12 @@ def _options(runs: Sequence[Replayed]) -> str:
         f" {words.percent(place.verdict.seized.rate)} seized</option>"
         for number, (place, *_) in enumerate(runs)
     )
+
+
+def _data(each: Replayed, number: int) -> str:
+    """Write what is drawn of runs as inert text."""
+    shown = [recording(run, most=_MOST) for run in each.runs if run.error is None]
+    return f'<script type="application/json" id="runs-{number}">{as_json(shown)}</script>'
 
 
 def _robot(audit: Audited) -> str:
@@ -103,12 +105,10 @@ def _robot(audit: Audited) -> str:
     picture = robot_drawn(audit.robot, "side view of the robot", shapes)
     parts = [
         f'<figure class="robot">{picture}<figcaption>{drawn}</figcaption></figure>',
-        folded("wheels by number", wheels(audit)),
+        wheels(audit),
         folded("pockets and slots between wheels", pockets_drawn(audit.robot, audit.pockets)),
-        folded("figures" if read is None else "figures with their sources", figures(audit)),
-        folded(
-            "not known, and drawn for every sample", unknowns(audit.unknown, "what is not known")
-        ),
+        figures(audit),
+        unknowns(audit.unknown, "not known, and drawn for every sample"),
     ]
     if read is not None and read.notes:
         notes = "".join(f"<li>{escaped(note)}</li>" for note in read.notes)
