@@ -7,25 +7,30 @@ let colors = readColors();
 
 // A run that is over stays as it ended.
 function draw(time) {
-  for (const scene of scenes) scene.draw(Math.min(time, scene.recording.end), colors);
+  for (const scene of scenes) scene.draw(Math.min(time, scene.end), colors);
   element("scrub").value = String(time);
   element("scrub").setAttribute("aria-valuetext", `${time.toFixed(1)} seconds`);
   element("clock").textContent = `${time.toFixed(1)} / ${player.end.toFixed(1)} s`;
 }
 
-// Both pictures have one scale, and arrows of one length for one force.
+// Both pictures show the same place, in which the second robot gets past the goal and is over; arrows
+// have one length for one force.
 function scenesOf(number) {
   const runs = JSON.parse(element(`runs-${number}`).textContent);
+  const [{ robot: { length }, ground: { goal } }] = runs;
+  const past = goal === null ? Infinity : goal + length;
   const extent = [0, 1, 2, 3].map((side) =>
     Math[side % 2 ? "max" : "min"](...runs.map((run) => run.extent[side])));
-  const { length } = runs[0].robot;
+  extent[1] = Math.min(extent[1], Math.max(runs[0].extent[1], past + length / 2));
   const canvases = element(`replay-${number}`).querySelectorAll("canvas");
   const both = runs.map((run, k) =>
     new Scene(canvases[k], { ...run, extent, robot: { ...run.robot, length } }, new Recording(run)));
   const { forceScale, speedScale } = both[0];
   for (const scene of both) {
-    Object.assign(scene, { forceScale, speedScale });
-    const { canvas, camera } = scene;
+    const { canvas, camera, recording } = scene;
+    const last = recording.x.findIndex((x) => x > past);
+    const end = last > 0 ? recording.time[last] : recording.end;
+    Object.assign(scene, { end, forceScale, speedScale });
     const changed = () => player.changed();
     watchPointer(canvas, camera, changed, true);
     canvas.addEventListener("keydown", ({ key }) => {
@@ -48,7 +53,7 @@ function choose(number) {
   element("obstacle").value = number;
   if (!made.has(number)) made.set(number, scenesOf(number));
   scenes = made.get(number);
-  player.time = player.end = Math.max(...scenes.map(({ recording }) => recording.end));
+  player.time = player.end = Math.max(...scenes.map(({ end }) => end));
   element("scrub").max = String(player.end);
   // Slow robots are shown in a quarter of a minute, too.
   const speeds = [...element("speed").options].map(({ value }) => Number(value));
