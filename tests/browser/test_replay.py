@@ -1,5 +1,7 @@
 """The page of a run in a real browser: it opens, plays, and does what its controls say."""
 
+import json
+import re
 from typing import Any
 
 import numpy as np
@@ -353,3 +355,29 @@ def test_a_trial_shows_where_the_robot_ended_and_hides_it_again(open_page: Open)
     page.locator("#reset").click()
     page.wait_for_timeout(100)
     assert page.locator("#scene").evaluate(CHECKSUM) == before
+
+
+# From now on, what each picture has written.
+TEXTS = """() => {
+    window.texts = [];
+    const write = CanvasRenderingContext2D.prototype.fillText;
+    CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+        window.texts.push(text);
+        return write.call(this, text, ...place);
+    };
+}"""
+
+
+def test_the_deepest_edge_is_named_by_its_own_wheels(open_page: Open, stopped: c2d.Run) -> None:
+    """Another edge that came inside later lies between wheels of its own."""
+    before, events, rest = re.split(r'(?<="events":)(\[.*?\])(?=,"ground")', stopped.to_html())
+    later = {"kind": "intrusion", "start": 0.0, "end": stopped.time[-1], "carrier": 0}
+    found = json.loads(events)
+    for lane, edge in ((0, 0), (1, 1)):
+        found.append({**later, "lane": lane, "edge": edge, "bodies": [3, 2]})
+    page = open_page(before + json.dumps(found) + rest)
+    page.evaluate(TEXTS)
+    page.keyboard.press("End")
+    page.evaluate(DRAWN)
+    named = [text for text in page.evaluate("window.texts") if text.startswith("between wheels")]
+    assert named == ["between wheels 1 and 2"]

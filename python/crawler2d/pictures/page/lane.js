@@ -5,7 +5,7 @@ class Lane {
     this.profile = unpacked(data.profile);
     this.surface = outlineOf(this.profile, false);
     this.edges = data.corners.map((corner, i) => ({
-      corner, convex: data.convex[i],
+      lane: data.lane, id: data.ids[i], corner, convex: data.convex[i],
       x: this.profile[2 * corner], y: this.profile[2 * corner + 1],
     }));
   }

@@ -116,6 +116,7 @@ def _events(run: Record, scene: Scene) -> list[dict[str, Any]]:
             "kind": str(events["kind"][row]),
             "start": _number(events["start"][row]),
             "end": _number(events["end"][row]),
+            "lane": int(events["lane"][row]),
             "edge": int(events["edge"][row]),
             "bodies": [int(body) for body in events["bodies"][row]],
             "carrier": next((scene.carrier_of(body) for body in events["bodies"][row]), 0),
@@ -140,7 +141,9 @@ def _lane(lane: int, profile: NDArray[np.float64], edges: dict[str, Any]) -> dic
         for x, y in zip(edges["x"][on_lane], edges["y"][on_lane], strict=True)
     ]
     return {
+        "lane": int(lane),
         "profile": packed(profile, _LENGTH / 100.0),
+        "ids": edges["id"][on_lane].tolist(),
         "corners": corners,
         "convex": [bool(angle > 0.0) for angle in edges["angle"][on_lane]],
     }

@@ -132,13 +132,15 @@ class Scene {
       const [x, y] = this.camera.screen(edge.x, edge.y);
       for (const placed of edge.convex ? belted : []) {
         const depth = depthIn(placed, edge);
-        if (depth > (deepest?.depth ?? 0)) deepest = { depth, x, y, k: placed.k };
+        if (depth > (deepest?.depth ?? 0)) deepest = { depth, x, y, edge, k: placed.k };
       }
       diamond(ctx, x, y, 4.5, edge.convex ? colors.groundLine : colors.ground, colors.groundLine);
     }
     if (!deepest) return;
     diamond(ctx, deepest.x, deepest.y, 6.5, colors.halo, colors.intrusion);
-    const jam = jams.filter((event) => event.carrier === deepest.k).at(-1);
+    const { lane, id } = deepest.edge;
+    const isIt = (e) => e.lane === lane && e.edge === id && e.carrier === deepest.k;
+    const jam = jams.filter(isIt).at(-1);
     const millimetres = (1e3 * deepest.depth).toFixed(1);
     const where = jam && jam.bodies.length === 2 && jam.bodies[0] !== jam.bodies[1]
       ? `between wheels ${Math.min(...jam.bodies)} and ${Math.max(...jam.bodies)}` : "";
