@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["pockets_drawn", "robot_drawn"]
 
 _MARGIN = 0.02  # of the width
-_LARGEST, _SMALLEST = 15.0, 5.0  # [px] of numbers; smaller ones cannot be read and are left out
-_LETTER = 0.6  # of the size: how wide a letter is
+_LARGEST, _SMALLEST = 13.0, 5.0  # [px] of numbers; smaller ones cannot be read and are left out
+_LETTER = 0.7  # of the size: how wide a letter is
 _TOGETHER = 1e-6  # [m] Wheels nearer than this are in one place.
 
 _WIDTH = 230.0  # [px] of the widest
