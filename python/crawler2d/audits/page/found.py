@@ -105,8 +105,8 @@ def verdicts(audit: Audited, replays: Mapping[str, int]) -> str:
             jam = words.jam(each)[1:] if each.where else ("",) * len(words.JAM_HEAD[1:])
             cells += map(escaped, jam)
         rows.append((name, *cells))
-    said = [each for each in words.conclusion(audit) if each != words.reservation(audit)]
-    notes = [*said, *map(_sentence, (words.calls(audit), words.lost(audit), _JAMS if jams else ""))]
+    notes = [each for each in words.conclusion(audit) if each != words.reservation(audit)]
+    notes += map(_sentence, (words.calls(audit), words.lost(audit), _JAMS if jams else ""))
     below = "".join(f"<p>{escaped(note)}</p>" for note in notes if note)
     table = grid(head, rows, label="verdicts", look="wide")
     return table + folded("in words, and what the columns tell", below)

@@ -46,7 +46,7 @@ def audit_page(
         title=escaped(f"{audit.robot.name}: audit"),
         name=escaped(audit.robot.name),
         subject=escaped(words.subject(audit).removeprefix(f"{audit.robot.name}: ")),
-        reservation=_reservation(audit),
+        reservation=escaped(words.reservation(audit)),
         answer=found.answer(audit),
         options=_options(runs),
         replays="".join(replay(audit, each, number) for number, each in enumerate(runs)),
@@ -67,11 +67,6 @@ def audit_page(
         script_hashes=policy(script),
         data="\n".join(_data(each, number) for number, each in enumerate(runs)),
     )
-
-
-def _reservation(audit: Audited) -> str:
-    text = words.reservation(audit)
-    return f'<p class="reservation">{escaped(text)}</p>' if text else ""
 
 
 def _options(runs: Sequence[Replayed]) -> str:
