@@ -254,8 +254,8 @@ def test_all_meshes_of_a_model_are_not_larger_than_30_megabytes(tmp_path: Path) 
     left_out(tmp_path, urdf(WHEELS, shapes=shapes), reason)
 
 
-def test_a_million_corners_are_left_out(tmp_path: Path) -> None:
-    (tmp_path / "m.obj").write_text("".join(f"v {k} 0 1\n" for k in range(1_000_000)))
+def test_too_many_corners_are_left_out(tmp_path: Path) -> None:
+    (tmp_path / "m.obj").write_text("".join(f"v {k} 0 1\n" for k in range(400_000)))
     reason = "must, with the other meshes, have at most 300000 corners"
     left_out(tmp_path, with_mesh("m.obj"), reason)
 
