@@ -90,6 +90,13 @@ def test_a_model_whose_only_shapes_were_left_out_is_refused(tmp_path: Path) -> N
     refused(tmp_path, urdf(tracks), rule, tracks=["left_track", "right_track"])
 
 
+def test_wheels_that_are_not_round_are_what_is_wrong_not_a_camera(tmp_path: Path) -> None:
+    square = '<box size="0.1 0.1 0.1"/>'
+    wheels = pair("front", 0.2, geometry=square) + pair("rear", -0.2, geometry=square)
+    camera = sensor('type="fixed">', collision('<mesh filename="camera.stl"/>'), "camera")
+    refused(tmp_path, urdf(wheels, camera), "must have wheels, which are round")
+
+
 def test_a_moved_track_without_a_shape_is_refused_beside_wheels(tmp_path: Path) -> None:
     mesh = collision('<mesh filename="t.stl"/>')
     track = link("belt", 'type="fixed">').replace("</link>", f"{mesh}</link>")

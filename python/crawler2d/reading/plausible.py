@@ -29,7 +29,7 @@ def refuse_unread(tree: Tree) -> None:
 
     What was left out may be a wheel or a track if the link has no other shape, and its surface
     moves, or it turns without limit on an axle that is no higher than the wheels are. If nothing
-    that was read is a wheel or a track, it may be any link.
+    that was read turns on an axle or is a track, it may be any link.
 
     Parameters
     ----------
@@ -49,12 +49,15 @@ def refuse_unread(tree: Tree) -> None:
     tops = list(_tops(tree, hanging))
     suspects = [link for name, link in lacking.items() if name in moved]
     links = tree.by_name
+    is_on_wheels = bool(tops)  # or would be, if what turns were round
     for child, joint in tree.joints.items():
-        turning = [links[name] for name in hanging[child]]
-        if joint.is_unlimited and not any(link.shapes for link in turning):
-            low = abs(joint.axis[2]) <= _UPRIGHT and joint.place[2] <= max(tops, default=np.inf)
-            suspects += [link for link in turning if low and link.unread]
-    if not suspects and not tops:
+        if joint.is_unlimited and abs(joint.axis[2]) <= _UPRIGHT:
+            turning = [links[name] for name in hanging[child]]
+            if any(link.shapes for link in turning):
+                is_on_wheels = True
+            elif joint.place[2] <= max(tops, default=np.inf):
+                suspects += [link for link in turning if link.unread]
+    if not suspects and not is_on_wheels:
         suspects = list(lacking.values())
     if suspects:
         _refuse(list(dict.fromkeys(link.name for link in suspects)), lacking)
