@@ -109,6 +109,25 @@ SDF: dict[str, bytes] = {
     },
     "belt.sdf": _written(c2d.BeltTrack(), "sdf", TRIANGLE),
     "gears.sdf": _written(GEARS, "sdf"),
+    "odd.sdf": _changed(
+        "cart.sdf",
+        "</model>",
+        """<include><uri>model://lidar</uri><name>lidar</name></include>
+        <frame name="top"><pose>0 0 0.3 0 0 0</pose></frame>
+        <model name="mast"><pose relative_to="top">0 0 0.1 0 0 0</pose>
+        <link name="a"><inertial auto="true"><density>900</density></inertial>
+        <collision name="c"><geometry><capsule><radius>0.02</radius><length>0.1</length></capsule>
+        </geometry></collision></link>
+        <link name="b"><pose relative_to="a">0 0 0.1 0 0 0</pose>
+        <collision name="c"><geometry><ellipsoid><radii>0.1 0.1 0.05</radii></ellipsoid></geometry>
+        </collision></link>
+        <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>
+        <limit><lower>-1</lower><upper>1</upper></limit></axis></joint></model>
+        <link name="stray"/>
+        <joint name="m" type="fixed"><parent>hull</parent><child>mast::a</child></joint>
+        <joint name="l" type="fixed"><parent>hull</parent><child>lidar::base</child></joint>
+        <joint name="w" type="fixed"><parent>world</parent><child>hull</child></joint></model>""",
+    ),
     "mesh.sdf": _changed(
         "cart.sdf", "<box><size>0.5 0.25 0.125</size></box>", "<mesh><uri>part.stl</uri></mesh>"
     ),
@@ -120,6 +139,14 @@ URDF = {
     "cart.urdf": (CARTS / "cart.urdf").read_bytes(),
     "gears.urdf": _written(GEARS, "urdf"),
     "mesh.urdf": ON_MESHES["part.obj"],
+    "odd.urdf": carts.urdf(
+        carts.WHEELS,
+        '<link name="world"/><joint name="w" type="fixed"><parent link="world"/>'
+        '<child link="hull"/></joint><link name="stray"><inertial><mass value="1e-5"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>',
+        carts.link("head", 'type="revolute"><axis xyz="0 0 0"/><limit lower="0" upper="0"/>'),
+        shapes=carts.collision('<sphere radius="0"/>') + carts.collision("<plane/>"),
+    ).encode(),
 }
 
 

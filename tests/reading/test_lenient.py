@@ -220,7 +220,10 @@ def test_of_several_trees_that_with_the_wheels_is_read(tmp_path: Path) -> None:
     first = urdf(WHEELS).replace('<link name="hull">', f'{many}<link name="hull">', 1)
     told = doubts(tmp_path, first)
     assert len(told) == 9
-    assert "is left out with all 1 links of its tree: it is not joined to hull" in told[0]
+    assert "link[stray0] is left out: it is not joined to hull" in told[0]
+    pair_of = link("b", 'type="fixed">', parent="a").replace("<link", '<link name="a"/><link', 1)
+    (doubt,) = doubts(tmp_path, urdf(WHEELS, pair_of))
+    assert "link[a] is left out with 1 that hang on it: it is not joined to hull" in doubt
 
 
 @pytest.mark.parametrize("kind", ["fixed", "floating"])

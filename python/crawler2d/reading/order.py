@@ -85,8 +85,10 @@ def checked(
     root = max(trees, key=lambda name: (len(drives.intersection(trees[name])), len(trees[name])))
     for name, where in names:
         if name in trees and name != root:
-            reason = f"is left out with all {len(trees[name])} links of its tree: it is not joined"
-            doubts.append((f"{where}: link[{name}]", name, f"{reason} to {root}"))
+            more = len(trees[name]) - 1
+            hanging = f" with {more} that hang on it" if more else ""
+            reason = f"is left out{hanging}: it is not joined to {root}"
+            doubts.append((f"{where}: link[{name}]", name, reason))
     return trees[root]
 
 
