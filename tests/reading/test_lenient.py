@@ -287,6 +287,17 @@ def test_a_nested_model_is_part_of_the_robot(tmp_path: Path) -> None:
     assert links["mast::top"].pose.place == pytest.approx([0.1, 0.0, 0.7])
 
 
+@pytest.mark.parametrize("end", ["roof", "__model__", "hull"])
+def test_a_joint_may_join_frames(tmp_path: Path, end: str) -> None:
+    part = f"""<frame name="roof" attached_to="under"><pose>0 0 1 0 0 0</pose></frame>
+      <frame name="under" attached_to="hull"/><link name="b"><pose relative_to="roof">0 0 0.5 0 0 0
+      </pose><inertial><mass>1</mass></inertial></link><joint name="w" type="fixed">
+      <parent>{end}</parent><child>b</child></joint>"""
+    tree = read(tmp_path, in_model(part), "tank.sdf").tree
+    assert tree.joints["b"].parent == "hull"
+    assert tree.by_name["b"].pose.place == pytest.approx([0.0, 0.0, 1.5])
+
+
 def by_slices(radius: float, length: float, density: float) -> tuple[float, float, float]:
     """Mass, and moments across and along, of a capsule cut into thin discs."""
     ends = 0.5 * length + radius

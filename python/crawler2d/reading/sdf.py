@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from crawler2d.errors import ScenarioError
 from crawler2d.models.poses import Pose, unit
@@ -25,6 +26,8 @@ __all__ = ["read_sdf"]
 # What SDF takes where a file says nothing: a link of 1 kg, a friction of 1.
 _USUAL_MASS = _USUAL_FRICTION = 1.0
 _USUAL_DENSITY = 1000.0  # [kg/m^3] Where masses are to be worked out: that of water.
+
+_LONGEST_CHAIN = 100  # Frames, each of which is attached to the next.
 
 
 def read_sdf(root: Element, model: str | None, meshes: Meshes, doubts: list[Doubt]) -> Tree:
@@ -143,6 +146,8 @@ class _Model:
         self.doubts = doubts
         self.frames = Frames(doubts)
         self.models = list(self.nested(model, ""))
+        self.has_includes = bool(self.parts("include"))
+        self.links = {part.name: part for part in self.parts("link")}
 
     def nested(self, model: Element, scope: str) -> Iterator[_Part]:
         """Yield a model and those in it; what is in other files is left out."""
@@ -162,7 +167,6 @@ class _Model:
         ]
 
     def tree(self) -> Tree:
-        links = {part.name: part for part in self.parts("link")}
         joints = {}
         ends = []
         for part in self.parts("joint"):
@@ -179,15 +183,17 @@ class _Model:
             self.doubts,
             driving=[*turning, *(name for name, _ in named_tracks(plugins))],
         )
-        for name, part in links.items():
+        for name, part in self.links.items():
             self.frames.add(name, part.element, part.scope + MODEL, part.scope)
         for name, _, child, _ in ends:
-            self.frames.add(name, joints[child].element, child, joints[child].scope)
+            part = joints[child]
+            held = part.scope + part.element.needed("child").text  # which may be a frame of it
+            self.frames.add(name, part.element, held, part.scope)
         for part in self.parts("frame"):
             attached = part.element.attributes.get("attached_to", "") or MODEL
             self.frames.add(part.name, part.element, part.scope + attached, part.scope)
         parent_of = {child: parent for _, parent, child, _ in ends if child in order}
-        made = [self.link(links[name]) for name in order]
+        made = [self.link(self.links[name]) for name in order]
         colliding = [link.name for link in made if link.shapes or link.unread]
         carriers = carrying(order, parent_of, colliding)
         return Tree(
@@ -208,19 +214,40 @@ class _Model:
         """Return the links that a joint joins; None if it is left out."""
         joint = part.element
         parent, child = (joint.needed(end).text for end in ("parent", "child"))
-        ends = part.scope + parent, part.scope + child
-        known = {each.name for each in self.parts("link")}
+        ends = self.carrier(part.scope + parent), self.carrier(part.scope + child)
         reason = ""
         if "world" in (parent, child):
             reason = "it holds the robot to the world, where it is to drive"
         elif joint.attribute("type") == "gearbox":
             reason = "it couples joints, and carries nothing"
-        elif self.parts("include") and not known.issuperset(ends):
+        elif self.has_includes and not self.links.keys() >= set(ends):
             reason = "what it joins is in another file"
         if reason:
             self.doubts.append((joint.at, part.name, f"is left out: {reason}"))
             return None
         return ends
+
+    def carrier(self, name: str) -> str:
+        """Return the link that a frame or a nested model is attached to; or else the name."""
+        for _ in range(_LONGEST_CHAIN):  # what is longer is a circle, and ends at no link
+            if name not in self.attached:
+                break
+            name = self.attached[name]
+        return name
+
+    @cached_property
+    def attached(self) -> dict[str, str]:
+        """What frames and models are attached to: models to their first link."""
+        found = {
+            each.scope + MODEL: each.scope + link.attribute("name")
+            for each in self.models
+            for link in reversed(list(each.element.all("link")))
+        }
+        found |= {each.scope[:-2]: each.scope + MODEL for each in self.models if each.scope}
+        for part in self.parts("frame"):
+            to = part.element.attributes.get("attached_to", "") or MODEL
+            found.setdefault(part.name, part.scope + to)
+        return found
 
     def link(self, part: _Part) -> Link:
         link, name = part.element, part.name
