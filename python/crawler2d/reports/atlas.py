@@ -18,7 +18,7 @@ from string import Template
 from crawler2d import _core
 from crawler2d.audits import words
 from crawler2d.audits.audit import Audit, audit
-from crawler2d.audits.page.robot_drawn import robot_drawn
+from crawler2d.audits.page.drawn import robot_drawn
 from crawler2d.common.markup import escaped
 from crawler2d.errors import Crawler2dError, ScenarioWarning
 from crawler2d.pictures.page.parts import page_template, policy, read_part
