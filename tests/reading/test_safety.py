@@ -109,7 +109,7 @@ def test_frames_in_a_circle_are_refused(tmp_path: Path) -> None:
         (('name="left_front"', 'name="left_rear"'), "must be a name that no other link has"),
         (
             ('<parent link="hull"/>', '<parent link="bow"/>'),
-            "must have one link that hangs on no other",
+            "must have a partner on the left",
         ),
         (('<child link="left_front"/>', '<child link="left_rear"/>'), "must be the only joint"),
         (("<robot", "<machine"), "must be well-formed XML"),

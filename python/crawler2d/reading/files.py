@@ -51,6 +51,8 @@ _FLAGS = os.O_RDONLY
 for _name in ("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
     _FLAGS |= getattr(os, _name, 0)
 
+_ELSEWHERE = "is not among the files of the model"
+
 
 class Files:
     """The files of one model, of which each that is read counts.
@@ -194,13 +196,14 @@ def is_absent(error: BaseException) -> bool:
 
 
 def _absent(name: str) -> FileNotFoundError:
-    return FileNotFoundError(errno.ENOENT, "is not among the files of the model", name)
+    return FileNotFoundError(errno.ENOENT, _ELSEWHERE, name)
 
 
 def why(error: ScenarioError) -> str:
     """Say why a file could not be read, and which one it is if it is not there."""
-    if isinstance(error.__cause__, FileNotFoundError):
-        return f"there is no file {error.__cause__.filename}"
+    cause = error.__cause__
+    if isinstance(cause, FileNotFoundError) and cause.strerror != _ELSEWHERE:
+        return f"there is no file {cause.filename}"
     return error.rule
 
 
