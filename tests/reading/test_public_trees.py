@@ -68,3 +68,20 @@ def test_a_file_with_shapes_on_the_ground_is_read_as_its_key_says(key: Key) -> N
         assert np.allclose(found[name], told[name], atol=2e-5), (name, found[name], told[name])
     assert told.keys() - found.keys() <= {"forward", "castors"}
     assert f"{told['forward']} is forward" in " ".join(reading.notes)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("maxii", "a file of macros only is read through the file that calls them"),
+        ("myzharbot", "link.Left_wheel. must have a collision shape, for what is only seen"),
+        ("tank", "link.wheel1_link. must have a collision shape that can be read.*wheel.stl"),
+    ],
+)
+def test_a_file_without_shapes_on_the_ground_is_refused_in_a_sentence_with_its_cure(
+    name: str, said: str
+) -> None:
+    key = keys()[name]
+    assert "cure" in key.data
+    with pytest.raises(c2d.ScenarioError, match=said):
+        quietly(key.file)

@@ -42,11 +42,13 @@ def refuse_unread(tree: Tree) -> None:
         If there is such a link; it names what was left out, why, and what to do.
     """
     lacking = {link.name: link for link in tree.links if link.unread and not link.shapes}
-    if not lacking:
-        return
     moved = moved_links(tree)
     hanging = below(tree)
     tops = list(_tops(tree, hanging))
+    if not tops:
+        _refuse_bare(tree, hanging)
+    if not lacking:
+        return
     suspects = [link for name, link in lacking.items() if name in moved]
     links = tree.by_name
     is_on_wheels = bool(tops)  # or would be, if what turns were round
@@ -61,6 +63,24 @@ def refuse_unread(tree: Tree) -> None:
         suspects = list(lacking.values())
     if suspects:
         _refuse(list(dict.fromkeys(link.name for link in suspects)), lacking)
+
+
+def _refuse_bare(tree: Tree, hanging: dict[str, list[str]]) -> None:
+    """Refuse a model whose wheels are only seen."""
+    links = tree.by_name
+    bare = [
+        links[child]
+        for child, joint in tree.joints.items()
+        if joint.is_unlimited
+        and not any(links[name].shapes or links[name].unread for name in hanging[child])
+    ]
+    if bare:
+        others = f"; so must {_listed([link.name for link in bare[1:]])}" if bare[1:] else ""
+        rule = (
+            f"must have a collision shape, for what is only seen touches no ground{others}: give"
+            " each the cylinder that is seen, and a mass"
+        )
+        raise ScenarioError(f"{bare[0].at}: link[{bare[0].name}]", "no collision shape", rule)
 
 
 def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
