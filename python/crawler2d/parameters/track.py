@@ -192,7 +192,8 @@ class HybridWheels(Parameters):
     @property
     def in_words(self) -> str:
         """What it is, for titles."""
-        return f"{len(self.placements)} {self.wheel.kind} wheels placed by hand"
+        wheels = "wheel" if len(self.placements) == 1 else "wheels"
+        return f"{len(self.placements)} {self.wheel.kind} {wheels} placed by hand"
 
 
 @dataclass(frozen=True, slots=True)
