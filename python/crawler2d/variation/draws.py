@@ -185,6 +185,7 @@ def _is_set(path: str, swept: Collection[str]) -> bool:
     return path.startswith("start.") and (path in swept or "start" in swept)
 
 
+@functools.lru_cache(maxsize=256)  # every sample asks; to find the name that was meant takes long
 def _has(cell: Scenario, path: str) -> bool:
     try:
         for field in _fields(cell, path):
