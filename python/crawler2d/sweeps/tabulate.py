@@ -14,6 +14,7 @@ from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
 from crawler2d.errors import ScenarioError, raise_first
 from crawler2d.parameters.scenario import Scenario
+from crawler2d.results.row import Row
 from crawler2d.runs.interrupted import BatchInterrupted
 from crawler2d.runs.labelled import build_attributes
 from crawler2d.runs.progress import Progress, reporter
@@ -29,83 +30,135 @@ from crawler2d.variation.draws import Variation
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["OnError", "tabulate"]
+__all__ = ["OnError", "Tabulation", "tabulate"]
 
 OnError = Literal["raise", "record"]
+
+
+class Tabulation:
+    """A sweep that is planned, of which any runs can be made in any order; see `sweep`.
+
+    Parameters
+    ----------
+    scenario, axes, repeats, seed, vary, unknown, samples, trials, store, executor, wall_time
+        See `sweep`; axes are of scenarios.
+    threads
+        See `sweep`.
+
+    Attributes
+    ----------
+    checked : list of Checked
+        The scenario of every run, or the rule that it breaks: cell by cell, sample by sample,
+        repeat by repeat.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        axes: Sequence[Axis],
+        *,
+        repeats: int,
+        seed: int,
+        vary: Mapping[str, Any] | None,
+        unknown: Mapping[str, Any] | None,
+        samples: int,
+        trials: Trials,
+        store: str | PathLike[str] | None,
+        executor: Executor | None,
+        wall_time: bool,
+        threads: int | None,
+    ) -> None:
+        extra("xarray", "analysis")  # fail before the runs if it is missing
+        if not isinstance(scenario, Scenario):
+            raise ScenarioError("scenario", scenario, "must be a Scenario")
+        if executor is not None and not isinstance(executor, Executor):
+            raise ScenarioError("executor", executor, "must be a concurrent.futures.Executor")
+        self._with_times = yes_or_no(wall_time, "wall_time")
+        self._tried = trial_names(trials)
+        self._store, self._executor, self._threads = store, executor, thread_count(threads)
+        self._repeats = whole_number(repeats, "repeats", 1, 10**6)
+        samples = whole_number(samples, "samples", 1, 10**5)
+        self._seed = whole_number(seed, "seed", 0, 2**64 - 1)
+        base = Passed(scenario.to_json())
+        swept = [path for axis in axes for path in axis.paths]
+        self._scenario, self._axes = scenario, axes
+        self._unknowns = Variation.of(scenario, unknown or {}, swept, "unknown")
+        self._variation = Variation.of(scenario, vary, [*swept, *self._unknowns.distributions])
+        self._samples = samples if self._unknowns.distributions else 1
+        planner = Planner(self._variation, self._unknowns, self._seed, self._samples)
+        self._plans = plan_runs(scenario, axes, planner, repeats=self._repeats, like=base)
+        self.checked = [each for plan in self._plans for each in plan.checked]
+        self._rows: list[Row | None] = [None] * len(self.checked)
+
+    def simulate(self, places: Sequence[int], progress: bool | Progress | None) -> None:
+        """Make the runs at some places of `checked`.
+
+        Raises
+        ------
+        BatchInterrupted
+            On Ctrl-C.
+        """
+        some = [self.checked[place] for place in places]
+        try:
+            with Collector(
+                self._tried, store=self._store, executor=self._executor, threads=self._threads
+            ) as collector:
+                batch = collector.batch(some)
+                with reporter(progress, len(some), batch.done) as report:
+                    rows = collector.rows(batch, report)
+        except RowsInterrupted as interrupt:
+            kept = "" if self._store is None else str(self._store)
+            raise BatchInterrupted(runs_of(interrupt.rows), kept) from None
+        for place, row in zip(places, rows, strict=True):
+            self._rows[place] = row
+            if row.error is not None and row.identity:
+                plan = self._plans[place // self._repeats]
+                row.error.add_note(f"in {plan.place(place % self._repeats)}")
+
+    def raise_first(self) -> None:
+        """Raise the first error of a run."""
+        raise_first(None if row is None else row.error for row in self._rows)
+
+    def table(self) -> xarray.Dataset:
+        """Arrange the runs; those that were not made have the outcome ""."""
+        columns = row_columns(self._rows, trials=self._tried, with_times=self._with_times)
+        columns |= _drawn(self._plans, self._variation, self._unknowns, self._repeats)
+        kind = np.int64 if self._seed < 2**63 else np.uint64
+        columns["seed"] = (np.full(len(self._rows), self._seed, kind), {})
+        dims = {axis.name: len(axis.values) for axis in self._axes}
+        labels: dict[str, Any] = coordinates(self._axes)
+        if self._unknowns.distributions:
+            dims["sample"] = self._samples
+            labels["sample"] = np.arange(self._samples)
+        dims["repeat"] = self._repeats
+        labels["repeat"] = np.arange(self._repeats)
+        dataset = dataset_of(columns, dims, labels)
+        return dataset.assign_attrs(
+            scenario=self._scenario.to_json(),
+            vary=self._variation.text,
+            unknown=self._unknowns.text,
+            **build_attributes(),
+        )
 
 
 def tabulate(
     scenario: Scenario,
     axes: Sequence[Axis],
     *,
-    repeats: int,
-    seed: int,
-    vary: Mapping[str, Any] | None,
-    unknown: Mapping[str, Any] | None,
-    samples: int,
-    trials: Trials,
-    store: str | PathLike[str] | None,
-    executor: Executor | None,
-    wall_time: bool,
-    threads: int | None,
     progress: bool | Progress | None,
     on_error: OnError,
+    **how: Any,
 ) -> xarray.Dataset:
-    """Run a sweep over the given axes; see `sweep`."""
-    extra("xarray", "analysis")  # fail before the runs if it is missing
-    if not isinstance(scenario, Scenario):
-        raise ScenarioError("scenario", scenario, "must be a Scenario")
+    """Run a sweep over the given axes; see `sweep` and `Tabulation`."""
     if on_error not in ("raise", "record"):
         raise ScenarioError("on_error", on_error, "must be one of raise, record")
-    if executor is not None and not isinstance(executor, Executor):
-        raise ScenarioError("executor", executor, "must be a concurrent.futures.Executor")
-    with_times = yes_or_no(wall_time, "wall_time")
-    tried = trial_names(trials)
-    count = thread_count(threads)
-    repeats = whole_number(repeats, "repeats", 1, 10**6)
-    samples = whole_number(samples, "samples", 1, 10**5)
-    seed = whole_number(seed, "seed", 0, 2**64 - 1)
-    base = Passed(scenario.to_json())
-    swept = [path for axis in axes for path in axis.paths]
-    unknowns = Variation.of(scenario, unknown or {}, swept, "unknown")
-    variation = Variation.of(scenario, vary, [*swept, *unknowns.distributions])
-    samples = samples if unknowns.distributions else 1
-    planner = Planner(variation, unknowns, seed, samples)
-    plans = plan_runs(scenario, axes, planner, repeats=repeats, like=base)
-    checked = [each for plan in plans for each in plan.checked]
+    planned = Tabulation(scenario, axes, **how)
     if on_error == "raise":
-        raise_first(checked)
-    try:
-        with Collector(tried, store=store, executor=executor, threads=count) as collector:
-            batch = collector.batch(checked)
-            with reporter(progress, len(checked), batch.done) as report:
-                rows = collector.rows(batch, report)
-    except RowsInterrupted as interrupt:
-        kept = "" if store is None else str(store)
-        raise BatchInterrupted(runs_of(interrupt.rows), kept) from None
-    for index, row in enumerate(rows):
-        if row.error is not None and row.identity:
-            row.error.add_note(f"in {plans[index // repeats].place(index % repeats)}")
+        raise_first(planned.checked)
+    planned.simulate(range(len(planned.checked)), progress)
     if on_error == "raise":
-        raise_first(row.error for row in rows)
-    columns = row_columns(rows, trials=tried, with_times=with_times)
-    columns |= _drawn(plans, variation, unknowns, repeats)
-    kind = np.int64 if seed < 2**63 else np.uint64
-    columns["seed"] = (np.full(len(rows), seed, kind), {})
-    dims = {axis.name: len(axis.values) for axis in axes}
-    labels: dict[str, Any] = coordinates(axes)
-    if unknowns.distributions:
-        dims["sample"] = samples
-        labels["sample"] = np.arange(samples)
-    dims["repeat"] = repeats
-    labels["repeat"] = np.arange(repeats)
-    dataset = dataset_of(columns, dims, labels)
-    return dataset.assign_attrs(
-        scenario=scenario.to_json(),
-        vary=variation.text,
-        unknown=unknowns.text,
-        **build_attributes(),
-    )
+        planned.raise_first()
+    return planned.table()
 
 
 def _drawn(
