@@ -22,3 +22,13 @@ def seizing_file(name: str = "cart", wheels: str = "") -> str:
     pairs = [pair(f"{each}{wheels}", x, radius="0.0608") for each, x in places.items()]
     box = collision('<box size="0.3 0.1 0.05"/>', '<origin xyz="0 0 0.05"/>')
     return urdf(*pairs, shapes=box).replace('name="cart"', f'name="{name}"')
+
+
+def told(found: c2d.Audit) -> Any:
+    """An audit that takes no time, and tells what it found."""
+
+    def audit(*_: Any, progress: Any, **__: Any) -> c2d.Audit:
+        progress.tell(found.in_words)
+        return found
+
+    return audit

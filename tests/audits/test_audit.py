@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from crawler2d.audits import audit as audit_module
 from crawler2d.audits import words
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
+from crawler2d.audits.live import Live
 from crawler2d.audits.names import names_of
 from crawler2d.audits.obstacles import standard_obstacles
 from crawler2d.audits.plain import plain_of
@@ -22,6 +24,7 @@ from crawler2d.audits.runs import raised, scenario_of
 from crawler2d.audits.share import share_of
 from crawler2d.audits.verdicts import least_samples
 from crawler2d.audits.words import repair_sentence, wheels_a_side, worst
+from crawler2d.errors import LimitError
 from crawler2d.sweeps.statistics import wilson
 from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import FILES, WHEELS, quietly, read, urdf
@@ -38,7 +41,7 @@ def test_touching_wheels_seize_on_a_step_that_the_belt_clears(found: c2d.Audit) 
 
 def test_what_freed_it_was_tried(found: c2d.Audit) -> None:
     freed = {each.trial: each.freed for each in found.verdicts[0].freed}
-    assert freed["closed track"] == freed["friction x 2"] == 20
+    assert freed["closed track"] == freed["friction x 2"] == 9
     assert freed["torque x 2"] == 0
 
 
@@ -61,16 +64,88 @@ def test_a_belt_is_a_repair_and_gears_are_tried(found: c2d.Audit) -> None:
 
 def test_repairs_are_confirmed_by_runs_that_the_search_has_not_had(found: c2d.Audit) -> None:
     assert found.repaired is not None
-    assert found.repaired.before["step of 75 mm"].rate == 1.0
     fresh = set(found.repaired.table["scenario"].values.ravel().tolist())
-    assert fresh.isdisjoint(found.table["scenario"].values.ravel().tolist())
+    assert fresh & set(found.table["scenario"].values.ravel().tolist()) == {""}  # none was made
 
 
 def test_the_runs_are_there(found: c2d.Audit) -> None:
     assert dict(found.table.sizes) == {"model": 2, "terrain": 1, "sample": 20, "repeat": 1}
     assert "start.approach" in found.table.attrs["vary"]
     ends = found.table["outcome"].sel(model="model")
-    assert (ends == "seized").mean().item() == found.verdicts[0].seized.rate
+    assert (ends == "seized").sum().item() == found.verdicts[0].there[1]
+
+
+def test_an_obstacle_is_left_as_soon_as_its_verdict_is_certain(found: c2d.Audit) -> None:
+    """All of the first nine runs seize while the belt clears: the other eleven change nothing."""
+    assert (found.table["outcome"] != "").sum("sample").values.ravel().tolist() == [9, 9]
+    (verdict,) = found.verdicts
+    assert verdict.seized.runs == verdict.belt_cleared.runs == 9
+    assert (verdict.seized.low, verdict.seized.high) == c2d.sequential(9, 9)[1:]
+
+
+def test_a_part_of_the_runs_is_the_same_as_in_an_audit_of_that_many(found: c2d.Audit) -> None:
+    few = c2d.audit(SEIZING, STEP, unknown={}, repeats=9, repair=False, **QUIET)
+    made = found.table.isel(sample=slice(9))
+    for name in ("outcome", "final_x", "drawn_height", "speed"):
+        assert np.array_equal(made[name].values, few.table[name].values)
+
+
+def test_repeats_of_a_robot_are_all_made() -> None:
+    unknown = {"robot.mass": c2d.scaled(0.99, 1.01)}
+    found = c2d.audit(SEIZING, STEP, unknown=unknown, samples=13, repeats=2, repair=False, **QUIET)
+    assert (found.table["outcome"] != "").all()
+
+
+def test_the_belt_does_not_drive_where_the_robot_clears() -> None:
+    good = SEIZING.with_track(c2d.LineOfWheels(5, wheel_radius=0.0608))
+    found = c2d.audit(good, STEP, unknown={}, repeats=36, **QUIET)
+    assert (found.table["outcome"].sel(model="belt") == "").all()
+    assert (found.table["outcome"].sel(model="model") == "cleared").all()
+    row = next(line for line in str(found).splitlines() if line.startswith("  step of 75 mm"))
+    assert row.split()[-5:] == ["-", "cleared", "does", "not", "seize"]
+    assert "it clears 1 of 1 obstacles itself in 95 %" in found.in_words
+
+
+def test_what_is_known_before_the_runs_is_told_before_them() -> None:
+    told: list[str] = []
+
+    class Recorder(Live):
+        def tell(self, text: str) -> None:
+            told.append(text)
+
+        def __call__(self, done: int, total: int) -> None:
+            assert done <= total
+            told.append("a run")
+
+    steps = {**STEP, "kerb": c2d.terrains.step(0.03, edge_radius=0.02)}
+    how: Any = {"samples": 3, "repair": False}
+    found = c2d.audit(SEIZING, steps, **how, progress=Recorder(sys.stdout))
+    assert "Lint: nothing found" in told[0]
+    assert "3 slots" in told[0]
+    first = next(index for index, text in enumerate(told) if text.startswith("  step of 75 mm"))
+    assert "a run" in told[1:first]
+    assert "a run" in told[first:]
+    assert "\n".join(text for text in told if text != "a run") == found.in_words
+
+
+def test_a_quick_audit_has_fewer_samples_and_tries_round_wheels_alone() -> None:
+    found = c2d.audit(SEIZING, STEP, quick=True, **QUIET)
+    assert found.table.sizes["sample"] == 36
+    assert {each.kind for each in found.repairs} == {"wheels", "belt"}
+    assert {each.trial for each in found.verdicts[0].freed} <= {
+        "closed track",
+        "closed track, clear of the ground",
+    }
+
+
+@pytest.mark.parametrize(("name", "value"), [("samples", 0), ("repeats", 0), ("threads", 0)])
+def test_bad_numbers_are_refused_before_anything_is_told(
+    name: str, value: int, capsys: Any
+) -> None:
+    bad: Any = {name: value}
+    with pytest.raises((c2d.ScenarioError, LimitError), match=name):
+        c2d.audit(SEIZING, STEP, **bad)
+    assert capsys.readouterr() == ("", "")
 
 
 def test_runs_take_a_tenth_a_third_and_all_of_the_speed_in_turn(found: c2d.Audit) -> None:
@@ -90,7 +165,7 @@ def test_runs_take_a_tenth_a_third_and_all_of_the_speed_in_turn(found: c2d.Audit
         assert 1.03 * 0.075 < heights.max() <= 1.05 * 0.075
     said = "0.038, 0.126 and 0.378 m/s in turn, obstacles times 0.95 to 1.05"
     text = " ".join(repr(found).split())
-    assert f"Verdicts: 20 runs, at {said}" in text
+    assert f"Verdicts: at most 20 runs, at {said}" in text
     assert f"in fresh runs at {said}" in text
     assert found.repairs[0].seized_at["step of 75 mm"][0.038].rate == 0.0
 
@@ -134,8 +209,8 @@ def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Au
 def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
     text = repr(found)
     for part in (
-        "step of 75 mm  0 % (0-16)  100 % (84-100)  100 %        seized      seizes",
-        "step of 75 mm  1-2 of the chassis  20/20",
+        "step of 75 mm  9       0 % (0-53)      100 % (47-100)  100 %        seized        seizes",
+        "step of 75 mm  1-2 of the chassis  9/9",
         "It seizes on 1 of 1 obstacles where the belt clears: step of 75 mm.",
         "confirmed: chassis: 5 wheels in place of 4",
         "Lint: nothing found",
@@ -174,8 +249,7 @@ def test_a_robot_on_belts_is_its_own_belt() -> None:
     found = c2d.audit(c2d.robots.engineer(flippers=None), STEP, samples=2, repeats=1, **QUIET)
     assert found.belt.robot == found.robot
     assert found.pockets == ()
-    own, belt = (found.table["final_x"].sel(model=name).values for name in ("model", "belt"))
-    assert np.array_equal(own, belt)
+    assert found.belt.reason == "the robot itself, which is on belts"
 
 
 def test_equal_calls_give_equal_audits() -> None:
@@ -200,7 +274,7 @@ def test_what_a_user_says_is_unknown_counts() -> None:
 )
 def test_only_what_differs_is_said_to_be_drawn(unknown: Any, many: str) -> None:
     few = c2d.audit(SEIZING, STEP, unknown=unknown, samples=2, repair=False, **QUIET)
-    assert f"Verdicts: {many}" in str(few)
+    assert f"Verdicts: at most {many}" in str(few)
 
 
 def test_terrains_of_a_users_own_keep_their_friction() -> None:
@@ -220,7 +294,7 @@ def test_a_store_keeps_the_runs(tmp_path: Path) -> None:
     how: Any = {"samples": 2, "repeats": 1, "repair": False, "store": tmp_path / "runs.sqlite"}
     for _ in range(2):
         c2d.audit(SEIZING, STEP, **how, progress=lambda done, _: made.append(done))
-    assert made[-2:] == [4, 4] or made.count(4) >= 2
+    assert made.count(4) >= 2
     assert len(c2d.table(tmp_path / "runs.sqlite")["outcome"]) == 4
 
 

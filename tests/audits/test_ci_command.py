@@ -16,7 +16,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.reports import audit as command
-from tests.audits.seizing import seizing_file
+from tests.audits.seizing import seizing_file, told
 from tests.walls.rooms import ROOT
 
 
@@ -40,7 +40,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def quick(repository: Path, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit) -> Path:
     """The same, with audits that take no time: all find what is found in a cart that seizes."""
-    monkeypatch.setattr(command, "audit", lambda *_, **__: of_file)
+    monkeypatch.setattr(command, "audit", told(of_file))
     monkeypatch.setattr(c2d.Audit, "to_html", lambda _, path, **__: path.write_text("a page"))
     return repository
 
@@ -133,7 +133,7 @@ def test_options_that_do_not_go_together_are_refused_before_any_run(
     monkeypatch.setattr(command, "audit", None)
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
-    assert err.startswith(f"audit: --{'html' if '--html' in arguments else ''}")
+    assert err.startswith(f"crawler2d audit: --{'html' if '--html' in arguments else ''}")
     assert len(err.strip().splitlines()) == 1
     assert quick.is_dir()
 
@@ -202,7 +202,7 @@ def test_the_action_says_what_is_wrong_with_a_file(repository: Path, tmp_path: P
     env = {**python_of_this_test(tmp_path), **{key: str(path) for key, path in files.items()}}
     done = step(action, "Audit", {"files": "models/none.sdf", "quick": "true"}, env)
     assert done.returncode == 2
-    assert "\naudit: " in files["GITHUB_STEP_SUMMARY"].read_text("utf-8")
+    assert "\ncrawler2d audit: " in files["GITHUB_STEP_SUMMARY"].read_text("utf-8")
     assert files["GITHUB_OUTPUT"].read_text("utf-8") == "status=2\n"
     assert repository.is_dir()
 

@@ -1,11 +1,16 @@
-"""The command `python -m crawler2d audit`: what it prints and writes, and its exit status."""
+"""The command `crawler2d audit`: what it prints and writes, and its exit status."""
 
 import argparse
 import dataclasses
 import html
+import importlib
+import inspect
 import json
 import re
 import shlex
+import subprocess
+import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -14,10 +19,13 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.__main__ import main
-from crawler2d.audits.call import Call, command_of
+from crawler2d.audits.call import OPTIONS, Call, as_options, command_of
 from crawler2d.audits.plain import plain_of
 from crawler2d.reports import audit as command
+from tests.audits.seizing import told
 from tests.reading.carts import FILES, WHEELS, pair, urdf
+
+ROBOTS = Path(__file__).parent.parent / "robots"
 
 
 def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
@@ -31,7 +39,7 @@ def test_the_command_prints_the_short_form(capsys: Any) -> None:
     status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
     assert status in (0, 1)
     assert out.startswith("cart: 3 round wheels in a line")
-    assert "Verdicts: 2 robots on floors, 1 run each" in out
+    assert "Verdicts: at most 2 robots on floors, 1 run each" in out
 
 
 def test_the_command_writes_json(capsys: Any) -> None:
@@ -61,28 +69,29 @@ def test_the_command_refuses_bad_input_in_one_line(capsys: Any, arguments: list[
 def test_the_command_says_whether_it_seizes(
     capsys: Any, monkeypatch: Any, found: c2d.Audit
 ) -> None:
-    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    monkeypatch.setattr(command, "audit", told(found))
     status, out, _ = run(capsys, "any.sdf", "--no-html")
     assert status == 1
     assert out.strip() == found.in_words
 
 
-def test_the_command_ends_at_ctrl_c(capsys: Any, monkeypatch: Any) -> None:
-    def interrupted(*_: Any, **__: Any) -> None:
-        raise c2d.BatchInterrupted([], "runs.sqlite")
-
-    monkeypatch.setattr(command, "audit", interrupted)
+@pytest.mark.parametrize("interrupt", [KeyboardInterrupt(), c2d.BatchInterrupted([], "a.sqlite")])
+def test_after_ctrl_c_the_command_says_what_is_kept(
+    capsys: Any, monkeypatch: Any, interrupt: BaseException
+) -> None:
+    monkeypatch.setattr(command, "audit", Mock(side_effect=interrupt))
+    status, _, err = run(capsys, "any.sdf", "--store", "a.sqlite")
+    assert status == 130
+    assert err.strip().startswith("interrupted: a.sqlite keeps every finished run")
     status, _, err = run(capsys, "any.sdf")
     assert status == 130
-    assert "runs.sqlite keeps them" in err
-    monkeypatch.setattr(command, "audit", Mock(side_effect=KeyboardInterrupt))
-    assert run(capsys, "any.sdf")[::2] == (130, "interrupted\n")
+    assert err.strip() == "interrupted: nothing is kept; with --store FILE every finished run is"
 
 
 @pytest.fixture
 def made(monkeypatch: Any, tmp_path: Path, found: c2d.Audit) -> Path:
     """An empty folder to work in, and an audit that takes no time."""
-    monkeypatch.setattr(command, "audit", lambda *_, **__: found)
+    monkeypatch.setattr(command, "audit", told(found))
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -109,13 +118,15 @@ def test_with_json_nothing_else_is_on_the_standard_output(made: Path, capsys: An
     assert (made / "out").is_dir()
 
 
-def test_a_page_that_cannot_be_written_is_told_after_the_audit(
-    made: Path, capsys: Any, found: c2d.Audit
+@pytest.mark.usefixtures("made")
+@pytest.mark.parametrize("option", ["--html", "--patch"])
+@pytest.mark.parametrize("place", [".", "no folder/file"])
+def test_what_cannot_be_written_is_refused_before_the_audit(
+    capsys: Any, option: str, place: str
 ) -> None:
-    status, out, err = run(capsys, "any.sdf", "--html", str(made))
-    assert status == 2
-    assert out.strip() == found.in_words
-    assert len(err.strip().splitlines()) == 1
+    status, out, err = run(capsys, "any.sdf", option, place)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"crawler2d audit: {option} must be a file in a folder that exists")
 
 
 CALL = Call(samples=4, repeats=3, seed=2**63, repair=False)
@@ -133,8 +144,8 @@ def test_the_command_that_a_page_names_is_the_same_call(how: Any) -> None:
     call = Call(samples=4, repeats=3, seed=2**63, repair=False, reading=how)
     text = command_of(call, "-my file.sdf")
     assert text is not None
-    program, dash, package, name, *arguments = shlex.split(text)
-    assert (program, dash, package, name) == ("python", "-m", "crawler2d", "audit")
+    program, name, *arguments = shlex.split(text)
+    assert (program, name) == ("crawler2d", "audit")
     parser = argparse.ArgumentParser()
     command.add_arguments(parser)
     options = parser.parse_args(arguments)
@@ -170,9 +181,9 @@ def test_the_command_on_a_page_makes_the_same_audit_again(expanding: Path, capsy
     how: Any = {"trusted": True, "engine": "isaac", "tolerance": 0.01}
     few: Any = {"samples": 1, "repeats": 1, "repair": False, "progress": False}
     once = c2d.audit(expanding, **few, **how)
-    command = re.search(r"python -m crawler2d audit .*?(?=<)", once.to_html())
+    command = re.search(r"crawler2d audit models.*?(?=<)", once.to_html())
     assert command is not None
-    arguments = shlex.split(html.unescape(command[0]))[4:]
+    arguments = shlex.split(html.unescape(command[0]))[2:]
     status, out, err = run(capsys, *arguments, "--json", "--no-html")
     assert status in (0, 1), err
     assert json.loads(out) == json.loads(json.dumps(plain_of(once)))
@@ -212,3 +223,104 @@ def test_the_command_advises_its_option_for_folders(capsys: Any, tmp_path: Path,
     assert status == 2
     assert "--package NAME=FOLDER" in err
     assert "packages=" not in err
+
+
+def test_the_console_script_is_this_command(capsys: Any) -> None:
+    project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]
+    module, _, name = project["scripts"]["crawler2d"].partition(":")
+    script = getattr(importlib.import_module(module), name)
+    assert script(["audit", "missing.sdf"]) == 2
+    assert capsys.readouterr().err.startswith("crawler2d audit: FILE must be")
+
+
+def test_python_m_is_the_same_command() -> None:
+    words = [sys.executable, "-m", "crawler2d", "audit", "missing.sdf"]
+    made = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (made.returncode, made.stdout) == (2, "")
+    assert made.stderr.startswith("crawler2d audit: FILE must be")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--smaples", "3", "x.sdf"], "--smaples is not known (did you mean --samples?)"),
+        (["x.sdf", "--engine", "ode"], "invalid choice: 'ode'"),
+        ([], "the following arguments are required: file"),
+    ],
+)
+def test_a_misspelled_option_is_refused_in_one_line(
+    capsys: Any, arguments: list[str], said: str
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run(capsys, *arguments)
+    printed = capsys.readouterr()
+    assert (ended.value.code, printed.out) == (2, "")
+    assert len(printed.err.strip().splitlines()) == 1
+    assert said in printed.err
+    assert "crawler2d audit --help" in printed.err
+
+
+@pytest.mark.parametrize("what", ["missing", "folder", "empty"])
+def test_a_file_that_is_none_is_refused_in_one_line(capsys: Any, tmp_path: Path, what: str) -> None:
+    path = tmp_path / f"{what}.sdf"
+    if what == "folder":
+        path.mkdir()
+    elif what == "empty":
+        path.touch()
+    status, out, err = run(capsys, str(path))
+    assert (status, out) == (2, "")
+    assert len(err.strip().splitlines()) == 1
+    assert path.name in err
+
+
+WITHOUT_OPTION = {"obstacles", "vary", "unknown", "drive", "duration", "executor", "progress"}
+"""Of the keywords of an audit."""
+
+
+def keywords() -> list[str]:
+    """All that `audit` and `read_robot` take."""
+    names = [
+        *inspect.signature(c2d.audit).parameters,
+        *inspect.signature(c2d.read_robot).parameters,
+    ]
+    others = {"robot", "reading", "path", "repair"}
+    return [name for name in dict.fromkeys(names) if name not in WITHOUT_OPTION | others]
+
+
+@pytest.mark.parametrize("name", keywords())
+def test_errors_speak_of_options(name: str) -> None:
+    parser = argparse.ArgumentParser()
+    command.add_arguments(parser)
+    option = OPTIONS[name]
+    assert option in {each for action in parser._actions for each in action.option_strings}
+    assert as_options(f"{name} must be given, got None") == f"{option} must be given"
+    assert as_options(f"{name}['a'] must be text, got 3") == f"{option} must be text, got 3"
+    for advice in (f"or {name}= says", f'or {name}="hull" says', f"or {name}=0.01 says"):
+        told = as_options(advice)
+        assert told.startswith(f"or {option} ")
+        assert f"{name}=" not in told
+        assert told.endswith(" says")
+
+
+@pytest.mark.parametrize(
+    ("advice", "told"),
+    [
+        ("trusted=True lets it", "--trusted lets it"),
+        ("packages={name: folder}", "--package NAME=FOLDER"),
+        ("arguments={'a': 1} sets it", "--argument NAME=VALUE sets it"),
+        ("tolerance= may say more", "--tolerance may say more"),
+        ("a submodel=1 is none", "a submodel=1 is none"),
+    ],
+)
+def test_advice_is_given_as_options(advice: str, told: str) -> None:
+    assert as_options(advice) == told
+
+
+def test_a_file_ten_times_too_large_is_refused_before_any_run(capsys: Any) -> None:
+    """It would be the audit of another robot."""
+    status, out, err = run(capsys, str(ROBOTS / "eng.urdf"), "--mesh", "leave_out")
+    assert (status, out) == (2, "")
+    assert "--scale must be given: eng.urdf is 5.32 m long" in err
+    assert "is it ten times too large? --scale 0.1 reads it so" in err
+    assert "--scale 1 leaves it as it is" in err
+    assert len(err.strip().splitlines()) == 1

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from crawler2d._doubts import warn
-from crawler2d.audits.audited import Audited
+from crawler2d.audits.audited import Audited, Begun
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.call import Call
 from crawler2d.audits.lint import lint
+from crawler2d.audits.live import Counted, live_of
+from crawler2d.audits.looks import likely_first, verdict_on
 from crawler2d.audits.obstacles import read_obstacles, standard_obstacles
-from crawler2d.audits.patches import diffs_of, patch_of
+from crawler2d.audits.patches import best_change, change_of, diffs_of
 from crawler2d.audits.pockets import pockets
 from crawler2d.audits.population import (
     unknown_of,
@@ -25,10 +27,10 @@ from crawler2d.audits.population import (
     without_friction,
 )
 from crawler2d.audits.repairs import Repair, repaired
-from crawler2d.audits.runs import Runs, scenario_of
-from crawler2d.audits.subject import HowToRead, subject_of
-from crawler2d.audits.text import text_of
-from crawler2d.audits.verdicts import BELT, OWN, verdicts_of
+from crawler2d.audits.runs import TRIED, Runs, scenario_of
+from crawler2d.audits.subject import HowToRead, check_size, subject_of
+from crawler2d.audits.text import head_of, lint_of, rest_of, row_of, text_of
+from crawler2d.audits.verdicts import BELT, OWN, Verdict
 from crawler2d.common.arrays import whole_number
 from crawler2d.common.extras import extra
 from crawler2d.common.keywords import takes_keywords
@@ -38,12 +40,17 @@ from crawler2d.parameters.settings import Drive
 from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
 from crawler2d.runs.progress import Progress
+from crawler2d.runs.threads import thread_count
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Audit", "audit"]
 
-SAMPLES, REPEATS = 80, 1
-"""Of the unknowns, and runs of each: of 80 robots that never seize at most 4.6 % do, of 80 of which
-8 do so at least 5.2 %. A run of another robot tells more than one more of the same."""
+QUICK, SAMPLES, REPEATS = 36, 80, 1
+"""Of the unknowns, if it is to be quick and if not, and runs of each: of 80 robots that never seize
+at most 4.6 % do, of 80 of which 8 do so at least 5.2 %. A run of another robot tells more than one
+more of the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -72,48 +79,57 @@ class Audit(Audited):
 
     @property
     def in_words(self) -> str:
-        """The short form, as ``python -m crawler2d audit`` prints it."""
+        """The short form, as ``crawler2d audit`` prints it."""
         return text_of(self)
 
     @takes_keywords
     def patch(
         self, path: str | os.PathLike[str] | None = None, repair: Repair | None = None
     ) -> str:
-        """Change the wheels in the file that was audited, and nothing else.
+        """Write the file that was audited with a repair: the best there is, with its label.
 
-        All wheels of a carrier together keep their mass and the torque of their motors; a new one
-        is a copy of its neighbour, with all that drives it. What was made is read again, and
-        refused if that is not the repaired robot. Settings of plugins that may no longer be right
-        for so many wheels are left as they are, with a `ScenarioWarning` each.
+        Wheels are changed in the file, and nothing else. All wheels of a carrier together keep
+        their mass and the torque of their motors; a new one is a copy of its neighbour, with all
+        that drives it. What was made is read again, and refused if that is not the repaired robot.
+        Settings of plugins that may no longer be right for so many wheels are left as they are,
+        with a `ScenarioWarning` each. Belts are written anew, as `Robot.to_sdf` and `to_mjcf` do.
+        The first comment of the file says what it has, and how well that does.
 
         Parameters
         ----------
         path : path-like, optional
-            Where to write the changed file; meshes keep their relative names, so the folder of
-            the file that was read is the place for it.
+            Where to write the file; meshes keep their relative names, so the folder of the file
+            that was read is the place for it. URDF holds no belts: they are written beside it, with
+            the ending .sdf, and a `ScenarioWarning`.
         repair : Repair, optional
-            One of `repairs`; None takes the first that is confirmed and not of belts.
+            One of `repairs`. None takes the wheels of the first that is confirmed; or of the one
+            that is not, but seizes least often, if that is less often than the file does; or else
+            belts. Where the file does not seize, nothing is written.
 
         Returns
         -------
         str
             What differs from the file that was read, as a unified diff. Of a xacro file it is what
-            that expands to which is changed.
+            that expands to which is changed. "" if nothing was written, or written anew.
 
         Raises
         ------
         ScenarioError
-            If no file was audited, no repair by wheels is confirmed, or the file has its wheels in
-            a form that cannot be changed in place, such as meshes of another size.
+            If no file was audited, or the file has its wheels in a form that cannot be changed in
+            place, such as meshes of another size, and no format holds the belts.
         OSError
             If it cannot be written.
         """
-        patch = patch_of(self, repair)
-        for setting in patch.left:
+        change = best_change(self) if repair is None else change_of(self, repair)
+        if change is None:
+            return ""
+        for setting in change.left:
             warn("patch", setting, "leaves this to be set by hand")
         if path is not None:
-            Path(path).write_text(patch.text, encoding="utf-8")
-        return patch.diff
+            written = change.write(Path(path))
+            if written != Path(path):
+                warn("patch", str(written), f"is {change.summary}")
+        return change.diff
 
     def __repr__(self) -> str:
         """Write the short form."""
@@ -178,10 +194,11 @@ def audit(
     *,
     vary: Mapping[str, Any] | None = None,
     unknown: Mapping[str, Any] | None = None,
-    samples: int = SAMPLES,
+    samples: int | None = None,
     repeats: int = REPEATS,
     seed: int = 0,
     repair: bool = True,
+    quick: bool = False,
     drive: Drive | None = None,
     duration: float | None = None,
     store: str | os.PathLike[str] | None = None,
@@ -210,15 +227,19 @@ def audit(
         What is not known, in the same form. None takes, of a file, narrow ranges for what it states
         and wide ones for estimates; of a preset and of another robot those of `unknowns`; and the
         friction of the floor. ``{}`` takes everything as known.
-    samples : int
-        Of the unknowns: so many robots on floors, 1 to 100,000; fewer than 35 cannot show that it
-        does not seize.
+    samples : int, optional
+        Of the unknowns: at most so many robots on floors, 1 to 100,000; an obstacle is left as soon
+        as its verdict is certain. Fewer than 35 cannot show that it does not seize. None takes 80,
+        or 36 if it is to be `quick`.
     repeats : int
         Runs of each of them over every obstacle, 1 to 1,000,000.
     seed : int
         Seed of the draws, 0 to 2^64 - 1.
     repair : bool
         Whether to search for repairs if it seizes.
+    quick : bool
+        Whether to take fewer samples, to try no torque and friction where it stops, and to search
+        among round wheels alone if there are any.
     drive : Drive, optional
         None drives at 0.2 sqrt(g L), with L the axle distance, or at the robot's largest speed if
         that is less; flippers `Climb`, and are raised before the obstacle. `vary` takes shares of
@@ -228,8 +249,12 @@ def audit(
         4 times. None takes that in which the robot would drive fifteen times its own length.
     store : str or path-like, optional
         A file that keeps every run: the same call goes on where it was; see `sweep`.
-    executor, threads, progress
+    executor, threads
         See `sweep`.
+    progress : bool or callable
+        True prints to the standard error what the audit knows before the first run, each verdict
+        as it comes, and what follows; a callable is given the number of finished runs and of all
+        that may be needed.
     **reading
         For a path: the keywords of `read_robot`, such as `engine` and `trusted`.
 
@@ -241,7 +266,8 @@ def audit(
     Raises
     ------
     ScenarioError
-        If the file cannot be read, or an argument or the robot breaks a rule.
+        If the file cannot be read, or an argument or the robot breaks a rule; or the file has a
+        size that no tracked robot has, unless a `scale` is given.
     BatchInterrupted
         On Ctrl-C; a store keeps what was finished.
     ImportError
@@ -256,12 +282,16 @@ def audit(
     >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
     >>> found = audit(robot, step, unknown={}, repeats=20, progress=False)
     >>> found.seizes, found.verdicts[0].where, found.verdicts[0].there
-    (True, '1-2', (20, 20))
+    (True, '1-2', (9, 9))
     >>> found.repairs[0].what, found.repairs[0].confirmed
     ('chassis: 5 wheels in place of 4', True)
     """
     extra("xarray", "analysis")  # fail before the runs if it is missing
+    usual = QUICK if quick else SAMPLES
+    samples = whole_number(usual if samples is None else samples, "samples", 1, 10**5)
+    repeats = whole_number(repeats, "repeats", 1, 10**6)
     whole_number(seed, "seed", 0, 2**64 - 1)
+    thread_count(threads)
     if drive is not None and not isinstance(drive, Drive):
         raise ScenarioError("drive", drive, "must be a Drive")
     own_arguments = {
@@ -271,11 +301,16 @@ def audit(
         "drive": drive,
         "duration": duration,
     }
+    tell, show = live_of(progress)
     own, read, floors = subject_of(robot, reading)
+    if read is not None:
+        check_size(read)
     friction = 0.9 if read is None else read.friction
     grounds = standard_obstacles(own, friction)
     if obstacles is not None:
         grounds = read_obstacles(obstacles)
+    found = pockets(own)
+    grounds = {name: grounds[name] for name in likely_first(grounds, found)}
     if unknown is None:
         if read is None:
             unknown = unknown_of(own, with_friction=obstacles is None)
@@ -292,47 +327,76 @@ def audit(
         store=store,
         executor=executor,
         threads=threads,
-        progress=progress,
+        trials=() if quick else TRIED,
     )
-    belt = belt_of(own)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ScenarioWarning)
-        table = runs.table({OWN: own, BELT: belt.robot}, grounds)
-        verdicts = verdicts_of(table, list(grounds))
-        is_seizing = any(each.word == "seizes" for each in verdicts)
-        found = None
-        if repair and is_seizing:
-            found = repaired(own, belt, grounds=grounds, verdicts=verdicts, table=table, runs=runs)
-    return Audit(
-        robot=own,
-        reading=read,
-        lint=lint(own, read, _doubts(caught)),
-        pockets=pockets(own),
-        belt=belt,
-        obstacles=grounds,
-        verdicts=verdicts,
-        repaired=found,
-        table=table,
-        vary=runs.vary,
-        unknown=unknown,
-        drive=runs.scenario.drive,
-        call=Call(
-            samples=samples,
-            repeats=repeats,
-            seed=seed,
-            repair=repair,
-            own=tuple(name for name, value in own_arguments.items() if value is not None),
-            reading={} if read is None else read.how.given,
-        ),
-    )
+        for ground in grounds.values():
+            runs.scenario.replace({"terrain": ground}).validate()
+        begun = Begun(
+            robot=own,
+            reading=read,
+            lint=lint(own, read, _doubts(caught)),
+            pockets=found,
+            belt=belt_of(own),
+            obstacles=grounds,
+            vary=runs.vary,
+            unknown=unknown,
+            drive=runs.scenario.drive,
+            call=Call(
+                samples=samples,
+                repeats=repeats,
+                seed=seed,
+                repair=repair,
+                quick=quick,
+                own=tuple(name for name, value in own_arguments.items() if value is not None),
+                reading={} if read is None else read.how.given,
+            ),
+        )
+        tell(head_of(begun))
+        verdicts, table = _driven(begun, runs, tell, show)
+        repairs = None
+        if repair and any(each.word == "seizes" for each in verdicts):
+            repairs = repaired(
+                own,
+                begun.belt,
+                grounds=grounds,
+                verdicts=verdicts,
+                table=table,
+                runs=runs,
+                is_quick=quick,
+                show=show,
+            )
+    for each in caught:
+        if not issubclass(each.category, ScenarioWarning):
+            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
+    parts = {each.name: getattr(begun, each.name) for each in fields(begun)}
+    parts["lint"] = lint(own, read, _doubts(caught))
+    audit = Audit(**parts, verdicts=verdicts, repaired=repairs, table=table)
+    late = [each for each in audit.lint if each not in begun.lint]
+    if late:
+        tell("\n".join(lint_of(late, "Lint, doubted in runs")))
+    tell(rest_of(audit))
+    return audit
+
+
+def _driven(
+    begun: Begun, runs: Runs, tell: Callable[[str], None], show: Progress | None
+) -> tuple[tuple[Verdict, ...], xarray.Dataset]:
+    """Drive over the obstacles one after another; tell each verdict as it comes."""
+    xr = extra("xarray", "analysis")
+    models = {OWN: begun.robot, BELT: begun.belt.robot}
+    verdicts, tables = [], []
+    count = Counted(show, len(begun.obstacles) * begun.call.samples * begun.call.repeats)
+    for name, ground in begun.obstacles.items():
+        verdict, table = verdict_on(runs.course(models, name, ground), name, count)
+        tell(row_of(begun, verdict))
+        verdicts.append(verdict)
+        tables.append(table)
+    return tuple(verdicts), xr.concat(tables, "terrain")
 
 
 def _doubts(caught: list[warnings.WarningMessage]) -> list[str]:
-    """Return what the core doubts, each once; other warnings go on."""
-    doubts = []
-    for each in caught:
-        if issubclass(each.category, ScenarioWarning):
-            doubts.append(str(each.message))
-        else:
-            warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
+    """Return what the core doubts, each once."""
+    doubts = [str(each.message) for each in caught if issubclass(each.category, ScenarioWarning)]
     return list(dict.fromkeys(doubts))

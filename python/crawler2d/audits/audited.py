@@ -1,4 +1,4 @@
-"""What an audit has found, as data."""
+"""What an audit knows before the first run, and what it has found, as data."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from crawler2d.reading.reading import Reading
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Audited"]
+__all__ = ["Audited", "Begun"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Audited:
-    """What an audit found, as data.
+class Begun:
+    """What an audit knows before the first run.
 
     Parameters
     ----------
@@ -40,20 +40,11 @@ class Audited:
     belt : Belt
         The robot on belts that it was compared with, and which belts these are, and why.
     obstacles : mapping of str to terrain
-        What it drove over.
-    verdicts : tuple of Verdict
-        One for each obstacle, in their order.
-    repaired : Repaired, optional
-        What the search for repairs came to; None if there was none.
-    table : xarray.Dataset
-        The runs behind the verdicts, as from `sweep`: dimensions `model` ("model", "belt"),
-        `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. The
-        coordinate `speed` [m/s] is that of each run, without its scatter. Its attributes `vary` and
-        `unknown` name what the rates are rates over.
+        What it drives over, in this order: where it is likely to seize comes first.
     vary, unknown : mapping of str to distribution
-        What differed from run to run, and what was not known.
+        What differs from run to run, and what is not known.
     drive : Drive
-        How it was driven.
+        How it is driven.
     call : Call
         What was asked for.
     """
@@ -64,13 +55,33 @@ class Audited:
     pockets: tuple[Pocket, ...]
     belt: Belt
     obstacles: Mapping[str, Terrain]
-    verdicts: tuple[Verdict, ...]
-    repaired: Repaired | None
-    table: xarray.Dataset
     vary: Mapping[str, Any]
     unknown: Mapping[str, Any]
     drive: Drive
     call: Call
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Audited(Begun):
+    """What an audit found, as data.
+
+    Parameters
+    ----------
+    verdicts : tuple of Verdict
+        One for each obstacle, in their order.
+    repaired : Repaired, optional
+        What the search for repairs came to; None if there was none.
+    table : xarray.Dataset
+        The runs behind the verdicts, as from `sweep`: dimensions `model` ("model", "belt"),
+        `terrain`, `sample` and `repeat`. Without unknowns the repeats stand in `sample`. The
+        coordinate `speed` [m/s] is that of each run, without its scatter. Runs that no verdict
+        needed were not made, and have the outcome "". Its attributes `vary` and `unknown` name
+        what the rates are rates over.
+    """
+
+    verdicts: tuple[Verdict, ...]
+    repaired: Repaired | None
+    table: xarray.Dataset
 
     @property
     def seizes(self) -> bool:

@@ -1,51 +1,110 @@
-"""The audited file with the wheels of a repair."""
+"""The audited file with what ends the seizures, or helps: the best there is, with its label."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
 from crawler2d.errors import ScenarioError
-from crawler2d.patching.patch import Patch, patched
+from crawler2d.parameters.robot import Robot
+from crawler2d.patching.patch import labelled, patched
 
 if TYPE_CHECKING:
     from crawler2d.audits.audited import Audited
 
-__all__ = ["diffs_of", "patch_of"]
+__all__ = ["Change", "best_change", "change_of", "diffs_of"]
 
 
-def patch_of(audit: Audited, repair: Repair | None) -> Patch:
-    """Put the wheels of a repair into the file that was audited.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """A file that was changed, or written anew.
 
     Parameters
     ----------
-    audit : Audited
-        Of a file.
-    repair : Repair, optional
-        One of its repairs; None takes the first that is confirmed and not of belts.
+    text : str
+        All of it.
+    label : str
+        What it has, and how well that does; it is the first comment of the text, too.
+    diff : str
+        What differs from the file that was read; "" if it was written anew.
+    summary : str
+        How much differs.
+    left : tuple of str
+        Settings of plugins that are left to be set by hand.
+    ending : str
+        That of a file of another format; "" if it is the same.
+    """
+
+    text: str
+    label: str
+    diff: str = ""
+    summary: str
+    left: tuple[str, ...] = ()
+    ending: str = ""
+
+    def write(self, path: Path) -> Path:
+        """Write it, under another ending if it has one; return where it is."""
+        path = path.with_suffix(self.ending) if self.ending else path
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+
+def best_change(audit: Audited) -> Change | None:
+    """Change the file in the best way that was found; None if it does not seize.
+
+    These are the wheels of the first repair that is confirmed; or those of another with which it
+    seizes less often; or else belts.
 
     Raises
     ------
     ScenarioError
-        If no file was read, there is no such repair, or the text has wheels in a form that cannot
-        be changed in place.
+        If no file was read, or none of these can be written.
     """
-    if audit.reading is None:
-        rule = "must be the audit of a file; Robot.to_sdf, to_urdf and to_mjcf write other robots"
-        raise ScenarioError("patch", "a Robot", rule)
-    if repair is None:
-        held = (each for each in audit.repairs if each.confirmed and each.kind != "belt")
-        repair = next(held, None)
-    if repair is None:
-        rule = (
-            "must be given, where no change of wheels is confirmed: one of Audit.repairs that is"
-            " not; belts are written by repair.robot.to_sdf or to_mjcf"
-        )
-        raise ScenarioError("repair", "none that is confirmed", rule)
+    _check(audit)
+    if not audit.seizes:
+        return None
+    wheels = [each for each in audit.repairs if each.kind != "belt"]
+    better = [each for each in wheels if each.confirmed or _after(audit, each) < _before(audit)]
+    refused = []
+    for repair in sorted(better, key=lambda each: (not each.confirmed, _after(audit, each))):
+        try:
+            return change_of(audit, repair)
+        except ScenarioError as error:
+            refused.append(f"{repair.what}: {error}")
+    belts = next((each for each in audit.repairs if each.kind == "belt"), None)
+    try:
+        change = _on_belts(audit, audit.belt.robot, belts)
+    except ScenarioError as error:
+        refused.append(f"belts: {error}")
+        rule = f"must be one that can be written ({'; '.join(refused)})"
+        raise ScenarioError("repair", "none", rule) from None
+    if refused:
+        change = replace(change, summary=f"{change.summary}; no wheels, for {'; '.join(refused)}")
+    return change
+
+
+def change_of(audit: Audited, repair: Repair) -> Change:
+    """Put a repair into the file that was audited.
+
+    Raises
+    ------
+    ScenarioError
+        If no file was read, or its text has wheels in a form that cannot be changed in place.
+    """
+    _check(audit)
     if repair.kind == "belt":
-        rule = "must be other wheels or gears: write belts with repair.robot.to_sdf or to_mjcf"
-        raise ScenarioError("repair", repair.what, rule)
-    return patched(audit.reading, repair.robot)
+        return _on_belts(audit, repair.robot, repair)
+    assert audit.reading is not None
+    label = words.repair_sentence(repair)
+    patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
+    return Change(
+        text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
+    )
 
 
 def diffs_of(audit: Audited) -> dict[str, str]:
@@ -54,8 +113,46 @@ def diffs_of(audit: Audited) -> dict[str, str]:
     for repair in audit.repairs if audit.reading is not None else ():
         if repair.kind != "belt":
             try:
-                patch = patch_of(audit, repair)
-                found[repair.what] = f"{patch.summary}\n\n{patch.diff}"
+                change = change_of(audit, repair)
+                found[repair.what] = f"{change.summary}\n\n{change.diff}"
             except ScenarioError as error:
                 found[repair.what] = f"no change of the file: {error}"
     return found
+
+
+def _check(audit: Audited) -> None:
+    if audit.reading is None:
+        rule = "must be the audit of a file; Robot.to_sdf, to_urdf and to_mjcf write other robots"
+        raise ScenarioError("patch", "a Robot", rule)
+
+
+def _on_belts(audit: Audited, robot: Robot, repair: Repair | None) -> Change:
+    """Write the robot anew, on belts that a plugin of the simulator moves."""
+    read = audit.reading
+    assert read is not None
+    if repair is None:
+        worst = min(each.belt_cleared.rate for each in audit.verdicts if each.word == "seizes")
+        label = f"not confirmed: belts moved by a track plugin ({audit.belt.reason})"
+        label += f"; the belt cleared {words.percent(worst)} or more where the file seized"
+    else:
+        label = words.repair_sentence(repair)
+    is_mjcf = read.tree.format == "MJCF"
+    text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
+    held = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
+    return Change(
+        text=labelled(text, f"crawler2d, {label}"),
+        label=label,
+        summary=f"written anew as {'MJCF' if is_mjcf else 'SDF'}{held}",
+        ending=".sdf" if held else "",
+    )
+
+
+def _after(audit: Audited, repair: Repair) -> float:
+    """[-] Return how often a repair seizes in fresh runs, over the obstacles that seized."""
+    names = [each.obstacle for each in audit.verdicts if each.word == "seizes"]
+    return float(np.nanmean([repair.seized[name].rate for name in names]))
+
+
+def _before(audit: Audited) -> float:
+    """[-] Return how often the robot as it is seizes there."""
+    return float(np.mean([v.seized.rate for v in audit.verdicts if v.word == "seizes"]))

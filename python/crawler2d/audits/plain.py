@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from crawler2d.audits.words import made
 from crawler2d.parameters.plain import to_plain
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def plain_of(audit: Audited) -> dict[str, Any]:
             "sources": None if read is None else dict(read.sources),
             "vary": audit.table.attrs["vary"],
             "unknown": audit.table.attrs["unknown"],
-            "runs": int(audit.table["outcome"].size),
+            "runs": made(audit.table),
             "belt": audit.belt.reason,
             "lint": [dataclasses.asdict(each) for each in audit.lint],
             "pockets": [dataclasses.asdict(each) for each in audit.pockets],

@@ -10,30 +10,33 @@ import numpy as np
 
 from crawler2d.audits.beside import Belt
 from crawler2d.audits.candidates import Candidate, candidates_of, wheel_count
-from crawler2d.audits.runs import Runs, raised
-from crawler2d.audits.screen import screened
+from crawler2d.audits.live import Counted
+from crawler2d.audits.looks import looks
+from crawler2d.audits.runs import Runs, column
+from crawler2d.audits.screen import best_of
 from crawler2d.audits.share import Share
 from crawler2d.audits.verdicts import (
     CLEARS,
     OWN,
+    RESULTS,
     SEIZES,
     Verdict,
     cleared_beside,
     seized_at,
     shares,
+    surely,
 )
+from crawler2d.common.extras import extra
 from crawler2d.parameters.robot import Robot
-from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Flat, Terrain
-from crawler2d.studies.search import search
+from crawler2d.results.outcome import Outcome
+from crawler2d.runs.progress import Progress
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["LEVEL", "Repair", "Repaired", "judged", "repaired"]
 
-_FIRST = 10  # runs of every candidate on each terrain in the first round of a search
-_GROUNDS = 4  # obstacles of a search: those that seize most
 LEVEL = "level ground"
 """Where the cost of driving is measured."""
 
@@ -57,7 +60,8 @@ class Repair:
     confirmed : bool
         Whether it clears, on every obstacle that seized, 95 % or more of those fresh runs that the
         belt clears with the same draws, and the lower bound of its rate of seizing is above 5 % on
-        none of all obstacles, neither at all speeds together nor at any of them.
+        none of all obstacles but those on which the belt failed, too, neither at all speeds
+        together nor at any of them. All of these runs were made then.
     cleared, seized : mapping of str to Share
         In fresh runs, by obstacle.
     seized_at : mapping of str to mapping of float to Share
@@ -91,19 +95,13 @@ class Repaired(NamedTuple):
         The best of each kind, those that are confirmed first, the least changed first.
     tried : int
         Candidates that were simulated.
-    hopeless : tuple of str
-        Kinds of which no candidate passed the screen.
-    before : mapping of str to Share
-        How often the robot as it is seizes in the same fresh runs, by obstacle.
     table : xarray.Dataset
         The fresh runs: the models "model" and the repairs by their words, the obstacles and "level
-        ground".
+        ground". Those that were not made have the outcome "".
     """
 
     repairs: tuple[Repair, ...]
     tried: int
-    hopeless: tuple[str, ...]
-    before: Mapping[str, Share]
     table: xarray.Dataset
 
 
@@ -115,13 +113,15 @@ def repaired(
     verdicts: Sequence[Verdict],
     table: xarray.Dataset,
     runs: Runs,
+    is_quick: bool,
+    show: Progress | None,
 ) -> Repaired:
     """Search for changes that end the seizures of a robot.
 
-    Candidates first drive the runs in which the robot seized; see `screened`. Of those that pass,
-    round wheels and gear wheels apart, the least changed is searched for that clears 95 % as often
-    as the belt on the four obstacles that seize most; see `crawler2d.studies.search`. Then these,
-    the belt and the robot as it is drive over all obstacles with draws that nothing before has had.
+    Of round wheels and of gear wheels the best is chosen in the runs in which the robot seized; see
+    `best_of`. Then these and the belt drive with draws that nothing before has had, over all
+    obstacles but those on which the belt fails, too. One that can no longer be confirmed stops
+    after the next look.
 
     Parameters
     ----------
@@ -137,69 +137,93 @@ def repaired(
         The runs behind these.
     runs : Runs
         How runs are made.
+    is_quick : bool
+        Whether gear wheels, which take longest, are tried only where there are no round ones.
+    show : Progress, optional
+        Counts the runs.
     """
-    seizing = [each for each in verdicts if each.word == "seizes"]
-    worst = sorted(seizing, key=lambda each: -each.seized.rate)[:_GROUNDS]
+    worst_first = sorted(verdicts, key=lambda each: -each.seized.rate)
+    seizing = [each for each in worst_first if each.word == "seizes"]
     carriers = {"chassis" if each.carrier == "chassis" else "flippers" for each in seizing}
     every = candidates_of(robot, carriers)
-    passed = screened(every, table, worst[0].obstacle, runs.threads)
-    chosen, hopeless = [], []
-    for kind in ("wheels", "gears"):
-        space = [each for each in passed if each.kind == kind]
-        if not space and any(each.kind == kind for each in every):
-            hopeless.append(kind)
-        elif space:
-            chosen.append(_searched(space, worst, grounds, runs))
+    spaces = [[each for each in every if each.kind == kind] for kind in ("wheels", "gears")]
+    spaces = [space for space in spaces if space]
+    if is_quick:
+        spaces = spaces[:1]
+    names = [each.obstacle for each in seizing]
+    chosen = [
+        best_of(space, table, names, is_quick=is_quick, threads=runs.threads, show=show)
+        for space in spaces
+    ]
     beside = OWN
     if belt.robot != robot:
         beside = what = f"belts moved by a track plugin ({belt.reason})"
         belts = wheel_count(robot) + 1
         chosen.append(Candidate(what=what, kind="belt", robot=belt.robot, change=belts))
+    over = {
+        each.obstacle: grounds[each.obstacle]
+        for each in worst_first
+        if each.word != "belt fails, too"
+    }
     models = {OWN: robot, **{each.what: each.robot for each in chosen}}
-    # Stops that rattle cost most, so what driving costs is measured where nothing stops.
-    level = Flat(length=5.0 * robot.outline.axle_distance)
-    fresh = runs.table(models, {**grounds, LEVEL: level}, is_confirming=True)
-    found = [judged(fresh, each, list(grounds), seizing, beside) for each in chosen]
-    order = sorted(found, key=lambda each: (not each.confirmed, each.change))
-    before = {name: shares(fresh, OWN, name)[1] for name in grounds}
+    fresh = _driven(models, over, beside=beside, seizing=names, runs=runs, show=show)
+    found = [judged(fresh, each, list(over), seizing, beside) for each in chosen]
     return Repaired(
-        repairs=tuple(order),
-        tried=len(every) + (belt.robot != robot),
-        hopeless=tuple(hopeless),
-        before=before,
+        repairs=tuple(sorted(found, key=lambda each: (not each.confirmed, each.change))),
+        tried=sum(map(len, spaces)) + (belt.robot != robot),
         table=fresh,
     )
 
 
-def _searched(
-    space: list[Candidate], worst: Sequence[Verdict], grounds: Mapping[str, Terrain], runs: Runs
-) -> Candidate:
-    """Return the least changed candidate that gets over the worst obstacles, or the best of all."""
-    drive = runs.scenario.drive
-    changes = {raised(each.robot, drive): each.change for each in space}
+def _driven(
+    models: Mapping[str, Robot],
+    over: Mapping[str, Terrain],
+    *,
+    beside: str,
+    seizing: Sequence[str],
+    runs: Runs,
+    show: Progress | None,
+) -> xarray.Dataset:
+    """Drive candidates over obstacles with fresh draws, until they fail or all are made."""
+    xr = extra("xarray", "analysis")
+    courses = {
+        name: runs.course(models, name, ground, is_confirming=True) for name, ground in over.items()
+    }
+    samples = next(iter(courses.values())).samples
+    count = Counted(show, samples * len(over) * (len(models) - 1))
+    left = [what for what in models if what != OWN or what == beside]
+    for made in looks(samples):
+        for course in courses.values():
+            for what in left:
+                course.drive(what, made, count.part())
+        tables = {name: course.table() for name, course in courses.items()}
+        failed = [what for what in left if _fails(tables, what, beside, seizing)]
+        left = [what for what in left if what == beside or what not in failed]
+        if set(left) <= {OWN, *failed}:
+            break
+    # Stops that rattle cost most, so what driving costs is measured where nothing stops.
+    ground = Flat(length=5.0 * models[OWN].outline.axle_distance)
+    level = runs.course(models, LEVEL, ground, is_confirming=True)
+    for what in models:
+        level.drive(what, next(looks(samples)), count.part())
+    fresh: xarray.Dataset = xr.concat([*tables.values(), level.table()], "terrain")
+    return fresh
 
-    def change(scenario: Scenario) -> float:
-        return float(changes[scenario.robot])
 
-    found = search(
-        runs.scenario,
-        {each.what: {"robot": raised(each.robot, drive)} for each in space},
-        change,
-        terrains={each.obstacle: grounds[each.obstacle] for each in worst},
-        # No wheels do better than the belt where that fails, as on slippery floors.
-        at_least=CLEARS * min(each.belt_cleared.rate for each in worst),
-        first=_FIRST,
-        confirm=1,  # the fresh runs of `repaired` confirm
-        vary=runs.vary,
-        unknown=runs.unknown,
-        samples=1,
-        seed=runs.seed,
-        store=runs.store,
-        executor=runs.executor,
-        threads=runs.threads,
-        progress=runs.progress,
-    )
-    return next(each for each in space if each.what == found.attrs["winner"])
+def _fails(
+    tables: Mapping[str, xarray.Dataset], what: str, beside: str, seizing: Sequence[str]
+) -> bool:
+    """Whether no runs to come can confirm a candidate."""
+    for name, table in tables.items():
+        ends, of_belt = (
+            column(table, "outcome", model=each, terrain=name) for each in (what, beside)
+        )
+        lost = np.isin(ends, RESULTS) & (ends != Outcome.CLEARED) & (of_belt == Outcome.CLEARED)
+        if name in seizing and ends.size - int(lost.sum()) < CLEARS * ends.size:
+            return True
+        if surely(table, ends == Outcome.SEIZED) > SEIZES:
+            return True
+    return False
 
 
 def judged(
@@ -220,13 +244,15 @@ def judged(
         *(r for own in at.values() for r in own.values()),
     ]
     seizes = any(each.low > SEIZES for each in rates)
+    ends = (column(table, "outcome", model=chosen.what, terrain=name) for name in grounds)
+    is_whole = all((each != "").all() for each in ends)
     return Repair(
         what=chosen.what,
         kind=chosen.kind,
         robot=chosen.robot,
         change=chosen.change,
         wheels=wheel_count(chosen.robot),
-        confirmed=clears and not seizes,
+        confirmed=clears and not seizes and is_whole,
         cleared={name: cleared for name, (cleared, _) in pairs.items()},
         seized={name: seized for name, (_, seized) in pairs.items()},
         seized_at=at,

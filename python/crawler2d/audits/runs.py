@@ -1,9 +1,9 @@
-"""The runs behind an audit: every model over every obstacle, as one table."""
+"""The runs behind an audit: robots over an obstacle, of which more and more are made."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -19,14 +19,14 @@ from crawler2d.parameters.terrain import Terrain
 from crawler2d.runs.progress import Progress
 from crawler2d.sweeps.axes import Axis
 from crawler2d.sweeps.labels import Label
-from crawler2d.sweeps.tabulate import tabulate
+from crawler2d.sweeps.tabulate import Tabulation
 from crawler2d.variation.distributions import Levels
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-__all__ = ["TRIED", "Runs", "column", "raised", "scenario_of"]
+__all__ = ["TRIED", "Course", "Runs", "column", "raised", "scenario_of"]
 
 TRIED = ("torque x 2", "friction x 2")
 """What is tried at every stop, besides the closed track of jammed robots."""
@@ -80,20 +80,19 @@ class Runs:
     store: str | PathLike[str] | None
     executor: Executor | None
     threads: int | None
-    progress: bool | Progress | None
+    trials: Sequence[str] = TRIED
 
-    def table(
+    def course(
         self,
         robots: Mapping[str, Robot],
-        grounds: Mapping[str, Terrain],
+        name: str,
+        ground: Terrain,
         *,
         is_confirming: bool = False,
-    ) -> xarray.Dataset:
-        """Simulate every robot on every ground: by `model`, `terrain`, `sample`, `repeat`.
+    ) -> Course:
+        """Plan the runs of some robots over one obstacle.
 
-        The coordinate `speed` [m/s] tells the levels of the speed apart.
-
-        A confirmation takes half of the samples, once each, and draws that nothing else has had.
+        A confirmation has half of the samples, once each, and draws that nothing else has had.
         """
         samples, repeats, seed = self.samples, self.repeats, self.seed
         if is_confirming:
@@ -101,45 +100,82 @@ class Runs:
             repeats = 1 if self.unknown else repeats
         drive = self.scenario.drive
         for robot in robots.values():
-            for ground in grounds.values():
-                # A broken rule is an error here; a run that only its draws break is recorded.
-                self.scenario.replace({"robot": raised(robot, drive), "terrain": ground}).validate()
+            # A broken rule is an error here; a run that only its draws break is recorded.
+            self.scenario.replace({"robot": raised(robot, drive), "terrain": ground}).validate()
         models: dict[Label, Mapping[str, Any]] = {
-            name: {"robot": raised(robot, drive)} for name, robot in robots.items()
+            label: {"robot": raised(robot, drive)} for label, robot in robots.items()
         }
-        terrains: dict[Label, Mapping[str, Any]] = {
-            name: {"terrain": ground} for name, ground in grounds.items()
-        }
-        table = tabulate(
+        planned = Tabulation(
             self.scenario,
-            [Axis("model", ("robot",), models), Axis("terrain", ("terrain",), terrains)],
+            [
+                Axis("model", ("robot",), models),
+                Axis("terrain", ("terrain",), {name: {"terrain": ground}}),
+            ],
             repeats=repeats,
             seed=seed,
             vary=self.vary,
             unknown=self.unknown,
             samples=samples,
-            trials=TRIED,
+            trials=self.trials,
             store=self.store,
             executor=self.executor,
             wall_time=True,
             threads=self.threads,
-            progress=self.progress,
-            on_error="record",
         )
-        if "sample" not in table.dims:
-            table = table.rename(repeat="sample").expand_dims("repeat", -1)
-        return table.assign_coords(speed=(("sample", "repeat"), self._speeds(table.sizes)))
-
-    def _speeds(self, sizes: Mapping[Hashable, int]) -> NDArray[np.float64]:
-        """[m/s] Return the speed of each run without its scatter, shape (samples, repeats).
-
-        Levels are taken in turn, sample by sample and repeat by repeat; see `Variation.numbers`.
-        """
         levels = self.vary.get("drive.speed")
         factors = np.array(levels.factors if isinstance(levels, Levels) else (1.0,))
-        turn = np.add.outer(np.arange(sizes["sample"]), np.arange(sizes["repeat"]))
         speeds = np.round(self.scenario.drive.speed * factors, 3)
-        return np.asarray(speeds[turn % factors.size])
+        return Course(planned, list(robots), samples if self.unknown else repeats, speeds)
+
+
+class Course:
+    """The runs of some robots over one obstacle, of which more and more are made.
+
+    Parameters
+    ----------
+    planned : Tabulation
+        All of them.
+    robots : sequence of str
+        Names of the robots.
+    samples : int
+        Of each robot, at most.
+    speeds : ndarray
+        [m/s] The levels that runs take in turn, without their scatter.
+    """
+
+    def __init__(
+        self,
+        planned: Tabulation,
+        robots: Sequence[str],
+        samples: int,
+        speeds: NDArray[np.float64],
+    ) -> None:
+        self.samples = samples
+        self._planned, self._speeds = planned, speeds
+        self._made = dict.fromkeys(robots, 0)
+
+    def drive(self, robot: str, samples: int, progress: Progress | None = None) -> int:
+        """Make the runs of a robot up to a number of samples; return how many these are."""
+        each = len(self._planned.checked) // len(self._made) // self.samples
+        begin = list(self._made).index(robot) * self.samples
+        places = range((begin + self._made[robot]) * each, (begin + samples) * each)
+        self._planned.simulate(places, progress)
+        self._made[robot] = samples
+        return len(places)
+
+    def table(self) -> xarray.Dataset:
+        """Return what was made: by `model`, `terrain`, `sample`, `repeat`.
+
+        Without unknowns the repeats stand in `sample`. The coordinate `speed` [m/s] tells the
+        levels of the speed apart. A run that was not made has the outcome "".
+        """
+        table = self._planned.table()
+        if "sample" not in table.dims:
+            table = table.rename(repeat="sample").expand_dims("repeat", -1)
+        # Levels are taken in turn, sample by sample and repeat by repeat: `Variation.numbers`.
+        turn = np.add.outer(np.arange(self.samples), np.arange(table.sizes["repeat"]))
+        speeds = self._speeds[turn % self._speeds.size]
+        return table.assign_coords(speed=(("sample", "repeat"), speeds))
 
 
 def column(table: xarray.Dataset, name: str, **at: str) -> NDArray[Any]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crawler2d.sweeps.sequential import sequential
 from crawler2d.sweeps.statistics import clustered
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ class Share:
         [-] Of all runs with a result; nan without one.
     low, high : float
         [-] 95 % interval of that, with the samples of the unknowns as its clusters: see
-        `sweeps.statistics.clustered`. Without unknowns every repeat counts.
+        `sweeps.statistics.clustered`; of fewer runs than were planned, see `share_of`. Without
+        unknowns every repeat counts.
     band_low, band_median, band_high : float
         [-] Of the rates of single samples, each a robot on a floor, 5, 50 and 95 %; without
         unknowns all are the rate.
@@ -44,13 +46,18 @@ class Share:
     samples: int
 
 
-def share_of(happened: NDArray[np.bool_], made: NDArray[np.bool_]) -> Share:
+def share_of(
+    happened: NDArray[np.bool_], made: NDArray[np.bool_], *, is_stopped: bool = False
+) -> Share:
     """Count how often something happened.
 
     Parameters
     ----------
     happened, made : ndarray of bool, shape (samples, repeats)
         Whether it happened in a run, and whether the run has a result.
+    is_stopped : bool
+        Whether what came decided that no more runs were made: then the interval is that of
+        `sweeps.sequential`, which holds however often one looks.
 
     Examples
     --------
@@ -78,6 +85,8 @@ def share_of(happened: NDArray[np.bool_], made: NDArray[np.bool_]) -> Share:
             samples=0,
         )
     rate, low, high = clustered(hits, counts)
+    if is_stopped:
+        _, low, high = sequential(int(hits.sum()), int(counts.sum()))
     band = np.quantile(rates, (0.05, 0.5, 0.95))
     return Share(
         rate=rate,

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Collection, Mapping
 from typing import Literal, NamedTuple, TypedDict
 
+from crawler2d.audits.lint_robot import of_robot
 from crawler2d.audits.population import FLOORS
 from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.robot import Robot
@@ -14,7 +15,7 @@ from crawler2d.reading.friction import Engine
 from crawler2d.reading.meshes import MeshRule
 from crawler2d.reading.reading import Reading, read_robot
 
-__all__ = ["HowToRead", "Subject", "subject_of"]
+__all__ = ["HowToRead", "Subject", "check_size", "subject_of"]
 
 
 class HowToRead(TypedDict, total=False):
@@ -78,3 +79,21 @@ def _read(path: object, how: HowToRead) -> Reading:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ScenarioWarning)
         return read_robot(path, **how)
+
+
+def check_size(read: Reading) -> None:
+    """Refuse what would be the audit of another robot, unless somebody said that it is meant.
+
+    Raises
+    ------
+    ScenarioError
+        If it has a size that no tracked robot has, and was read without a `scale`.
+    """
+    found = next((each for each in of_robot(read.robot) if each.rule == "size"), None)
+    if found is None or "scale" in read.how.given:
+        return
+    where = read.sources["robot.outline.axle_distance"]
+    rule = (
+        f"must be given: {read.tree.file} is {found.what} [{where}], and scale=1 leaves it as it is"
+    )
+    raise ScenarioError("scale", None, rule)

@@ -10,31 +10,50 @@ from crawler2d.audits import words
 from crawler2d.variation.ranges import Ranges
 
 if TYPE_CHECKING:
-    from crawler2d.audits.audited import Audited
+    from crawler2d.audits.audited import Audited, Begun
     from crawler2d.audits.finding import Finding
     from crawler2d.audits.pockets import Pocket
     from crawler2d.audits.repairs import Repaired
+    from crawler2d.audits.verdicts import Verdict
 
-__all__ = ["text_of", "text_of_lint"]
+__all__ = ["head_of", "lint_of", "rest_of", "row_of", "text_of", "text_of_lint"]
 
 _WIDTH = 100
 
 
+_WIDEST = ("driven", "100 % (95-100)", "100 % (95-100)", "belt clears", "left terrain", "")
+"""Of the columns after the first, so that rows may be written before all are known."""
+
+
 def text_of(audit: Audited) -> str:
     """Write an audit for a terminal: robot, lint, pockets, verdicts, repairs, and what follows."""
-    parts = [
-        *(_robot(audit), _lint(audit.lint), _pockets(audit.pockets)),
-        *(_verdicts(audit), _conclusion(audit)),
-    ]
+    rows = [row_of(audit, each) for each in audit.verdicts]
+    return "\n".join([head_of(audit), *rows, rest_of(audit)])
+
+
+def head_of(audit: Begun) -> str:
+    """Write what is known before the first run, and the head of the table of verdicts."""
+    parts = (_robot(audit), lint_of(audit.lint), _pockets(audit.pockets), _verdicts(audit))
     return "\n\n".join("\n".join(part) for part in parts)
+
+
+def row_of(audit: Begun, verdict: Verdict) -> str:
+    """Write a verdict as a row of their table."""
+    return _row(audit, words.verdict(verdict))
+
+
+def rest_of(audit: Audited) -> str:
+    """Write what stands below the verdicts: jams, conclusion and repairs."""
+    parts = ["\n".join(_jams(audit)), "\n".join(_conclusion(audit))]
+    return "\n\n".join(filter(None, parts))
 
 
 def text_of_lint(title: str, lint: Sequence[Finding], pockets: Sequence[Pocket]) -> str:
     """Write what is found without runs, below a title."""
-    return "\n\n".join("\n".join(part) for part in ([title], _lint(lint), _pockets(pockets)))
+    return "\n\n".join("\n".join(part) for part in ([title], lint_of(lint), _pockets(pockets)))
 
 
-def _robot(audit: Audited) -> Iterator[str]:
+def _robot(audit: Begun) -> Iterator[str]:
     read = audit.reading
     yield words.subject(audit)
     yield from _wrapped(words.reservation(audit), 0)
@@ -52,8 +71,9 @@ def _robot(audit: Audited) -> Iterator[str]:
         yield from _wrapped(text, 4)
 
 
-def _lint(lint: Sequence[Finding]) -> Iterator[str]:
-    yield "Lint" if lint else "Lint: nothing found"
+def lint_of(lint: Sequence[Finding], title: str = "Lint") -> Iterator[str]:
+    """Write what lint found, line by line."""
+    yield title if lint else "Lint: nothing found"
     for each in lint:
         where = f" [{each.where}]" if each.where else ""
         yield from _wrapped(f"{each.severity}, {each.rule}: {each.what}{where}")
@@ -80,11 +100,22 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
         yield from _wrapped(f"{carrier}: {what}, {text}")
 
 
-def _verdicts(audit: Audited) -> Iterator[str]:
+def _verdicts(audit: Begun) -> Iterator[str]:
     yield from _wrapped(f"Verdicts: {words.population(audit)}", 0)
-    yield from _wrapped(f"belt: {audit.belt.reason}")
+    yield from _wrapped("an obstacle is left as soon as its verdict is certain")
+    belt = f"belt: {audit.belt.reason}; it does not drive (-) where the robot clears"
+    yield from _wrapped(belt)
+    yield _row(audit, words.VERDICT_HEAD)
+
+
+def _row(audit: Begun, cells: Sequence[str]) -> str:
+    widths = (max(map(len, (*audit.obstacles, cells[0]))), *map(len, _WIDEST))
+    padded = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+    return f"  {'  '.join(padded)}".rstrip()
+
+
+def _jams(audit: Audited) -> Iterator[str]:
     yield from _wrapped(words.lost(audit))
-    yield from _columns([words.VERDICT_HEAD, *map(words.verdict, audit.verdicts)])
     jammed = [each for each in audit.verdicts if each.where]
     if jammed:
         yield "  where it is jammed, how often at each speed, and how many a change frees there:"
@@ -103,8 +134,6 @@ def _repairs(found: Repaired, vary: Mapping[str, Any]) -> Iterator[str]:
     yield from _wrapped(f"Repairs: {words.repairs_found(found, vary)}", 0)
     for each in found.repairs:
         yield from _wrapped(words.repair_sentence(each))
-    for kind in found.hopeless:
-        yield f"  {words.hopeless(kind)}"
 
 
 def _columns(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:

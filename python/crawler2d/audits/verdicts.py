@@ -24,13 +24,16 @@ __all__ = [
     "BELT",
     "CLEARS",
     "OWN",
+    "RESULTS",
     "SEIZES",
     "WORDS",
     "Freed",
     "Verdict",
     "cleared_beside",
+    "is_certain",
     "least_samples",
     "seized_at",
+    "surely",
     "verdict_word",
     "verdicts_of",
 ]
@@ -41,7 +44,10 @@ OWN, BELT = "model", "belt"
 WORDS = ("seizes", "belt fails, too", "does not seize", "not certain")
 """The words of a verdict, in the order in which they are asked."""
 
-SEIZES, _SELDOM, CLEARS = 0.05, 0.10, 0.95
+SEIZES, _SELDOM, CLEARS, _QUARTER = 0.05, 0.10, 0.95, 0.25
+
+RESULTS = tuple(str(each) for each in Outcome)
+"""Outcomes of runs that have a result."""
 
 _TRIED = ("closed track", "closed track, clear of the ground", *TRIED)
 
@@ -76,9 +82,10 @@ class Verdict:
     cleared, seized : Share
         Of the model's runs.
     belt_cleared, belt_seized : Share
-        Of those of the same robot on belts.
+        Of those of the same robot on belts, which do not drive where the robot clears 95 % or more
+        and never seizes.
     outcome, belt_outcome : str
-        How most runs ended.
+        How most runs ended; "" without any.
     where : str
         Between which wheels most seized runs are jammed, such as "8-9"; "" without any.
     carrier : str
@@ -165,24 +172,31 @@ def verdicts_of(table: xarray.Dataset, obstacles: Sequence[str]) -> tuple[Verdic
 def shares(table: xarray.Dataset, model: str, obstacle: str) -> tuple[Share, Share]:
     """Return how often a model clears an obstacle, and how often it seizes there."""
     ends = column(table, "outcome", model=model, terrain=obstacle)
-    made = _has_result(ends)
-    return share_of(ends == Outcome.CLEARED, made), share_of(ends == Outcome.SEIZED, made)
+    made, stopped = _has_result(ends), _is_stopped(ends)
+    return (
+        share_of(ends == Outcome.CLEARED, made, is_stopped=stopped),
+        share_of(ends == Outcome.SEIZED, made, is_stopped=stopped),
+    )
 
 
 def seized_at(table: xarray.Dataset, model: str, obstacle: str) -> dict[float, Share]:
     """Return how often a model seizes on an obstacle at each speed [m/s], the slowest first."""
     ends = column(table, "outcome", model=model, terrain=obstacle)
-    return _by_speed(table, ends == Outcome.SEIZED, _has_result(ends))
+    return _by_speed(table, ends == Outcome.SEIZED, ends)
 
 
 def _by_speed(
     table: xarray.Dataset,
     happened: np.ndarray[tuple[int, int]],
-    made: np.ndarray[tuple[int, int]],
+    ends: np.ndarray[tuple[int, int]],
 ) -> dict[float, Share]:
     speeds = table["speed"].transpose("sample", "repeat").values
     levels = {speed: speeds == speed for speed in np.unique(speeds).tolist()}
-    return {speed: share_of(happened & own, made & own) for speed, own in levels.items()}
+    made, stopped = _has_result(ends), _is_stopped(ends)
+    return {
+        speed: share_of(happened & own, made & own, is_stopped=stopped)
+        for speed, own in levels.items()
+    }
 
 
 def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) -> Share:
@@ -200,11 +214,57 @@ def cleared_beside(table: xarray.Dataset, model: str, belt: str, obstacle: str) 
     ends, of_belt = (
         column(table, "outcome", model=name, terrain=obstacle) for name in (model, belt)
     )
-    return share_of(ends == Outcome.CLEARED, _has_result(ends) & (of_belt == Outcome.CLEARED))
+    both = _has_result(ends) & (of_belt == Outcome.CLEARED)
+    return share_of(ends == Outcome.CLEARED, both, is_stopped=_is_stopped(ends))
+
+
+def is_certain(table: xarray.Dataset, verdict: Verdict) -> bool:
+    """Whether a verdict on a part of the runs needs no more of them.
+
+    One on "seizes" does not, once so many runs have seized while the belt cleared that it is this
+    word whatever the others come to: so it is wrong no more often than that of all runs. "Belt
+    fails, too" stays, once a quarter of the samples is made and none of them seized while the belt
+    cleared, if both have failed so often that neither can reach 95 % of all. Repeats of one robot
+    may be alike: with them, all runs are made.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        With the models "model" and "belt", and the outcome "" of runs that were not made.
+    verdict : Verdict
+        On what was made.
+    """
+    if table.sizes["repeat"] > 1:
+        return False
+    ends, of_belt = (
+        column(table, "outcome", model=model, terrain=verdict.obstacle) for model in (OWN, BELT)
+    )
+    if verdict.word == "belt fails, too":
+        is_quarter = (ends != "").sum() >= _QUARTER * ends.size
+        fails = min(
+            int((_has_result(each) & (each != Outcome.CLEARED)).sum()) for each in (ends, of_belt)
+        )
+        return bool(is_quarter and verdict.instead == 0 and fails > (1.0 - CLEARS) * ends.size)
+    alone = (ends == Outcome.SEIZED) & (of_belt == Outcome.CLEARED)
+    return verdict.word == "seizes" and surely(table, alone) > SEIZES
+
+
+def surely(table: xarray.Dataset, happened: np.ndarray[tuple[int, int]]) -> float:
+    """[-] Return the lower bound of a rate if it happens in no run that was not made yet.
+
+    At all speeds together or at one of them, whichever is higher; with one repeat each.
+    """
+    speeds = table["speed"].transpose("sample", "repeat").values
+    among = [np.ones_like(happened), *(speeds == speed for speed in np.unique(speeds))]
+    return max(wilson(int((happened & own).sum()), int(own.sum())).low for own in among)
+
+
+def _is_stopped(ends: np.ndarray[tuple[int, int]]) -> bool:
+    return bool((ends == "").any())
 
 
 def _has_result(ends: np.ndarray[tuple[int, int]]) -> np.ndarray[tuple[int, int]]:
-    return np.isin(ends, [str(each) for each in Outcome])
+    return np.isin(ends, RESULTS)
 
 
 def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
@@ -215,9 +275,9 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
     belt_ends = column(table, "outcome", model=BELT, terrain=obstacle)
     where, carrier, there = _where(table, own, jammed)
     instead = jammed & (belt_ends == Outcome.CLEARED)
-    made = _has_result(column(table, "outcome", **own))
-    alone, at = share_of(instead, made), seized_at(table, OWN, obstacle)
-    alone_at = _by_speed(table, instead, made)
+    ends = column(table, "outcome", **own)
+    alone = share_of(instead, _has_result(ends), is_stopped=_is_stopped(ends))
+    at, alone_at = seized_at(table, OWN, obstacle), _by_speed(table, instead, ends)
     return Verdict(
         obstacle=obstacle,
         word=verdict_word(
@@ -227,7 +287,7 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
         seized=seized,
         belt_cleared=belt_cleared,
         belt_seized=belt_seized,
-        outcome=_commonest(column(table, "outcome", **own)),
+        outcome=_commonest(ends),
         belt_outcome=_commonest(belt_ends),
         where=where,
         carrier=carrier,
@@ -241,7 +301,8 @@ def _verdict(table: xarray.Dataset, obstacle: str) -> Verdict:
 
 
 def _commonest(ends: np.ndarray[tuple[int, int]]) -> str:
-    return str(Counter(ends.ravel().tolist()).most_common(1)[0][0])
+    made = ends[ends != ""].tolist()
+    return str(Counter(made).most_common(1)[0][0]) if made else ""
 
 
 def _where(
@@ -261,6 +322,8 @@ def _freed(
     found = []
     for trial in _TRIED:
         name = short_name(trial)
+        if f"tried_{name}" not in table:  # a quick audit tries less
+            continue
         made = column(table, f"tried_{name}", **own) & jammed
         if made.any():
             freed = column(table, f"freed_by_{name}", **own) & made

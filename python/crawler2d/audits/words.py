@@ -23,8 +23,9 @@ from crawler2d.variation.distributions import (
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import NDArray
 
-    from crawler2d.audits.audited import Audited
+    from crawler2d.audits.audited import Audited, Begun
     from crawler2d.audits.repairs import Repair, Repaired
     from crawler2d.audits.share import Share
     from crawler2d.audits.verdicts import Verdict
@@ -40,9 +41,9 @@ __all__ = [
     "driven",
     "end",
     "held",
-    "hopeless",
     "jam",
     "lost",
+    "made",
     "percent",
     "population",
     "range_of",
@@ -59,19 +60,22 @@ __all__ = [
     "worst",
 ]
 
-VERDICT_HEAD = ("obstacle", "clears", "seizes", "belt clears", "most often", "verdict")
+VERDICT_HEAD = ("obstacle", "driven", "clears", "seizes", "belt clears", "most often", "verdict")
+NOT_DRIVEN = "-"
+"""In place of a rate: the belt did not drive, for the robot clears the obstacle."""
+
 _UPRIGHT = 100.0
 """[-] Friction above which a wall is upright but for rounding: no surface has it."""
 
 JAM_HEAD = ("obstacle", "between wheels", "runs", "slow to fast", "friction", "freed there by")
 
 
-def subject(audit: Audited) -> str:
+def subject(audit: Begun) -> str:
     """Say what was audited."""
     return audit.robot.in_words if audit.reading is None else audit.reading.in_words
 
 
-def robot_sentence(audit: Audited) -> str:
+def robot_sentence(audit: Begun) -> str:
     """Say how heavy and how large the robot is, and where its centre of mass is."""
     robot = audit.robot
     outline = robot.outline
@@ -83,19 +87,22 @@ def robot_sentence(audit: Audited) -> str:
     )
 
 
-def population(audit: Audited) -> str:
+def population(audit: Begun) -> str:
     """Say over how many runs the rates are rates, and how fast it drove."""
-    samples, repeats = (audit.table.sizes[name] for name in ("sample", "repeat"))
+    samples, repeats = audit.call.samples, audit.call.repeats
     each = "1 run" if repeats == 1 else f"{repeats} runs"
-    many = f"{samples} {_drawn(audit)}, {each} each" if audit.unknown else f"{samples} runs"
-    said = f"{many}, {driven(audit.table, audit.vary)}; intervals of 95 %"
+    many = f"{samples} {_drawn(audit)}, {each} each" if audit.unknown else f"{repeats} runs"
+    levels = audit.vary.get("drive.speed")
+    factors = levels.factors if isinstance(levels, Levels) else (1.0,)
+    speeds = audit.drive.speed * np.array(factors)
+    said = f"at most {many}, {_driven(speeds, audit.vary)}; intervals of 95 %"
     least = least_samples()
-    if samples < least:
+    if (samples if audit.unknown else repeats) < least:
         said += f'; "does not seize" takes {least} or more'
     return said
 
 
-def _drawn(audit: Audited) -> str:
+def _drawn(audit: Begun) -> str:
     """Name what is another one in each sample: robots, floors, or both."""
     on_floors = {path.startswith("terrain.") for path in audit.unknown}
     if on_floors == {True}:
@@ -105,7 +112,11 @@ def _drawn(audit: Audited) -> str:
 
 def driven(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
     """Say at which speeds the runs of a table drove, and over which sizes of the obstacles."""
-    *slow, fast = (f"{speed:g}" for speed in np.unique(table["speed"].values).tolist())
+    return _driven(table["speed"].values, vary)
+
+
+def _driven(levels: NDArray[np.float64], vary: Mapping[str, Any]) -> str:
+    *slow, fast = (f"{speed:g}" for speed in np.unique(np.round(levels, 3)).tolist())
     speeds = f"{', '.join(slow)} and {fast} m/s in turn" if slow else f"{fast} m/s"
     sizes = vary.get("terrain.height")
     if not isinstance(sizes, Scaled):
@@ -115,21 +126,30 @@ def driven(table: xarray.Dataset, vary: Mapping[str, Any]) -> str:
 
 def lost(audit: Audited) -> str:
     """Say how many runs have no result; "" if all have one."""
-    ends = audit.table["outcome"].values
-    count = int(np.isin(ends, NO_RESULT).sum())
-    return f"{count} of {ends.size} runs have no result: see `error` in the table" if count else ""
+    count = int(np.isin(audit.table["outcome"].values, NO_RESULT).sum())
+    return (
+        f"{count} of {made(audit.table)} runs have no result: see `error` in the table"
+        if count
+        else ""
+    )
 
 
 def verdict(each: Verdict) -> tuple[str, ...]:
     """Write a verdict, as `VERDICT_HEAD` says."""
     return (
         each.obstacle,
+        str(each.cleared.runs),
         share(each.cleared),
         share(each.seized),
-        percent(each.belt_cleared.rate),
+        percent(each.belt_cleared.rate) if each.belt_outcome else NOT_DRIVEN,
         each.outcome.replace("_", " "),
         each.word,
     )
+
+
+def made(table: xarray.Dataset) -> int:
+    """Count the runs of a table that were made."""
+    return int((table["outcome"] != "").sum())
 
 
 _SHORT = {"closed track": "belt", "closed track, clear of the ground": "belt set clear"}
@@ -163,7 +183,7 @@ def calls(audit: Audited) -> str:
     return f"on the left, wheel {', '.join(called)}" if called else ""
 
 
-def reservation(audit: Audited) -> str:
+def reservation(audit: Begun) -> str:
     """Say that the verdict is about another robot than is meant; "" without an error of lint."""
     rules = list(dict.fromkeys(each.rule for each in audit.lint if each.severity == "error"))
     if not rules:
@@ -189,9 +209,12 @@ def conclusion(audit: Audited) -> list[str]:
         text = f"It seizes on {len(seized)} of {count} obstacles where the belt clears"
         found.append(f"{text}: {', '.join(map(_seizing, seized))}.")
     else:
-        clears = sum(each.belt_cleared.rate >= CLEARS for each in audit.verdicts)
-        belt = f"the belt clears {clears} of {count} obstacles in 95 % of its runs"
-        found.append(f"It was not found to seize where the belt clears; {belt}.")
+        clears = sum(each.cleared.rate >= CLEARS for each in audit.verdicts)
+        own = f"it clears {clears} of {count} obstacles itself in 95 % of its runs"
+        held = [each for each in audit.verdicts if each.cleared.rate < CLEARS]
+        also = sum(each.belt_cleared.rate >= CLEARS for each in held)
+        belt = f", and the belt {also} of the other {len(held)}" if held else ""
+        found.append(f"It was not found to seize where the belt clears; {own}{belt}.")
     if others:
         text = (
             "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"
@@ -230,11 +253,6 @@ def repairs_found(found: Repaired, vary: Mapping[str, Any]) -> str:
     if any(each.confirmed for each in found.repairs):
         return f"the best of {found.tried} candidates, {runs}"
     return f"none of {found.tried} candidates was confirmed {runs}"
-
-
-def hopeless(kind: str) -> str:
-    """Say that nothing of a kind passed the screen."""
-    return f"{kind}: no candidate cleared most of three runs in which it seized"
 
 
 def worst(repair: Repair) -> tuple[Share, Share, str]:

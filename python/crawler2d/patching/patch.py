@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import difflib
 import itertools
+import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -25,7 +26,7 @@ from crawler2d.reading.tracks import FIT
 from crawler2d.writing.document import Document
 from crawler2d.writing.spans import Span
 
-__all__ = ["Patch", "patched"]
+__all__ = ["Patch", "labelled", "patched"]
 
 _FORMS: dict[str, Callable[[Document, Span, Change, Tree], None]] = {
     "SDF": change_sdf,
@@ -65,7 +66,7 @@ class Patch:
     left: tuple[str, ...]
 
 
-def patched(reading: Reading, robot: Robot) -> Patch:
+def patched(reading: Reading, robot: Robot, label: str = "") -> Patch:
     """Change the wheels in the text of a file to those of another robot, and read that again.
 
     Parameters
@@ -74,6 +75,8 @@ def patched(reading: Reading, robot: Robot) -> Patch:
         What was read.
     robot : Robot
         The same robot with other wheels.
+    label : str
+        What stands at the top of the text, as a comment.
 
     Returns
     -------
@@ -93,7 +96,7 @@ def patched(reading: Reading, robot: Robot) -> Patch:
         raise ScenarioError("robot.track", robot.track, "must have other wheels than the file")
     document = Document(reading.text)
     _change(document, changes, reading.tree)
-    text = document.text
+    text = labelled(document.text, label) if label else document.text
     _check(reading, robot, text)
     name = reading.tree.file
     diff = difflib.unified_diff(
@@ -108,6 +111,20 @@ def patched(reading: Reading, robot: Robot) -> Patch:
     if reading.how.scale is not None:
         summary += f"; all lengths times {reading.how.scale:g}"
     return Patch(text=text, diff="".join(lines), summary=summary, left=left)
+
+
+def labelled(text: str, label: str) -> str:
+    r"""Put a comment at the top of an XML text, below its declaration.
+
+    Examples
+    --------
+    >>> labelled("<?xml version='1.0'?>\n<robot/>", "five -- not four")
+    "<?xml version='1.0'?>\n<!-- five - - not four -->\n<robot/>"
+    """
+    declaration = re.match(r"\s*<\?xml.*?\?>\s*", text, re.DOTALL)
+    end = declaration.end() if declaration else 0
+    line = "\r\n" if "\r\n" in text else "\n"
+    return f"{text[:end]}<!-- {label.replace('--', '- -')} -->{line}{text[end:]}"
 
 
 def _summary(changes: list[Change], diff: list[str], left: tuple[str, ...]) -> str:

@@ -1,10 +1,11 @@
 """Audit a model file: what it lacks, where the robot seizes, and what smallest change ends that.
 
-It prints the short form and writes a page with all of it, which replays where the robot seized.
+It prints what it finds as it comes: lint and pockets at once, then each verdict, where the robot is
+likely to seize first. At the end it writes a page, which replays where the robot seized.
 
 Exit status: 1 if the robot seizes where a belt clears (with --lint if lint has errors, with
 --baseline if anything is new since then), 2 if a file or an option is bad, else 0; 130 after
-Ctrl-C, with what a store keeps.
+Ctrl-C.
 """
 
 from __future__ import annotations
@@ -13,11 +14,13 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any, TextIO, get_args
+from typing import Any, get_args
 
-from crawler2d.audits.audit import REPEATS, SAMPLES, Audit, audit
+from crawler2d.audits.audit import QUICK, REPEATS, SAMPLES, Audit, audit
+from crawler2d.audits.call import as_options
 from crawler2d.audits.linted import Linted, linted
-from crawler2d.audits.patches import patch_of
+from crawler2d.audits.live import Live
+from crawler2d.audits.patches import best_change
 from crawler2d.audits.plain import plain_of
 from crawler2d.audits.verdicts import least_samples
 from crawler2d.errors import LimitError, ScenarioError, StoreError
@@ -31,19 +34,21 @@ __all__ = ["add_arguments", "run"]
 _OUT = Path("out")
 """Folder of the page, as of the other programs."""
 
-_QUICK = 40
-"""Samples of a quick audit, each once."""
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``python -m crawler2d audit``."""
+    """Add the options of ``crawler2d audit``."""
     parser.add_argument("file", type=Path, nargs="+", help="SDF, URDF, xacro or MJCF")
-    parser.add_argument("--quick", action="store_true", help="few runs and no repairs")
-    parser.add_argument("--json", action="store_true", help="print plain data in place of words")
-    samples = f"of what is not known (default: {SAMPLES}; fewer than {least_samples()} cannot show "
-    samples += "that it does not seize)"
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer samples, and no gear wheels among the repairs"
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print plain data; what comes goes to standard error"
+    )
+    samples = f"of what is not known, at most (default: {SAMPLES}, with --quick {QUICK}; fewer than"
+    samples += f" {least_samples()} cannot show that it does not seize)"
     parser.add_argument("--samples", type=int, help=samples)
-    parser.add_argument("--repeats", type=int, help=f"runs of each (default: {REPEATS})")
+    repeats = f"runs of each (default: {REPEATS})"
+    parser.add_argument("--repeats", type=int, default=REPEATS, help=repeats)
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--store", type=Path, help="a file that keeps every run")
     parser.add_argument("--threads", type=int, help="default: all cores")
@@ -57,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--patch",
         type=Path,
         metavar="FILE",
-        help="write the file with the wheels of the first repair that is confirmed",
+        help="write the file with the best repair there is; belts of URDF as .sdf",
     )
     ci.add_arguments(parser)
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
@@ -81,66 +86,84 @@ def run(options: argparse.Namespace) -> int:
     """Audit each file; returns the exit status."""
     # With --json nothing else may be on the standard output.
     beside = sys.stderr if options.json else sys.stdout
+    live = Live(beside, as_options)  # doubts advise as errors do
     try:
         ci.refuse_together(options)
+        _check_folders(options)
         baseline = ci.baseline_of(options)
         found: list[tuple[Path, Audit | Linted]] = []
         for file in options.file:
             if found:
-                print()
-            found.append((file, _found(file, options, beside)))
+                live.tell("")
+            found.append((file, _found(file, options, live)))
         count = ci.report(found, options, baseline, beside)
-    except KeyboardInterrupt as interrupt:
-        print(str(interrupt) or "interrupted", file=sys.stderr)
+    except KeyboardInterrupt:
+        kept = "nothing is kept; with --store FILE every finished run is"
+        if options.store is not None:
+            kept = f"{options.store} keeps every finished run: the same command goes on from there"
+        print(f"\ninterrupted: {kept}", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
-        told = [f"audit: {error}", *getattr(error, "__notes__", ())]
-        print(_as_options("\n  before that: ".join(told)), file=sys.stderr)
+        told = map(as_options, (str(error), *getattr(error, "__notes__", ())))
+        print("crawler2d audit:", "\n  before that: ".join(told), file=sys.stderr)
         return 2
     if options.lint or options.baseline is not None:
         return 1 if count else 0
     return 1 if any(isinstance(each, Audit) and each.seizes for _, each in found) else 0
 
 
-def _found(file: Path, options: argparse.Namespace, beside: TextIO) -> Audit | Linted:
+def _check_folders(options: argparse.Namespace) -> None:
+    """Refuse before the runs what could not be written after them."""
+    for name in ("html", "patch"):
+        path: Path | None = getattr(options, name)
+        if path is not None and (path.is_dir() or not path.parent.is_dir()):
+            raise ScenarioError(name, str(path), "must be a file in a folder that exists")
+
+
+def _found(file: Path, options: argparse.Namespace, live: Live) -> Audit | Linted:
     """Audit a file, or only lint it, and show what was found."""
     if options.lint:
         alone = linted(file, **_reading(options))
-        print(alone.in_words)
+        live.tell(alone.in_words)
         return alone
     found = audit(
         file,
-        samples=_given(options.samples, _QUICK if options.quick else SAMPLES),
-        repeats=_given(options.repeats, 1 if options.quick else REPEATS),
+        samples=options.samples,
+        repeats=options.repeats,
         seed=options.seed,
-        repair=not (options.quick or options.no_repairs),
+        repair=not options.no_repairs,
+        quick=options.quick,
         store=options.store,
         threads=options.threads,
+        progress=live,
         **_reading(options),
     )
-    _show(found, file, options, beside)
+    _show(found, file, options, live)
     return found
 
 
-def _show(found: Audit, file: Path, options: argparse.Namespace, beside: TextIO) -> None:
-    """Print an audit, write its page, and the file with other wheels if that is asked for."""
+def _show(found: Audit, file: Path, options: argparse.Namespace, live: Live) -> None:
+    """Write the page of an audit, and the file with a repair if that is asked for."""
     if options.json:
         print(json.dumps(plain_of(found), indent=2, allow_nan=False))
-    else:
-        print(_as_options(found.in_words))  # doubts advise as errors do
     if not options.no_html:
         path: Path | None = options.html
         if path is None:
             _OUT.mkdir(parents=True, exist_ok=True)
             path = _OUT / f"audit-{_short(file, options.file)}.html"
         found.to_html(path, threads=options.threads)
-        print(f"\nThe page is in {path}", file=beside)
+        live.tell(f"\nThe page is in {path}")
         if found.reading is not None and found.reading.path.suffix == ".xacro":
             expanded = path.with_name(f"{path.stem}-expanded.urdf")
             expanded.write_text(found.reading.text, encoding="utf-8")
-            print(f"The lines are those of {expanded}", file=beside)
-    if options.patch is not None and found.seizes:
-        _patch(found, options.patch, beside)
+            live.tell(f"The lines are those of {expanded}")
+    if options.patch is not None:
+        change = best_change(found)
+        if change is None:
+            live.tell("\nIt does not seize: no changed file is written")
+        else:
+            written = change.write(options.patch)
+            live.tell(f"\n{change.label}\n{change.summary}\nThe changed file is {written}")
 
 
 def _short(file: Path, files: list[Path]) -> str:
@@ -148,44 +171,6 @@ def _short(file: Path, files: list[Path]) -> str:
     if [other.stem for other in files].count(file.stem) == 1:
         return file.stem
     return "-".join(part for part in file.parts if part not in (file.anchor, "..", "."))
-
-
-def _patch(found: Audit, path: Path, beside: TextIO) -> None:
-    """Write the file with other wheels and say what changed, or why there is none."""
-    try:
-        patch = patch_of(found, None)
-    except ScenarioError as error:
-        print(f"\nNo changed file: {_as_options(str(error))}", file=sys.stderr)
-    else:
-        path.write_text(patch.text, encoding="utf-8")
-        print(f"\n{patch.summary}\nThe changed file is {path}", file=beside)
-
-
-_OPTIONS = {
-    "trusted=True": "--trusted",
-    'missing="leave_out"': "--missing leave_out",
-    'mesh="hull"': "--mesh hull",
-    'mesh="leave_out"': "--mesh leave_out",
-    "packages={name: folder}": "--package NAME=FOLDER",
-    "packages=": "--package",
-    "arguments={name: value}": "--argument NAME=VALUE",
-    "arguments=": "--argument",
-    "tracks=": "--track",
-    "model=": "--model",
-    "scale=": "--scale ",
-}
-"""How the command spells the keywords that errors advise."""
-
-
-def _as_options(error: str) -> str:
-    """Write the keywords of an error as options of the command."""
-    for keyword, option in _OPTIONS.items():
-        error = error.replace(keyword, option)
-    return error
-
-
-def _given(number: int | None, usual: int) -> int:
-    return usual if number is None else number
 
 
 def _reading(options: argparse.Namespace) -> dict[str, Any]:
@@ -202,8 +187,8 @@ def _reading(options: argparse.Namespace) -> dict[str, Any]:
     return {
         **{name: getattr(options, name) for name in (*names, "trusted")},
         "tracks": options.track,
-        "packages": _pairs(options.package, "package"),
-        "arguments": _pairs(options.argument, "argument"),
+        "packages": _pairs(options.package, "packages"),
+        "arguments": _pairs(options.argument, "arguments"),
     }
 
 

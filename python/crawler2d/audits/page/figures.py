@@ -182,9 +182,9 @@ def made(audit: Audited) -> str:
 
 
 def _made(audit: Audited) -> Iterator[tuple[str, str]]:
-    yield "runs behind the verdicts", f"{audit.table['outcome'].size}: {words.population(audit)}"
+    yield "runs behind the verdicts", f"{words.made(audit.table)}: {words.population(audit)}"
     if audit.repaired is not None:
-        fresh = audit.repaired.table["outcome"].size
+        fresh = words.made(audit.repaired.table)
         yield "runs that confirm repairs", f"{fresh}, with draws that nothing before has had"
     yield "belt beside it", audit.belt.reason
     yield "drive", str(audit.drive)

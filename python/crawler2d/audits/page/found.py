@@ -142,8 +142,7 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
                 f"{each.speed:.2g} times",
             )
         )
-    said = [words.repairs_found(found, audit.vary), *map(words.hopeless, found.hopeless)]
-    text = "".join(f"<p>{escaped(_sentence(line))}</p>" for line in said)
+    text = f"<p>{escaped(_sentence(words.repairs_found(found, audit.vary)))}</p>"
     drawn = "".join(_picture(each, diffs.get(each.what)) for each in found.repairs)
     return (
         f'{text}{grid(head, rows, label="repairs", look="many")}<div class="repairs">{drawn}</div>'

@@ -91,16 +91,18 @@ def replayed(audit: Audited, *, threads: int | None = None) -> list[Replayed]:
 
 
 def _scenarios(audit: Audited, place: _Place) -> list[Scenario]:
-    """Return the run of the robot, and that of what is beside it."""
-    own, belt = (
-        Scenario.from_json(str(place.value(audit, "scenario", model))) for model in (OWN, BELT)
-    )
+    """Return the run of the robot, and that of what is beside it, which need not have driven it."""
+    own = Scenario.from_json(str(place.value(audit, "scenario")))
     repair = best(audit)
-    if repair is None or repair.kind == "belt":
-        return [own] if audit.belt.robot == audit.robot else [own, belt]
-    tracks: dict[str, Any] = {"robot.track": repair.robot.track}
-    if repair.robot.flippers is not None:
-        tracks["robot.flippers.track"] = repair.robot.flippers.track
+    if repair is None and audit.belt.robot == audit.robot:
+        return [own]
+    other = audit.belt.robot if repair is None else repair.robot
+    tracks: dict[str, Any] = {
+        "robot.track": other.track,
+        "robot.drivetrain.torque_sharing": other.drivetrain.torque_sharing,
+    }
+    if other.flippers is not None:
+        tracks["robot.flippers.track"] = other.flippers.track
     return [own, own.replace(tracks)]
 
 
