@@ -13,6 +13,7 @@ import pytest
 import crawler2d as c2d
 from crawler2d.__main__ import main
 from crawler2d.audits.patches import best_change
+from crawler2d.errors import ScenarioWarning
 from tests.audits.seizing import QUIET, SEIZING, STEP
 from tests.reading.carts import quietly
 
@@ -163,3 +164,16 @@ def test_the_page_has_the_diff_of_each_repair_by_wheels(audited: c2d.Audit) -> N
     for repair in audited.repairs:
         if repair.kind != "belt":
             assert html.escape(audited.patch(repair=repair).splitlines()[3]) in page
+
+
+def test_a_changed_file_warns_of_nothing_that_is_in_the_lint(tmp_path: Path) -> None:
+    """Warnings are errors in tests."""
+    slow = replace(STRONG, moment_of_inertia=6.0)
+    with pytest.warns(ScenarioWarning, match="moment_of_inertia"):
+        slow.to_urdf(tmp_path / "slow.urdf", friction=0.9)
+    how: Any = {"unknown": {}, "repeats": 9, "engine": "gz", **QUIET}
+    found = c2d.audit(tmp_path / "slow.urdf", STEP, **how)
+    assert any("moment_of_inertia" in each.what for each in found.lint)
+    assert best_change(found) is not None
+    assert "+++" in found.patch(repair=found.repairs[0])
+    assert "+++" in found.to_html()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +13,7 @@ import numpy as np
 
 from crawler2d.audits import words
 from crawler2d.audits.repairs import Repair
-from crawler2d.errors import ScenarioError
+from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.parameters.robot import Robot
 from crawler2d.patching.patch import labelled, patched
 
@@ -101,7 +104,8 @@ def change_of(audit: Audited, repair: Repair) -> Change:
         return _on_belts(audit, repair.robot, repair)
     assert audit.reading is not None
     label = words.repair_sentence(repair)
-    patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
+    with _quietly():
+        patch = patched(audit.reading, repair.robot, f"crawler2d, {label}")
     return Change(
         text=patch.text, label=label, diff=patch.diff, summary=patch.summary, left=patch.left
     )
@@ -118,6 +122,14 @@ def diffs_of(audit: Audited) -> dict[str, str]:
             except ScenarioError as error:
                 found[repair.what] = f"no change of the file: {error}"
     return found
+
+
+@contextlib.contextmanager
+def _quietly() -> Iterator[None]:
+    """Pass over what the core doubts: it is in the lint."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ScenarioWarning)
+        yield
 
 
 def _check(audit: Audited) -> None:
@@ -137,7 +149,8 @@ def _on_belts(audit: Audited, robot: Robot, repair: Repair | None) -> Change:
     else:
         label = words.repair_sentence(repair)
     is_mjcf = read.tree.format == "MJCF"
-    text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
+    with _quietly():
+        text = (robot.to_mjcf if is_mjcf else robot.to_sdf)(friction=read.friction)
     held = "" if is_mjcf or read.tree.format.startswith("SDF") else ", as URDF holds no belts"
     return Change(
         text=labelled(text, f"crawler2d, {label}"),
