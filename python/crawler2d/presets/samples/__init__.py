@@ -44,7 +44,7 @@ def path(name: str = "rover.sdf") -> Path:
     --------
     >>> import crawler2d as c2d
     >>> c2d.read_robot(path("rover.urdf")).robot.in_words
-    'rover: 7 round wheels in a line'
+    'rover: 5 round wheels in a line'
     """
     if name not in _NAMES:
         nearest = difflib.get_close_matches(str(name), _NAMES, n=1, cutoff=0.0)[0]
