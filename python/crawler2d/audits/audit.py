@@ -147,8 +147,9 @@ class Audit(Audited):
     ) -> str | Path:
         """Write one self-contained HTML page with all that was found.
 
-        For each obstacle on which it seized one run is simulated again, beside that of the belt
-        with the same draws, and can be replayed in the page.
+        For each obstacle on which it seized one run is simulated again, and beside it, with the
+        same draws, that of the repaired robot, or without a repair that of the belt; if it seized
+        nowhere, the run that came closest. They can be replayed in the page.
 
         Parameters
         ----------
