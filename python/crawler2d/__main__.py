@@ -19,7 +19,7 @@ class _Parser(argparse.ArgumentParser):
     """Says in one line what is wrong with the options, and which was probably meant."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}; {self.prog} --help lists what there is\n")
+        self.exit(2, f"{self.prog}: {message}; {self.prog} --help lists the options\n")
 
     def refuse(self, unknown: Sequence[str]) -> NoReturn:
         name = unknown[0].partition("=")[0]

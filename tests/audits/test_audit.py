@@ -209,7 +209,7 @@ def test_without_an_error_of_lint_nothing_stands_above_the_verdict(found: c2d.Au
 def test_the_short_form_says_all_of_it(found: c2d.Audit) -> None:
     text = repr(found)
     for part in (
-        "step of 75 mm  9       0 % (0-53)      100 % (47-100)  100 %        seized        seizes",
+        "step of 75 mm  9     0 % (0-53)      100 % (47-100)  100 %        seized        seizes",
         "step of 75 mm  1-2 of the chassis  9/9",
         "It seizes on 1 of 1 obstacles where the belt clears: step of 75 mm.",
         "confirmed: chassis: 5 wheels in place of 4",

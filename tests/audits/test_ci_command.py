@@ -60,6 +60,31 @@ def test_lint_takes_no_runs_and_its_errors_are_the_exit_status(
     assert not (repository / "out").exists()
 
 
+def test_a_file_that_cannot_be_read_is_an_error_in_the_reports_of_all(
+    quick: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, of_file: c2d.Audit
+) -> None:
+    assert quick.is_dir()
+    of_one = told(of_file)
+
+    def audit(file: Path, **how: Any) -> c2d.Audit:
+        if file.stem == "two":
+            raise c2d.ScenarioError("two.urdf:3: link[hull]", -1.0, "must have a mass >= 0 kg")
+        found: c2d.Audit = of_one(file, **how)
+        return found
+
+    monkeypatch.setattr(command, "audit", audit)
+    reports = ("--junit", "junit.xml", "--sarif", "audit.sarif")
+    status, _, err = run(capsys, "models/two.urdf", "models/one.urdf", *reports)
+    assert status == 2
+    assert "two.urdf:3" in err
+    two, one = ElementTree.parse("junit.xml").getroot()
+    assert two.get("failures") == "1"
+    assert len(one) > 1
+    first = json.loads(Path("audit.sarif").read_text("utf-8"))["runs"][0]["results"][0]
+    assert (first["ruleId"], first["level"]) == ("unread", "error")
+    assert first["locations"][0]["physicalLocation"]["region"] == {"startLine": 3}
+
+
 def test_several_files_are_audited_one_after_the_other(quick: Path, capsys: Any) -> None:
     reports = ("--junit", "junit.xml", "--sarif", "audit.sarif")
     status, out, _ = run(capsys, "models/one.urdf", "models/two.urdf", *reports)
@@ -203,7 +228,7 @@ def test_the_action_says_what_is_wrong_with_a_file(repository: Path, tmp_path: P
     done = step(action, "Audit", {"files": "models/none.sdf", "quick": "true"}, env)
     assert done.returncode == 2
     assert "\ncrawler2d audit: " in files["GITHUB_STEP_SUMMARY"].read_text("utf-8")
-    assert files["GITHUB_OUTPUT"].read_text("utf-8") == "status=2\n"
+    assert files["GITHUB_OUTPUT"].read_text("utf-8") == "sarif=out/audit.sarif\nstatus=2\n"
     assert repository.is_dir()
 
 

@@ -1,10 +1,12 @@
 """What audits of some files said before, and what of it is new: for a check that must not drift.
 
-A baseline keeps words, counts and intervals, not bits: a rate that is near a bound may flip its
-word when a later version of crawler2d, or another machine, moves single runs. A seizure is new
+A baseline keeps words, counts and intervals, not bits. A seizure is new
 
-- on an obstacle on which the robot was said not to seize, or that the baseline does not have;
+- on an obstacle on which the robot was not said to seize, or that the baseline does not have;
 - or if the interval of its rate is above the one it had, over all speeds or at one of them.
+
+Equal builds of crawler2d give equal runs. After a change of build a rate near a bound may flip its
+word: then of the words other than "does not seize" only the interval tells whether it is new.
 
 Lint is new if no finding of its rule had the same words, numbers apart, at this severity or above.
 """
@@ -21,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from crawler2d import _core
-from crawler2d.audits.finding import SEVERITIES, Finding
+from crawler2d.audits.finding import SEVERITIES
 from crawler2d.audits.issues import SEIZES, Check, Issue
 from crawler2d.audits.share import Share
 from crawler2d.audits.verdicts import Verdict
@@ -73,6 +75,8 @@ def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) ->
     """
     models: Plain = {} if before is None else dict(before["models"])
     for check in checks:
+        if check.found is None:  # what it was before it could not be read stays
+            continue
         name = _name(check.path, path)
         models[name] = {**models.get(name, {}), **entry_of(check)}
     text = json.dumps({"baseline": VERSION, "models": dict(sorted(models.items()))}, indent=1)
@@ -84,13 +88,16 @@ def write_baseline(path: Path, checks: Sequence[Check], before: Plain | None) ->
 
 
 def entry_of(check: Check) -> Plain:
-    """Return what is kept of a file."""
+    """Return what is kept of a file that was read."""
+    assert check.found is not None
     build = _core.build_info()
     kept: Plain = {
         "crawler2d": build["version"],
         "build": build["build_id"],
         "robot": to_plain(check.found.robot),
-        "lint": [[each.severity, each.rule, _without_lines(each)] for each in check.found.lint],
+        "lint": [
+            [each.severity, each.rule, _told(each.what, check.path)] for each in check.found.lint
+        ],
     }
     if check.found.verdicts:
         kept["verdicts"] = {each.obstacle: _verdict(each) for each in check.found.verdicts}
@@ -115,14 +122,17 @@ def against(check: Check, baseline: Plain, path: Path) -> tuple[Check, list[str]
         With the issues that are known, and what is new, gone or moved, in words.
     """
     before: Plain | None = baseline["models"].get(_name(check.path, path))
+    if check.found is None:
+        return replace(check, known=frozenset()), [issue.text for issue in check.issues]
     if before is None:
         return replace(check, known=frozenset()), ["not in the baseline: all of it is new"]
     now = entry_of(check)
-    known = frozenset(issue for issue in check.issues if not _is_new(issue, now, before))
+    is_known = (issue for issue in check.issues if not _is_new(issue, check.path, now, before))
+    known = frozenset(is_known)
     check = replace(check, known=known)
     told = [*_robot_moved(before["robot"], now["robot"]), *_verdicts_moved(check, now, before)]
     told += _lint_moved(check, now, before)
-    if told and any(before[name] != now[name] for name in ("crawler2d", "build")):
+    if told and not _are_of_one_build(now, before):
         was, is_now = (f"{each['crawler2d']} ({each['build']})" for each in (before, now))
         told.append(f"crawler2d {was} is now {is_now}: CHANGELOG.md says what moved, under Physics")
     return check, told
@@ -152,12 +162,18 @@ def _share(share: Share) -> list[float]:
     return [hits, share.runs, round(share.low, 4), round(share.high, 4)]
 
 
-def _is_new(issue: Issue, now: Plain, before: Plain) -> bool:
+def _are_of_one_build(now: Plain, before: Plain) -> bool:
+    return all(before[name] == now[name] for name in ("crawler2d", "build"))
+
+
+def _is_new(issue: Issue, path: Path, now: Plain, before: Plain) -> bool:
     if issue.rule != SEIZES:
-        was = _lint(before).get(_key(issue.rule, issue.text))
+        was = _lint(before).get(_key(issue.rule, _told(issue.text, path)))
         return was is None or SEVERITIES.index(issue.severity) < SEVERITIES.index(was)
     label, then = _matched(before, issue.obstacle, now)
     if label is None or then["word"] == "does not seize":
+        return True
+    if then["word"] != SEIZES and _are_of_one_build(now, before):
         return True
     pairs = zip(now["verdicts"][issue.obstacle]["seized"], then["seized"], strict=False)
     return any(low > high for (*_, low, _), (*_, high) in pairs)
@@ -237,7 +253,7 @@ def _is_same(was: object, is_now: object) -> bool:
 
 
 def _verdicts_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
-    if not check.found.verdicts:
+    if check.found is None or not check.found.verdicts:
         return
     if "verdicts" not in before:
         yield "the baseline has lint alone: every seizure is new"
@@ -258,7 +274,11 @@ def _verdicts_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
         if label in new:
             yield f"{label}: {then['word']} is now {here['word']}: {counts}; this is new"
         elif here["word"] != then["word"]:
-            kept = "" if here["word"] != SEIZES else "; the intervals overlap: not counted as new"
+            kept = (
+                ""
+                if here["word"] != SEIZES
+                else "; the build is another, and the intervals overlap: not counted as new"
+            )
             yield f"{label}: {then['word']} is now {here['word']}: {counts}{kept}"
     if sizes:
         yield f"obstacles of other sizes: {', '.join(sizes)}"
@@ -276,5 +296,8 @@ def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
             yield f"{severity} of lint that is gone, {rule}: {what}"
 
 
-def _without_lines(finding: Finding) -> str:
-    return _LINE.sub("", finding.what)
+def _told(what: str, path: Path) -> str:
+    """Return what lint says without lines, and with places told from the root of the repository."""
+    whole = path.resolve()
+    root = next((up for up in whole.parents if (up / ".git").exists()), whole.parent)
+    return _LINE.sub("", what.replace(f"{root}{os.sep}", "").replace(str(root), "."))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from crawler2d.audits import words
 from crawler2d.audits.names import names_of
+from crawler2d.errors import ScenarioError
 
 if TYPE_CHECKING:
     from crawler2d.audits.finding import Finding
@@ -17,10 +18,14 @@ if TYPE_CHECKING:
     from crawler2d.parameters.robot import Robot
     from crawler2d.reading.reading import Reading
 
-__all__ = ["SEIZES", "Check", "Found", "Issue", "checked"]
+__all__ = ["SEIZES", "UNREAD", "Check", "Found", "Issue", "checked", "unread"]
 
 SEIZES = "seizes"
 """The rule that an obstacle breaks on which a robot seizes; the others are those of lint."""
+
+
+UNREAD = "unread"
+"""The rule that a file breaks which cannot be read, or whose robot cannot be simulated."""
 
 
 class Found(Protocol):
@@ -69,8 +74,8 @@ class Check:
     ----------
     path : Path
         The file.
-    found : Found
-        The audit, or lint alone.
+    found : Found, optional
+        The audit, or lint alone; None for a file that cannot be read.
     issues : tuple of Issue
         Seizures, then lint.
     known : frozenset of Issue, optional
@@ -78,7 +83,7 @@ class Check:
     """
 
     path: Path
-    found: Found
+    found: Found | None
     issues: tuple[Issue, ...]
     known: frozenset[Issue] | None = None
 
@@ -101,6 +106,14 @@ def checked(path: Path, found: Found) -> Check:
     """List what is wrong with a model, with no baseline."""
     issues = (*_seizures(found), *(_of_lint(each, found.reading) for each in found.lint))
     return Check(path=path, found=found, issues=issues)
+
+
+def unread(path: Path, error: ScenarioError) -> Check:
+    """Return the check of a file that cannot be read: the error, at its line, is all of it."""
+    place = re.match(re.escape(path.name) + r":(\d+)", error.path)
+    lines = (int(place[1]),) if place else ()
+    issue = Issue(rule=UNREAD, severity="error", text=str(error), lines=lines)
+    return Check(path=path, found=None, issues=(issue,))
 
 
 def _seizures(found: Found) -> Iterator[Issue]:

@@ -44,7 +44,7 @@ def junit_of(checks: Sequence[Check]) -> str:
 def _suite(check: Check) -> XML:
     name = check.path.as_posix()
     suite = _element("testsuite", name=name)
-    for verdict in check.found.verdicts:
+    for verdict in () if check.found is None else check.found.verdicts:
         issues = [issue for issue in check.issues if issue.obstacle == verdict.obstacle]
         said = ": ".join(filter(None, [verdict.obstacle, verdict.word]))
         clears = f"clears {words.share(verdict.cleared)}, seizes {words.share(verdict.seized)}"
@@ -90,7 +90,7 @@ def _count(element: XML, cases: Iterator[XML], *names: str) -> None:
     counts = {
         "tests": len(each),
         "failures": sum(case.find("failure") is not None for case in each),
-        "errors": 0,  # what cannot be audited has no report
+        "errors": 0,  # a file that cannot be read is a failure, too
         "skipped": sum(case.find("skipped") is not None for case in each),
     }
     for name in names:

@@ -119,7 +119,7 @@ def unknown_of_file(reading: Reading, floors: Mapping[float, float] | None) -> R
     else:
         low, high = min(floors.values()), max(floors.values())
         source = (
-            f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no model of a robot names, combined"
+            f"a floor of {FLOORS[0]:g} to {FLOORS[1]:g}, which no file of a robot states, combined"
             f" by the rule of {reading.engine} with {reading.sources['friction']}"
         )
         ranges[_FRICTION] = uniform(low, high), source

@@ -10,12 +10,16 @@ from urllib.parse import quote
 
 from crawler2d import _core
 from crawler2d.audits.finding import RULES
-from crawler2d.audits.issues import SEIZES, Check, Issue
+from crawler2d.audits.issues import SEIZES, UNREAD, Check, Issue
 
 __all__ = ["sarif_of"]
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
-_RULES = {SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.", **RULES}
+_RULES = {
+    SEIZES: "The robot clears what it clears on belts: no edge jams between wheels.",
+    UNREAD: "The file can be read, and its robot simulated.",
+    **RULES,
+}
 _ROOT = "%SRCROOT%"
 
 

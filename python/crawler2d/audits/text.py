@@ -21,7 +21,7 @@ __all__ = ["head_of", "lint_of", "rest_of", "row_of", "text_of", "text_of_lint"]
 _WIDTH = 100
 
 
-_WIDEST = ("driven", "100 % (95-100)", "100 % (95-100)", "belt clears", "left terrain", "")
+_WIDEST = ("runs", "100 % (95-100)", "100 % (95-100)", "belt clears", "left terrain", "")
 """Of the columns after the first, so that rows may be written before all are known."""
 
 
@@ -102,8 +102,8 @@ def _pockets(pockets: Sequence[Pocket]) -> Iterator[str]:
 
 def _verdicts(audit: Begun) -> Iterator[str]:
     yield from _wrapped(f"Verdicts: {words.population(audit)}", 0)
-    yield from _wrapped("an obstacle is left as soon as its verdict is certain")
-    belt = f"belt: {audit.belt.reason}; it does not drive (-) where the robot clears"
+    yield from _wrapped("runs over an obstacle stop as soon as its verdict is certain")
+    belt = f"belt: {audit.belt.reason}; not simulated (-) where the robot clears"
     yield from _wrapped(belt)
     yield _row(audit, words.VERDICT_HEAD)
 

@@ -11,6 +11,8 @@ import numpy as np
 from crawler2d.audits.names import names_of
 from crawler2d.audits.verdicts import CLEARS, SEIZES, least_samples
 from crawler2d.common.units import unit_of
+from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import CircumferentialWheels, HybridWheels, LineOfWheels
 from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import (
     Distribution,
@@ -60,7 +62,7 @@ __all__ = [
     "worst",
 ]
 
-VERDICT_HEAD = ("obstacle", "driven", "clears", "seizes", "belt clears", "most often", "verdict")
+VERDICT_HEAD = ("obstacle", "runs", "clears", "seizes", "belt clears", "most often", "verdict")
 NOT_DRIVEN = "-"
 """In place of a rate: the belt did not drive, for the robot clears the obstacle."""
 
@@ -205,6 +207,11 @@ def conclusion(audit: Audited) -> list[str]:
         if each.word != "seizes" and each.seized.low > SEIZES
     ]
     count = len(audit.verdicts)
+    if not _has_wheels_for_tracks(audit.robot):
+        found.append(
+            "It has no wheels in the place of a track, so no edge can jam between them: where it"
+            " fails, it fails for another reason."
+        )
     if seized:
         text = f"It seizes on {len(seized)} of {count} obstacles where the belt clears"
         found.append(f"{text}: {', '.join(map(_seizing, seized))}.")
@@ -225,6 +232,14 @@ def conclusion(audit: Audited) -> list[str]:
     if unsure:
         found.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
     return found
+
+
+def _has_wheels_for_tracks(robot: Robot) -> bool:
+    """Whether wheels stand where a track would run, on the chassis or on flippers."""
+    arms = robot.flippers
+    tracks = [robot.track, *([] if arms is None else [arms.track or robot.track])]
+    wheeled = (CircumferentialWheels, HybridWheels, LineOfWheels)
+    return any(isinstance(each, wheeled) and getattr(each, "as_track", True) for each in tracks)
 
 
 def _seizing(verdict: Verdict) -> str:

@@ -91,11 +91,17 @@ def run(options: argparse.Namespace) -> int:
         ci.refuse_together(options)
         _check_folders(options)
         baseline = ci.baseline_of(options)
-        found: list[tuple[Path, Audit | Linted]] = []
+        found: list[tuple[Path, Audit | Linted | ScenarioError]] = []
         for file in options.file:
             if found:
                 live.tell("")
-            found.append((file, _found(file, options, live)))
+            try:
+                found.append((file, _found(file, options, live)))
+            except ScenarioError as error:
+                if len(options.file) == 1 and options.junit is None and options.sarif is None:
+                    raise
+                found.append((file, error))  # the reports have it, and the other files theirs
+                _tell(error)
         count = ci.report(found, options, baseline, beside)
     except KeyboardInterrupt:
         kept = "nothing is kept; with --store FILE every finished run is"
@@ -104,12 +110,18 @@ def run(options: argparse.Namespace) -> int:
         print(f"\ninterrupted: {kept}", file=sys.stderr)
         return 130
     except (ScenarioError, LimitError, StoreError, ImportError, OSError) as error:
-        told = map(as_options, (str(error), *getattr(error, "__notes__", ())))
-        print("crawler2d audit:", "\n  before that: ".join(told), file=sys.stderr)
+        _tell(error)
+        return 2
+    if any(isinstance(each, ScenarioError) for _, each in found):
         return 2
     if options.lint or options.baseline is not None:
         return 1 if count else 0
     return 1 if any(isinstance(each, Audit) and each.seizes for _, each in found) else 0
+
+
+def _tell(error: Exception) -> None:
+    told = map(as_options, (str(error), *getattr(error, "__notes__", ())))
+    print("crawler2d audit:", "\n  before that: ".join(told), file=sys.stderr)
 
 
 def _check_folders(options: argparse.Namespace) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from crawler2d.audits.baseline import against, read_baseline, write_baseline
-from crawler2d.audits.issues import Check, Found, checked
+from crawler2d.audits.issues import Check, Found, checked, unread
 from crawler2d.audits.junit import junit_of
 from crawler2d.audits.sarif import sarif_of
 from crawler2d.errors import ScenarioError
@@ -75,13 +75,13 @@ def baseline_of(options: argparse.Namespace) -> dict[str, Any] | None:
     if path is None or (options.update_baseline and not path.exists()):
         return None
     if not path.exists():
-        rule = "must be there: --update-baseline writes the first one"
+        rule = "must exist: --update-baseline writes it"
         raise ScenarioError("--baseline", str(path), rule)
     return read_baseline(path)
 
 
 def report(
-    found: Sequence[tuple[Path, Found]],
+    found: Sequence[tuple[Path, Found | ScenarioError]],
     options: argparse.Namespace,
     baseline: dict[str, Any] | None,
     beside: TextIO,
@@ -90,8 +90,8 @@ def report(
 
     Parameters
     ----------
-    found : sequence of tuple of Path and Found
-        Each file with what was found in it.
+    found : sequence of tuple of Path and Found or ScenarioError
+        Each file with what was found in it, or why it could not be read.
     options : Namespace
         Of the command.
     baseline : dict or None
@@ -104,7 +104,10 @@ def report(
     int
         How many issues fail.
     """
-    checks = [checked(path, each) for path, each in found]
+    checks = [
+        unread(path, each) if isinstance(each, ScenarioError) else checked(path, each)
+        for path, each in found
+    ]
     if baseline is not None:
         checks = [_compared(check, baseline, options.baseline, beside) for check in checks]
     for path, written in ((options.junit, junit_of), (options.sarif, sarif_of)):

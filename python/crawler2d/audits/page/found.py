@@ -116,7 +116,11 @@ def repairs(audit: Audited, diffs: Mapping[str, str]) -> str:
     """Write what came of each repair, the robot with it, and what of `diffs` it has, by `what`."""
     found = audit.repaired
     if found is None:
-        asked = "It seizes nowhere by the rule." if not audit.seizes else "None were searched for."
+        asked = (
+            "Nothing seizes, so none were searched for."
+            if not audit.seizes
+            else "None were searched for."
+        )
         return f"<p>{asked}</p>"
     head = (
         "repair",
