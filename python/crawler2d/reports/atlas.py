@@ -207,7 +207,11 @@ def _refused(entries: Sequence[Entry]) -> str:
     rows = "".join(
         f"<li>{escaped(e.path.as_posix())}: <span>{escaped(e.refusal)}</span></li>" for e in entries
     )
-    return f"<p>Not read:</p><ul>{rows}</ul>" if rows else ""
+    return (
+        f"<details><summary>{len(entries)} not read</summary><ul>{rows}</ul></details>"
+        if rows
+        else ""
+    )
 
 
 def _card(entry: Entry) -> str:

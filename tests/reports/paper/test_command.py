@@ -109,7 +109,7 @@ def test_a_store_that_another_process_writes_is_told_in_one_line(
     with Store(tmp_path / "paper.sqlite"):
         assert main(["paper", "--quick", "--out", str(tmp_path), "--table", "2"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("python -m crawler2d paper: ")
+    assert line.startswith("crawler2d paper: ")
     assert "is being written" in line
 
 
