@@ -1,5 +1,6 @@
 """The page of an audit in a real browser: it fits, begins with a replay, and that plays."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -36,7 +37,7 @@ def wide(place: str) -> str:
 
 
 def playing(page: Page) -> bool:
-    return page.get_attribute("#play", "aria-label") == "pause"
+    return bool(page.get_attribute("#play", "aria-label") == "pause")
 
 
 @pytest.mark.parametrize("width", [360, 390, 768, 1000, 1280, 1900])
@@ -118,11 +119,12 @@ def test_another_obstacle_is_shown_by_the_list_and_by_the_table(
 ) -> None:
     page = open_page(hostile, reduced_motion="reduce")
     assert page.locator("#obstacle option").count() == 2
-    for number, show in (
+    shows: list[tuple[int, Callable[[], object]]] = [
         (1, lambda: page.select_option("#obstacle", "1")),
         (0, lambda: page.click("a[href='#replay-0']")),
         (1, lambda: page.evaluate("location.hash = '#replay-1'")),
-    ):
+    ]
+    for number, show in shows:
         show()
         page.wait_for_selector(f"#replay-{number}:not([hidden])")
         assert page.locator(".runs:visible").count() == 1
