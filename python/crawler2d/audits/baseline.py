@@ -24,11 +24,12 @@ from typing import Any
 
 from crawler2d import _core
 from crawler2d.audits.finding import SEVERITIES
-from crawler2d.audits.issues import SEIZES, Check, Issue
+from crawler2d.audits.issues import SEIZES, Check, Issue, repository_of
 from crawler2d.audits.share import Share
 from crawler2d.audits.verdicts import Verdict
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.plain import to_plain
+from crawler2d.reading.telling import named
 
 __all__ = ["against", "entry_of", "read_baseline", "write_baseline"]
 
@@ -226,9 +227,7 @@ def _robot_moved(before: Plain, now: Plain) -> Iterator[str]:
         if not _is_same(was.get(path), is_now.get(path))
     ]
     if moved:
-        more = len(moved) - _MOST
-        listed = ", ".join(moved[:_MOST]) + (f" and {more} more" if more > 0 else "")
-        yield f"another robot: {listed}"
+        yield f"another robot: {named(moved, _MOST)}"
 
 
 def _leaves(plain: Any, path: str = "robot") -> Iterator[tuple[str, object]]:
@@ -298,6 +297,5 @@ def _lint_moved(check: Check, now: Plain, before: Plain) -> Iterator[str]:
 
 def _told(what: str, path: Path) -> str:
     """Return what lint says without lines, and with places told from the root of the repository."""
-    whole = path.resolve()
-    root = next((up for up in whole.parents if (up / ".git").exists()), whole.parent)
+    root = repository_of(path) or path.resolve().parent
     return _LINE.sub("", what.replace(f"{root}{os.sep}", "").replace(str(root), "."))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["RULES", "SEVERITIES", "Finding", "named"]
+__all__ = ["RULES", "SEVERITIES", "Finding"]
 
 SEVERITIES = ("error", "warning", "note")
 """An error: another robot is simulated; a warning: hardly meant; a note: to be known."""
@@ -24,8 +24,6 @@ RULES = {
     "doubt": "Nothing is doubted by the reader or by the simulator.",
 }
 """Every rule, as what a model that keeps it is like; ``docs/conventions.md`` says when it fires."""
-
-_MOST = 3  # names that are listed one by one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,16 +47,3 @@ class Finding:
     severity: str
     what: str
     where: str = ""
-
-
-def named(names: list[str]) -> str:
-    """List names; of many, the first and how many more.
-
-    Examples
-    --------
-    >>> named(["a", "b"]), named(["a", "b", "c", "d", "e"])
-    ('a, b', 'a, b, c and 2 more')
-    """
-    more = len(names) - _MOST
-    shown = ", ".join(names[:_MOST])
-    return shown if more <= 0 else f"{shown} and {more} more"

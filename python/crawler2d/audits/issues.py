@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from crawler2d.parameters.robot import Robot
     from crawler2d.reading.reading import Reading
 
-__all__ = ["SEIZES", "UNREAD", "Check", "Found", "Issue", "checked", "unread"]
+__all__ = ["SEIZES", "UNREAD", "Check", "Found", "Issue", "checked", "repository_of", "unread"]
 
 SEIZES = "seizes"
 """The rule that an obstacle breaks on which a robot seizes; the others are those of lint."""
@@ -100,6 +100,11 @@ class Check:
     def failing(self) -> tuple[Issue, ...]:
         """All issues that fail."""
         return tuple(issue for issue in self.issues if self.fails(issue))
+
+
+def repository_of(path: Path) -> Path | None:
+    """Return the root of the repository that a file lies in."""
+    return next((up for up in path.resolve().parents if (up / ".git").exists()), None)
 
 
 def checked(path: Path, found: Found) -> Check:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crawler2d.audits.finding import Finding, named
+from crawler2d.audits.finding import Finding
 from crawler2d.audits.lint_model import wheel_links
 from crawler2d.models.tree import Link
 from crawler2d.models.where import Where
@@ -16,6 +16,7 @@ from crawler2d.reading.parts import farthest
 from crawler2d.reading.plausible import size_of
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.sources import lines
+from crawler2d.reading.telling import named
 
 __all__ = ["of_bodies"]
 

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crawler2d.audits.finding import Finding, named
+from crawler2d.audits.finding import Finding
 from crawler2d.models.tree import Joint, Link
 from crawler2d.reading.reading import Reading
 from crawler2d.reading.sources import lines
+from crawler2d.reading.telling import named
 
 __all__ = ["of_model", "wheel_links"]
 

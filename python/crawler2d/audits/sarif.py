@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from crawler2d import _core
 from crawler2d.audits.finding import RULES
-from crawler2d.audits.issues import SEIZES, UNREAD, Check, Issue
+from crawler2d.audits.issues import SEIZES, UNREAD, Check, Issue, repository_of
 
 __all__ = ["sarif_of"]
 
@@ -83,8 +83,7 @@ def _location(path: Path, line: int) -> dict[str, Any]:
 def _artifact(path: Path) -> dict[str, str]:
     """Name a file by its way from the root of its repository, which is what scanners resolve."""
     whole = path.resolve()
-    roots = [folder for folder in whole.parents if (folder / ".git").exists()]
-    root = roots[0] if roots else Path.cwd()
+    root = repository_of(path) or Path.cwd()
     if not whole.is_relative_to(root):
         return {"uri": whole.as_uri()}
     return {"uri": quote(whole.relative_to(root).as_posix()), "uriBaseId": _ROOT}

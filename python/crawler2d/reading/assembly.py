@@ -25,7 +25,7 @@ from crawler2d.reading.sides import Pair, centers, is_belted, middle_of, paired
 from crawler2d.reading.silhouettes import silhouette
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.surfaces import surfaces_of
-from crawler2d.reading.telling import Telling, place_of
+from crawler2d.reading.telling import Telling, named, place_of
 from crawler2d.reading.tracks import Base, wheels_of
 from crawler2d.reading.view import SideView, side_view
 
@@ -173,9 +173,8 @@ class Assembly:
             ),
         ):
             if wheels:
-                names = ", ".join(wheel.name for wheel in wheels[:_SHOWN])
-                more = f" and {len(wheels) - _SHOWN} more" if len(wheels) > _SHOWN else ""
-                self.told.doubts.append((str(wheels[0].link.at), f"{names}{more}", reason))
+                names = named([wheel.name for wheel in wheels], _SHOWN)
+                self.told.doubts.append((str(wheels[0].link.at), names, reason))
 
     def track_mass(self, pairs: list[Pair], mass: float) -> float:
         """[kg] Return what moves at track speed."""

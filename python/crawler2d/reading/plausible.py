@@ -13,13 +13,14 @@ from crawler2d.reading.parts import farthest
 from crawler2d.reading.plugins import moved_links
 from crawler2d.reading.rounds import below, radius_about
 from crawler2d.reading.surfaces import surfaces_of
-from crawler2d.reading.telling import Doubt
+from crawler2d.reading.telling import Doubt, named
 from crawler2d.reading.wheels import wheel_of
 
 __all__ = ["bounded", "refuse_unread", "size_of"]
 
 _UPRIGHT = 0.5  # [-] Upward part of an axis from which it is no axle, but that of a lidar, say.
 
+_SHOWN = 5  # names of links
 _LIGHT = 0.01  # [-] Share of the robot's mass below which a link is light.
 _MATTERS = 0.01  # [-] Share of the robot's moment of inertia from which a false one is doubted.
 
@@ -75,7 +76,7 @@ def _refuse_bare(tree: Tree, hanging: dict[str, list[str]]) -> None:
         and not any(links[name].shapes or links[name].unread for name in hanging[child])
     ]
     if bare:
-        others = f"; so must {_listed([link.name for link in bare[1:]])}" if bare[1:] else ""
+        others = f"; so must {named([link.name for link in bare[1:]], _SHOWN)}" if bare[1:] else ""
         rule = (
             f"must have a collision shape, for what is only seen touches no ground{others}: give"
             " each the cylinder that is seen, and a mass"
@@ -96,18 +97,13 @@ def _tops(tree: Tree, hanging: dict[str, list[str]]) -> Iterator[float]:
 def _refuse(names: list[str], links: dict[str, Link]) -> None:
     link = links[names[0]]
     unread = link.unread[0]
-    others = f"; so must {_listed(names[1:])}" if len(names) > 1 else ""
+    others = f"; so must {named(names[1:], _SHOWN)}" if len(names) > 1 else ""
     rule = (
         "must have a collision shape that can be read, for it may be a wheel or a track, which"
         f" nothing may guess ({unread.reason}){others}: put its mesh there, give it a cylinder or a"
         " box, or name links whose surface moves with tracks="
     )
     raise ScenarioError(f"{unread.at}: link[{link.name}]", unread.name, rule)
-
-
-def _listed(names: list[str]) -> str:
-    more = len(names) - 5
-    return ", ".join(names[:5]) + (f" and {more} more" if more > 0 else "")
 
 
 def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
@@ -152,7 +148,7 @@ def bounded(tree: Tree, doubts: list[Doubt]) -> Tree:
         reason = (
             f"is {f'taken as {most:.3g} kg m^2' if is_light else 'kept'}, but {worst.mass:.3g} kg"
             f" have at most {most:.3g} kg m^2 within {size:.3g} m, the reach of the robot"
-            f"{f'; likewise those of {_listed(others)}' if others else ''}"
+            f"{f'; likewise those of {named(others, _SHOWN)}' if others else ''}"
         )
         doubts.append((f"{worst.mass_at}: link[{worst.name}]/inertia", largest, reason))
     return tree if is_same else replace(tree, links=tuple(links))

@@ -17,7 +17,7 @@ from crawler2d.models.tree import Shape, Tree
 from crawler2d.reading.parts import corners_of
 from crawler2d.reading.plugins import moved_links
 from crawler2d.reading.rounds import below, is_parallel, radius_about
-from crawler2d.reading.telling import Doubt
+from crawler2d.reading.telling import Doubt, named
 from crawler2d.reading.wheels import wheel_of
 
 __all__ = ["Surfaces", "surfaces_of"]
@@ -216,8 +216,7 @@ class _Search:
 
 def _named(drums: list[_Drum]) -> str:
     names = list(dict.fromkeys(drum.link for drum in drums))
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return f"{len(drums)} fixed drums: {', '.join(names[:_SHOWN])}{more}"
+    return f"{len(drums)} fixed drums: {named(names, _SHOWN)}"
 
 
 def _seen(place: Array, axis: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
@@ -11,7 +11,7 @@ from crawler2d.errors import ScenarioError, ScenarioWarning
 from crawler2d.models.where import Where
 from crawler2d.reading.parts import Runner
 
-__all__ = ["Doubt", "Telling", "noted", "place_of"]
+__all__ = ["Doubt", "Telling", "named", "noted", "place_of"]
 
 Doubt = tuple[str, object, str]
 """Path, value and reason of a `ScenarioWarning`."""
@@ -62,3 +62,16 @@ def noted(doubts: Iterable[Doubt]) -> Iterator[None]:
         for doubt in islice(doubts, _MOST_NOTES):
             error.add_note(str(ScenarioWarning(*doubt)))
         raise
+
+
+def named(names: Sequence[str], most: int = 3) -> str:
+    """List names; of many, the first and how many more.
+
+    Examples
+    --------
+    >>> named(["a", "b"]), named(["a", "b", "c", "d", "e"])
+    ('a, b', 'a, b, c and 2 more')
+    """
+    more = len(names) - most
+    shown = ", ".join(names[:most])
+    return shown if more <= 0 else f"{shown} and {more} more"
