@@ -207,11 +207,9 @@ def _refused(entries: Sequence[Entry]) -> str:
     rows = "".join(
         f"<li>{escaped(e.path.as_posix())}: <span>{escaped(e.refusal)}</span></li>" for e in entries
     )
-    return (
-        f"<details><summary>{len(entries)} not read</summary><ul>{rows}</ul></details>"
-        if rows
-        else ""
-    )
+    if not rows:
+        return ""
+    return f"<details><summary>{len(entries)} not read</summary><ul>{rows}</ul></details>"
 
 
 def _card(entry: Entry) -> str:

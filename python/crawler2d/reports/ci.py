@@ -17,7 +17,7 @@ __all__ = ["add_arguments", "baseline_of", "refuse_together", "report"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options to those of ``python -m crawler2d audit``."""
+    """Add the options to those of ``crawler2d audit``."""
     group = parser.add_argument_group("for continuous integration; see docs/ci.md")
     group.add_argument(
         "--lint",
