@@ -20,7 +20,7 @@ _FIELDS_BY_UNIT = {
     ),
     "rad/s": "rate_limit",
     "kg": "mass track_mass",
-    "kg m^2": "moment_of_inertia",
+    "kg m^2": "moment_of_inertia rotor_inertia",
     "m/s": "max_push_speed max_speed speed",
     "m/s^2": "gravity max_acceleration max_deceleration",
     "N": "pre_tension",

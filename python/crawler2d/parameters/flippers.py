@@ -45,6 +45,9 @@ class Flippers(Parameters):
         [rad/s] Largest turning rate relative to the chassis.
     torque_limit : float
         [N m] Largest torque of the motor of one arm; under more load the arm gives way.
+    rotor_inertia : float
+        [kg m^2] Of the motor of one arm as the pivot feels it: the rotor's own times the square of
+        the gear's ratio. It turns with the arm over the chassis.
     track : Track, optional
         How their tracks are modelled: any model but a chain of shoes. The placements of
         `HybridWheels` are measured from midway between the arm's axles. None takes the model of the
@@ -70,6 +73,7 @@ class Flippers(Parameters):
     """
 
     place: ClassVar[str] = "robot.flippers"
+    unsaid: ClassVar[tuple[str, ...]] = ("rotor_inertia",)
 
     length: float
     root_radius: float
@@ -79,4 +83,5 @@ class Flippers(Parameters):
     angle: float = 0.0
     rate_limit: float = 1.0
     torque_limit: float
+    rotor_inertia: float = 0.0
     track: Track | None = None

@@ -5,7 +5,7 @@
 use super::approach::Approach;
 use crate::geometry::{Vector, left_of};
 use crate::robot::Flipper;
-use crate::solver::{Damper, Direction, Hung, Joint, Twist};
+use crate::solver::{Acts, Direction, Inertia, Joint, Twist};
 
 /// The arms at one end of the robot.
 pub(super) struct Arm {
@@ -44,7 +44,7 @@ impl Arm {
 
     /// [rad/s^2] How fast its motor can slow it down in the air.
     pub(super) fn deceleration(&self) -> f64 {
-        self.rule.torque_limit / self.inertia_about_pivot()
+        self.rule.torque_limit / (self.inertia_about_pivot() + self.rule.rotor_inertia)
     }
 
     /// [rad/s] Rate relative to the chassis at which the angle changes that it is to hold, if the chassis turns at this
@@ -69,12 +69,15 @@ impl Arm {
     pub(super) fn joint(&self, shoe_mass: Option<f64>) -> Joint {
         match shoe_mass {
             Some(mass) => Joint::new(f64::INFINITY, mass),
-            None => Joint::new(self.inertia_about_pivot(), f64::INFINITY),
+            None => {
+                let inertia = self.inertia_about_pivot() + self.rule.rotor_inertia;
+                Joint::new(inertia, f64::INFINITY)
+            }
         }
     }
 
     /// Its inertia along x, along y and in rotation.
-    pub(super) fn hung(&self, joint: usize) -> [Hung; 3] {
+    pub(super) fn inertias(&self, joint: usize) -> [Inertia; 3] {
         let [pivot, arm] = [self.pivot, self.center].map(left_of);
         let Flipper {
             mass,
@@ -82,20 +85,17 @@ impl Arm {
             ..
         } = self.rule;
         let free = self.free;
-        let hung = |unit: Vector, [lever, joint_lever]: [f64; 2], inertia: f64, free: f64| Hung {
-            joint,
-            along: Direction {
-                unit,
-                lever,
-                joint_lever,
-                ..Direction::default()
-            },
-            inertia: Damper::new(inertia * free, inertia),
+        let along = |unit: Vector, [lever, joint_lever]: [f64; 2]| Direction {
+            unit,
+            lever,
+            joint_lever,
+            ..Direction::default()
         };
         [
-            hung(Vector::X, [pivot.x, arm.x], mass, free.velocity.x),
-            hung(Vector::Y, [pivot.y, arm.y], mass, free.velocity.y),
-            hung(Vector::ZERO, [0.0, 1.0], inertia, free.turn),
+            (along(Vector::X, [pivot.x, arm.x]), mass, free.velocity.x),
+            (along(Vector::Y, [pivot.y, arm.y]), mass, free.velocity.y),
+            (along(Vector::ZERO, [0.0, 1.0]), inertia, free.turn),
         ]
+        .map(|(along, inertia, free)| Inertia::new(Acts::on_joint(joint), along, inertia, free))
     }
 }

@@ -17,12 +17,13 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     };
     let spin = |k: usize| {
         let sprocket = chains.get(k).and_then(|chain| chain.rule.sprocket.as_ref());
-        Spin::new(match sprocket {
+        let inertia = match sprocket {
             Some(sprocket) => sprocket.inertia,
             // The drive of a chain on a guide has no inertia of its own.
             None if k < chains.len() => 1.0,
             None => model.drive_inertia(k),
-        })
+        };
+        Spin::new(inertia, model.rotor_inertia(k))
     };
     let shoe_mass = chains.first().map(|chain| chain.rule.shoe_mass);
     let mut problem = Problem::new(

@@ -15,7 +15,7 @@ use super::state::{State, Turn};
 use super::trend::Trend;
 use crate::geometry::Vector;
 use crate::scenario::End;
-use crate::solver::Twist;
+use crate::solver::{Acts, Inertia, Twist};
 
 impl Dynamics {
     /// Commands angles of the flippers [rad], upwards > 0, front and rear, for a step of `h` [s]; and whether they turn
@@ -91,10 +91,14 @@ impl Dynamics {
     /// Gives the next solve the arms as they are now, and what their motors can do in a `time` [s].
     pub(super) fn hang_flippers(&mut self, time: f64) {
         let arms = self.flippers.iter().enumerate();
-        self.problem.hung.clear();
-        self.problem
-            .hung
-            .extend(arms.flat_map(|(k, arm)| arm.hung(k)));
+        let inertias = &mut self.problem.inertias;
+        inertias.extend(arms.clone().flat_map(|(k, arm)| arm.inertias(k)));
+        let turn = self.problem.free.base.turn;
+        let with_rotor = arms.filter(|(_, arm)| arm.rule.rotor_inertia > 0.0);
+        inertias.extend(with_rotor.map(|(k, arm)| {
+            let (on, free) = (Acts::on_joint(k), arm.free.turn - turn);
+            Inertia::of_rotor(on, arm.rule.rotor_inertia, free)
+        }));
         let motors = &mut self.problem.motors[self.model.drives..];
         for (motor, arm) in motors.iter_mut().zip(&self.flippers) {
             (motor.target, motor.most) = (arm.rate, arm.rule.torque_limit * time);

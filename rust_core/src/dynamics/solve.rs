@@ -5,6 +5,7 @@
 use super::Dynamics;
 use super::push::push_axis;
 use super::state::State;
+use crate::solver::{Acts, Damper, Inertia};
 
 impl Dynamics {
     /// Solves for the velocities after a `time` [s] in which motors push, with surfaces that aim at a speed [m/s].
@@ -12,6 +13,8 @@ impl Dynamics {
         for motor in &mut self.problem.motors[..self.model.drives] {
             (motor.target, motor.most) = (set_point, self.model.drive_force * time);
         }
+        self.problem.inertias.clear();
+        self.turn_rotors();
         self.hang_flippers(time);
         for push in &mut self.problem.bilaterals {
             push.along = push_axis(&self.model, state.angle);
@@ -20,6 +23,28 @@ impl Dynamics {
         self.problem.solve();
         state.take_velocities(&self.problem.velocities);
         self.spin_with_chains(state);
+    }
+
+    /// Gives the next solve the rotors of the drives, which turn with these over the chassis.
+    fn turn_rotors(&mut self) {
+        let problem = &mut self.problem;
+        for (k, spin) in problem.spins.iter().enumerate() {
+            let free = problem.free.spins[k] - problem.free.base.turn;
+            if spin.rotor == 0.0 {
+                continue;
+            }
+            match problem.rings.get_mut(k) {
+                Some(ring) => {
+                    let lever = problem.motors[k].lever;
+                    let mass = spin.rotor / (lever * lever);
+                    ring.drive.rotor = Damper::new(mass * lever * free, mass);
+                }
+                None => {
+                    let rotor = Inertia::of_rotor(Acts::on_spin(k), spin.rotor, free);
+                    problem.inertias.push(rotor);
+                }
+            }
+        }
     }
 
     /// Ends a step that was a blow: contacts give back some of its impulses.

@@ -15,6 +15,12 @@ pub(crate) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
     }
     check_settings(scenario)?;
     let robot = &scenario.robot;
+    let rotor = robot.drivetrain.rotor_inertia;
+    if rotor > 0.0 {
+        let rule = "must be 0 where solver.engine is rapier: its motors have no rotor there";
+        let path = "robot.drivetrain.rotor_inertia";
+        return Err(ScenarioError::new(path, rotor, rule));
+    }
     if let Some((kind, reason)) = refused(&robot.track) {
         let rule = format!(
             "must be line, circumferential, hybrid or force where solver.engine is rapier, which {reason}"

@@ -60,13 +60,14 @@ impl Model {
         parts.extend(belly);
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
-        let force = self.drive_force * self.motors as f64;
+        let of_motor = |one: f64| one * self.motors as f64 / tracks as f64;
         Ok(Self {
             parts,
             drives: tracks,
             motors: tracks,
             drive_masses: vec![mass / tracks as f64; tracks],
-            drive_force: force / tracks as f64,
+            drive_force: of_motor(self.drive_force),
+            rotor_mass: of_motor(self.rotor_mass),
             pushes_chassis: false,
             ..whole
         })

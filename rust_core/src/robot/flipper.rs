@@ -22,6 +22,8 @@ pub struct Flipper {
     pub rate_limit: f64,
     /// [N m] Largest torque of its motor.
     pub torque_limit: f64,
+    /// [kg m^2] Moment of inertia of its motors' rotors, as far as they turn over the chassis.
+    pub rotor_inertia: f64,
     /// [rad] Angle at time 0, upwards > 0.
     pub start_angle: f64,
     /// The end of the robot that it is on.
@@ -60,6 +62,7 @@ impl Flipper {
                 root_radius: flippers.root_radius,
                 rate_limit: flippers.rate_limit,
                 torque_limit: 2.0 * flippers.torque_limit,
+                rotor_inertia: 2.0 * flippers.rotor_inertia,
                 start_angle: flippers.angle,
                 end,
             }

@@ -25,6 +25,8 @@ pub struct Model {
     pub drive_radius: f64,
     /// [N] Largest traction of each motor.
     pub drive_force: f64,
+    /// [kg] Mass at the surface that would be as hard to speed up as the rotor of each motor.
+    pub rotor_mass: f64,
     /// The drive pushes the chassis along its axis, whether it touches the ground or not.
     pub pushes_chassis: bool,
     /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
@@ -80,6 +82,7 @@ impl Model {
             drive_masses,
             drive_radius: radius,
             drive_force: robot.drivetrain.max_force(&robot.outline) / sharers as f64,
+            rotor_mass: robot.drivetrain.rotor_mass(&robot.outline) / sharers as f64,
             pushes_chassis: track.pushes_chassis,
             chains: Vec::new(),
             flippers: Vec::new(),
@@ -138,6 +141,15 @@ impl Model {
     /// [kg m^2] Moment of inertia of one drive.
     pub(crate) fn drive_inertia(&self, drive: usize) -> f64 {
         self.drive_masses[drive] * self.drive_radius * self.drive_radius
+    }
+
+    /// [kg m^2] Moment of inertia of the rotor of one drive, as far as that turns over the chassis.
+    pub(crate) fn rotor_inertia(&self, drive: usize) -> f64 {
+        if drive < self.motors {
+            self.rotor_mass * self.drive_radius * self.drive_radius
+        } else {
+            0.0
+        }
     }
 
     /// [kg m^2] Moment of inertia with all drives locked to the chassis.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::fields::{Fields, Range, TORQUE};
+use super::fields::{Fields, ROTOR, Range, TORQUE, is_zero};
 use super::{ScenarioError, TrackOutline};
 
 /// What drives the tracks, and its limits.
@@ -18,6 +18,10 @@ pub struct Drivetrain {
     pub max_torque: f64,
     /// How the torque is shared.
     pub torque_sharing: TorqueSharing,
+    /// [kg m^2] Moment of inertia of one sprocket's motor as that feels it: the rotor's own times the square of the gear's
+    /// ratio.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub rotor_inertia: f64,
 }
 
 /// How the wheels of a track share its torque.
@@ -35,6 +39,12 @@ impl Drivetrain {
     pub fn max_force(&self, outline: &TrackOutline) -> f64 {
         2.0 * self.max_torque / outline.belt_radius()
     }
+
+    /// [kg] Mass at the surface that would be as hard to speed up as the rotors of both tracks.
+    pub(crate) fn rotor_mass(&self, outline: &TrackOutline) -> f64 {
+        let radius = outline.belt_radius();
+        2.0 * self.rotor_inertia / (radius * radius)
+    }
 }
 
 impl Drivetrain {
@@ -49,6 +59,7 @@ impl Drivetrain {
             max_deceleration: f.number("max_deceleration", Range::above(0.0, 1e6, "m/s^2"))?,
             max_torque: f.number("max_torque", TORQUE)?,
             torque_sharing: f.choice("torque_sharing", &sharing)?,
+            rotor_inertia: f.number_or_zero("rotor_inertia", ROTOR)?,
         };
         f.finish()?;
         Ok(drivetrain)

@@ -86,11 +86,19 @@ pub(super) const FORCE: Range = Range::above(0.0, 1e15, "N");
 pub(super) const TORQUE: Range = Range::between(0.0, 1e17, "N m");
 /// [kg m^2] From the lightest mass on the shortest lever to the heaviest on the longest.
 pub(super) const INERTIA: Range = Range::between(1e-20, 1e16, "kg m^2");
+/// [kg m^2] Of a motor as its gear shows it; none where that is neglected.
+pub(super) const ROTOR: Range = Range::between(0.0, 1e16, "kg m^2");
 /// [N/m], [N s/m] Up to a spring on the heaviest mass that swings once, or a damper that stops it, in the shortest step.
 pub(super) const STIFFNESS: Range = Range::above(0.0, 1e22, "N/m");
 pub(super) const DAMPING: Range = Range::between(0.0, 1e17, "N s/m");
 /// [s] Shortest step.
 pub(super) const SHORTEST: f64 = 1e-5;
+
+/// Whether a number is left out of texts: see [`Fields::number_or_zero`].
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
+pub(super) fn is_zero(number: &f64) -> bool {
+    number.to_bits() == 0
+}
 
 /// A JSON object being read: every known field is read once; the others are errors.
 pub(crate) struct Fields<'a> {
@@ -152,6 +160,19 @@ impl<'a> Fields<'a> {
     ) -> Result<f64, ScenarioError> {
         let value = self.value(name)?;
         in_range(&self.path(name), value, range)
+    }
+
+    /// A number that texts leave out if it is 0, as those do that are older than the field.
+    pub(crate) fn number_or_zero(
+        &mut self,
+        name: &'static str,
+        range: Range,
+    ) -> Result<f64, ScenarioError> {
+        if self.has(name) {
+            Ok(self.number(name, range)?.abs())
+        } else {
+            Ok(0.0)
+        }
     }
 
     pub(crate) fn optional_number(

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, MASS, Range, SIZE, TORQUE};
+use super::fields::{Fields, MASS, ROTOR, Range, SIZE, TORQUE, is_zero};
 use super::outline::TrackOutline;
 use super::track::Track;
 
@@ -29,6 +29,10 @@ pub struct Flippers {
     pub rate_limit: f64,
     /// [N m] Largest torque of the motor of one arm.
     pub torque_limit: f64,
+    /// [kg m^2] Moment of inertia of the motor of one arm as the pivot feels it: the rotor's own times the square of the
+    /// gear's ratio.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub rotor_inertia: f64,
     /// How their tracks are modelled; `None` takes the robot's model.
     pub track: Option<Track>,
 }
@@ -80,6 +84,7 @@ impl Flippers {
             angle: f.number("angle", ANGLE)?,
             rate_limit: f.number("rate_limit", Range::above(0.0, 100.0, "rad/s"))?,
             torque_limit: f.number("torque_limit", TORQUE)?,
+            rotor_inertia: f.number_or_zero("rotor_inertia", ROTOR)?,
             track: if f.value("track")?.is_null() {
                 None
             } else {

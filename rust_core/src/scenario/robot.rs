@@ -90,7 +90,19 @@ impl Robot {
                 format!("must exceed track_mass x radius^2 = {circulating} kg m^2, the inertia of the moving track"),
             ));
         }
+        self.check_rotor("drivetrain", self.drivetrain.rotor_inertia)?;
         Ok(())
+    }
+
+    /// Checks that the digits of the chassis are not lost beside a motor's rotor.
+    fn check_rotor(&self, of: &str, inertia: f64) -> Result<(), ScenarioError> {
+        let most = self.moment_of_inertia / LEAST_SHARE;
+        if inertia <= most {
+            return Ok(());
+        }
+        let rule = format!("must be at most 100,000 times robot.moment_of_inertia, {most} kg m^2");
+        let path = format!("robot.{of}.rotor_inertia");
+        Err(ScenarioError::new(path, inertia, rule))
     }
 
     /// Checks rules that involve robot and flippers.
@@ -110,6 +122,7 @@ impl Robot {
             let rule = format!("must be at least a hundred-thousandth of robot.mass, {least} kg");
             return error("mass", flippers.mass, rule);
         }
+        self.check_rotor("flippers", flippers.rotor_inertia)?;
         let of_arms = 2.0 * flippers.mass * flippers.ends().count() as f64;
         if of_arms + self.track_mass >= self.mass {
             let rule = format!(

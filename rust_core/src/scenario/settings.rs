@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, Range, SHORTEST};
+use super::fields::{Fields, Range, SHORTEST, is_zero};
 
 /// How the robot stands at time 0: at rest, touching the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,14 +69,8 @@ pub struct Solver {
     /// [m] Gap up to which contacts are searched for.
     pub prediction_distance: f64,
     /// Share of the impulses of a blow that contacts give back.
-    #[serde(skip_serializing_if = "is_plastic")]
+    #[serde(skip_serializing_if = "is_zero")]
     pub restitution: f64,
-}
-
-/// Whether blows give nothing back: texts leave it out, as those have it that are older than the choice.
-#[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
-fn is_plastic(restitution: &f64) -> bool {
-    restitution.to_bits() == 0
 }
 
 /// When a run ends, and what counts as a stop.
@@ -163,11 +157,7 @@ impl Solver {
                 .number("contact_damping_ratio", Range::above(0.0, 100.0, ""))?,
             max_push_speed: f.number("max_push_speed", Range::above(0.0, 100.0, "m/s"))?,
             prediction_distance: f.number("prediction_distance", Range::between(1e-5, 0.1, "m"))?,
-            restitution: if f.has("restitution") {
-                f.number("restitution", Range::between(0.0, 1.0, ""))?.abs()
-            } else {
-                0.0
-            },
+            restitution: f.number_or_zero("restitution", Range::between(0.0, 1.0, ""))?,
         };
         f.finish()?;
         match (solver.accuracy, solver.time_step) {

@@ -13,10 +13,10 @@ impl Problem {
     /// that keep links together matter more.
     pub(super) fn balance(&mut self) {
         if self.rings.is_empty() {
-            if self.joints.is_empty() {
+            if self.inertias.is_empty() {
                 self.balance_base();
             } else {
-                self.balance_with_joints();
+                self.balance_bodies();
             }
         }
     }
@@ -57,8 +57,8 @@ impl Problem {
         }
     }
 
-    /// The same with bodies hinged to the base, whose rates hang together with its velocities.
-    fn balance_with_joints(&mut self) {
+    /// The same with inertias that the base shares, so that all velocities hang together.
+    fn balance_bodies(&mut self) {
         self.assemble_bodies();
         for contact in &self.contacts {
             for (action, impulse) in contact.actions.iter().zip(contact.impulses()) {

@@ -4,7 +4,7 @@
 
 use super::damper::Damper;
 use super::direction::Direction;
-use super::velocities::Acts;
+use super::velocities::{Acts, Velocities};
 
 /// The base.
 #[derive(Clone, Copy, Debug)]
@@ -20,14 +20,17 @@ pub(crate) struct Base {
 pub(crate) struct Spin {
     /// [kg m^2]
     pub inertia: f64,
+    /// [kg m^2] Moment of inertia of the motor that turns it, which turns over the base alone.
+    pub rotor: f64,
     /// [rad/s] Rate over the base at which a motor holds it.
     pub(super) held: Option<f64>,
 }
 
 impl Spin {
-    pub(crate) fn new(inertia: f64) -> Self {
+    pub(crate) fn new(inertia: f64, rotor: f64) -> Self {
         Self {
             inertia,
+            rotor,
             held: None,
         }
     }
@@ -54,25 +57,32 @@ impl Joint {
     }
 }
 
-/// One degree of freedom of the inertia of a body that is hinged to the base.
+/// Inertia along one direction: of a body that is hinged to the base, or of a motor's rotor, which turns over the base.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hung {
-    pub joint: usize,
+pub(crate) struct Inertia {
+    pub acts: Acts,
     pub along: Direction,
     /// The impulse that it takes to give it a speed along that.
-    pub inertia: Damper,
+    pub damper: Damper,
 }
 
-impl Hung {
-    pub(super) fn acts(&self) -> Acts {
-        on_joint(self.joint)
+impl Inertia {
+    /// One of `inertia` [kg] along a direction, with a speed there without constraints [m/s].
+    pub(crate) fn new(acts: Acts, along: Direction, inertia: f64, free: f64) -> Self {
+        Self {
+            acts,
+            along,
+            damper: Damper::new(inertia * free, inertia),
+        }
     }
-}
 
-/// What acts on the base and a body hinged to it.
-pub(super) fn on_joint(joint: usize) -> Acts {
-    Acts::Base {
-        joint: Some(joint),
-        spin: None,
+    /// That of a rotor [kg m^2], with its rate over the base without constraints [rad/s].
+    pub(crate) fn of_rotor(on: Acts, inertia: f64, free: f64) -> Self {
+        Self::new(on, Direction::over_base(on, 1.0), inertia, free)
+    }
+
+    /// The impulse that has changed its speed.
+    pub(super) fn gained(&self, velocities: &Velocities) -> f64 {
+        -self.damper.at(self.acts.speed(&self.along, velocities))
     }
 }

@@ -37,6 +37,14 @@ impl Damper {
         self.impulse - self.stiffness * speed
     }
 
+    /// Both at one speed.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self::new(
+            self.impulse + other.impulse,
+            self.stiffness + other.stiffness,
+        )
+    }
+
     /// [m/s] Speed at a given impulse.
     pub(super) fn speed_for(self, impulse: f64) -> f64 {
         (self.impulse - impulse) / self.stiffness

@@ -14,7 +14,7 @@ use super::motor::Driven;
 use super::ring::{Beside, Ring};
 use super::system::System;
 use super::velocities::Acts;
-use super::{AGREEMENT, Contact, Hung, Problem, bodies};
+use super::{AGREEMENT, Contact, Inertia, Problem};
 
 /// Solutions of the system in one search; since all misfits are corrected at once, corrections could
 /// alternate for ever.
@@ -115,21 +115,21 @@ impl Problem {
                 Driven::Joint(k) => match given {
                     None => system.hold(k),
                     Some(given) => {
-                        let along = Direction {
-                            lever: -motor.lever,
-                            joint_lever: motor.lever,
-                            ..Direction::default()
-                        };
-                        system.add(bodies::on_joint(k), [&along; 2], Damper::constant(given));
+                        let acts = Acts::on_joint(k);
+                        let along = Direction::over_base(acts, motor.lever);
+                        system.add(acts, [&along; 2], Damper::constant(given));
                     }
                 },
             }
         }
-        for i in 0..self.hung.len() {
-            let Hung { along, inertia, .. } = self.hung[i];
-            let acts = self.hung[i].acts();
+        for i in 0..self.inertias.len() {
+            let Inertia {
+                acts,
+                along,
+                damper,
+            } = self.inertias[i];
             let action = self.tied(acts, along);
-            self.system.add(acts, [&action; 2], inertia);
+            self.system.add(acts, [&action; 2], damper);
         }
     }
 

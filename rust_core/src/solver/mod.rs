@@ -35,7 +35,7 @@ mod velocities;
 mod way;
 
 pub(crate) use bilateral::Bilateral;
-pub(crate) use bodies::{Base, Hung, Joint, Spin};
+pub(crate) use bodies::{Base, Inertia, Joint, Spin};
 pub(crate) use contact::Contact;
 pub(crate) use damper::Damper;
 pub(crate) use direction::Direction;
@@ -60,7 +60,7 @@ pub(crate) struct Problem {
     pub base: Base,
     pub spins: Vec<Spin>,
     pub joints: Vec<Joint>,
-    pub hung: Vec<Hung>,
+    pub inertias: Vec<Inertia>,
     pub rings: Vec<Ring>,
     pub contacts: Vec<Contact>,
     pub bilaterals: Vec<Bilateral>,
@@ -106,7 +106,7 @@ impl Problem {
             base,
             spins,
             joints,
-            hung: Vec::new(),
+            inertias: Vec::new(),
             rings,
             contacts: Vec::new(),
             bilaterals: Vec::new(),
@@ -120,7 +120,8 @@ impl Problem {
     /// Finds the velocities and impulses that satisfy all constraints.
     pub(crate) fn solve(&mut self) {
         self.effort.solves += 1;
-        let agreed = self.search() || (self.forget_offsets() && self.search());
+        let agreed =
+            (self.search() && !self.offsets_throw()) || (self.forget_offsets() && self.search());
         if !agreed {
             self.effort.unresolved += 1;
         }
@@ -154,6 +155,22 @@ impl Problem {
         } else {
             self.solve_in_steps()
         }
+    }
+
+    /// Whether contacts that jam give more energy by how they move along their directions than there was. Wedged together
+    /// almost exactly, bodies would have to move fast to follow contacts that hardly move.
+    fn offsets_throw(&self) -> bool {
+        let given: f64 = (self.contacts.iter())
+            .map(|c| {
+                (c.normal.offset * c.normal_impulse).abs()
+                    + (c.tangent.offset * c.friction_impulse).abs()
+            })
+            .sum();
+        let Twist { velocity, turn } = self.free.base;
+        let of_base = self.base.mass * velocity.length_squared() + self.inertia * turn * turn;
+        let spins = self.spins.iter().zip(&self.free.spins);
+        let of_spins: f64 = spins.map(|(spin, rate)| spin.inertia * rate * rate).sum();
+        given > 0.5 * (of_base + of_spins)
     }
 
     /// Lets all contacts move along their directions as these are: contacts that jam cannot all open or slide on their

@@ -2,8 +2,9 @@
 //!
 //! The equations: docs/physics.md, "Motors".
 
-use super::Problem;
+use super::direction::Direction;
 use super::motor::{Driven, Motor};
+use super::{Inertia, Problem};
 
 impl Problem {
     /// Releases motors beyond their limit, and lets those past their speed hold again; returns whether any changed.
@@ -46,22 +47,23 @@ impl Problem {
         let made = match motor.on {
             Driven::Spin(k) => {
                 let change = self.velocities.spins[k] - self.free.spins[k];
-                self.spins[k].inertia * change - self.torques[k]
+                let gained = self.gained(|i| i.acts.spin() == Some(k), |d| d.spin_lever);
+                self.spins[k].inertia * change - self.torques[k] + gained
             }
-            Driven::Joint(k) => self.gained_by_joint(k) - self.torque_on_joint(k),
+            Driven::Joint(k) => {
+                let gained = self.gained(|i| i.acts.joint() == Some(k), |d| d.joint_lever);
+                gained - self.torque_on_joint(k)
+            }
             Driven::Ring(_) => 0.0,
         };
         made / motor.lever
     }
 
-    /// [N m s] Momentum about its hinge that a body has gained over what it would have without constraints.
-    fn gained_by_joint(&self, joint: usize) -> f64 {
-        let own = self.hung.iter().filter(|hung| hung.joint == joint);
-        let gained = own.map(|hung| {
-            let speed = hung.acts().speed(&hung.along, &self.velocities);
-            -hung.along.joint_lever * hung.inertia.at(speed)
-        });
-        gained.sum()
+    /// [N m s] Momentum that the inertias of one body have gained over what it would have without constraints.
+    fn gained(&self, own: impl Fn(&Inertia) -> bool, lever: impl Fn(&Direction) -> f64) -> f64 {
+        let own = self.inertias.iter().filter(|inertia| own(inertia));
+        own.map(|inertia| lever(&inertia.along) * inertia.gained(&self.velocities))
+            .sum()
     }
 
     fn torque_on_joint(&self, joint: usize) -> f64 {

@@ -2,8 +2,7 @@
 //!
 //! The equations: docs/physics.md, "Impacts".
 
-use super::Problem;
-use super::damper::Damper;
+use super::{Inertia, Problem};
 
 impl Problem {
     /// Goes on from the velocities of a solve that was a blow: contacts give back a share of its impulses, along normals
@@ -32,10 +31,14 @@ impl Problem {
     fn start_from_here(&mut self) {
         self.free.base = self.velocities.base;
         self.free.spins.clone_from(&self.velocities.spins);
-        for hung in &mut self.hung {
-            let speed = hung.acts().speed(&hung.along, &self.velocities);
-            let inertia = hung.inertia.stiffness;
-            hung.inertia = Damper::new(inertia * speed, inertia);
+        for inertia in &mut self.inertias {
+            let Inertia {
+                acts,
+                along,
+                damper,
+            } = *inertia;
+            let free = acts.speed(&along, &self.velocities);
+            *inertia = Inertia::new(acts, along, damper.stiffness, free);
         }
         for motor in &mut self.motors {
             motor.most = 0.0;

@@ -183,7 +183,7 @@ fn opposed_contacts_on_one_belt_share_its_motor() {
             mass: 2.0,
             inertia: 0.1,
         };
-        let mut problem = Problem::new(base, vec![Spin::new(0.01)], Vec::new(), Vec::new());
+        let mut problem = Problem::new(base, vec![Spin::new(0.01, 0.0)], Vec::new(), Vec::new());
         problem.mass_on_springs = Some(2.0);
         problem.free.base.velocity = Vector::new(1.0, 0.0);
         let mut motor = Motor::new(Driven::Spin(0), -radius, most > 0.0);

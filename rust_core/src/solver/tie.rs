@@ -3,7 +3,7 @@
 //! The equations: docs/physics.md, "The problem".
 
 use super::Problem;
-use super::bodies::Joint;
+use super::bodies::{Joint, Spin};
 use super::direction::Direction;
 use super::motor::Driven;
 use super::velocities::{Acts, Link};
@@ -87,6 +87,15 @@ impl Problem {
         };
         let of_base = |lever: f64| of_body(self.base.mass, self.inertia, lever);
         let of_spin = |k: usize| along.spin_lever * along.spin_lever / self.spins[k].inertia;
+        let of_rotor = |k: usize| {
+            let Spin { inertia, rotor, .. } = self.spins[k];
+            if rotor == 0.0 || along.spin_lever == 0.0 {
+                return 0.0;
+            }
+            // It turns with the difference of spin and base (Sherman and Morrison 1950).
+            let turned = along.spin_lever / inertia - along.lever / self.inertia;
+            turned * turned / (rotor.recip() + inertia.recip() + self.inertia.recip())
+        };
         let of_link = |link: Link| {
             let ring = &self.rings[link.ring];
             of_body(ring.mass, ring.inertia, along.lever)
@@ -97,7 +106,7 @@ impl Problem {
                     let Joint { mass, inertia, .. } = self.joints[k];
                     of_body(mass, inertia, along.joint_lever)
                 });
-                of_base(along.lever) + spin.map_or(0.0, of_spin) + of_joint
+                of_base(along.lever) + spin.map_or(0.0, |k| of_spin(k) - of_rotor(k)) + of_joint
             }
             Acts::Link(link) => of_link(link),
             Acts::LinkAndSlide(link) => of_link(link) + of_base(along.back),

@@ -95,6 +95,22 @@ pub(crate) enum Acts {
 }
 
 impl Acts {
+    /// On the base, and what spins on it.
+    pub(crate) fn on_spin(spin: usize) -> Self {
+        Self::Base {
+            joint: None,
+            spin: Some(spin),
+        }
+    }
+
+    /// On the base, and what is hinged to it.
+    pub(crate) fn on_joint(joint: usize) -> Self {
+        Self::Base {
+            joint: Some(joint),
+            spin: None,
+        }
+    }
+
     /// [m/s] Speed along a direction, without its offset.
     pub(crate) fn speed(self, along: &Direction, of: &impl Moves) -> f64 {
         let of_link = |link: Link, beside: f64| {

@@ -49,6 +49,7 @@ pub(crate) fn with_flippers(ends: Ends, track: Track) -> Scenario {
         angle: 0.0,
         rate_limit: 1.0,
         torque_limit: 30.0,
+        rotor_inertia: 0.0,
         track: None,
     });
     scenario

@@ -32,6 +32,7 @@ mod rapier;
 mod rapier_oracles;
 mod repeat;
 mod robustness;
+mod rotor;
 mod segmental;
 mod seizure;
 mod sinkage;

@@ -21,6 +21,7 @@ fn scenario(torque_limit: f64) -> Scenario {
         angle: 0.0,
         rate_limit: 2.0,
         torque_limit,
+        rotor_inertia: 0.0,
         track: None,
     });
     scenario

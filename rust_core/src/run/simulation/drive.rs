@@ -38,6 +38,7 @@ mod tests {
         max_deceleration: 4.0,
         max_torque: 6.0,
         torque_sharing: TorqueSharing::Track,
+        rotor_inertia: 0.0,
     };
 
     #[test]

@@ -35,7 +35,8 @@ impl Simulation {
         self.bodies().into_iter().map(of_body).sum()
     }
 
-    /// [J] Kinetic energy, potential energy relative to y = 0, and energy of the tensioners of chains. Energy stored
+    /// [J] Kinetic energy, that of motors' rotors included, potential energy relative to y = 0, and energy of the tensioners
+    /// of chains. Energy stored
     /// in contacts and stops while they give way is not counted.
     pub fn energy(&self) -> f64 {
         let gravity = self.scenario.gravity;
@@ -50,7 +51,18 @@ impl Simulation {
         };
         let bodies: f64 = self.bodies().into_iter().map(of_body).sum();
         let chains = self.dynamics.model().chains.iter();
-        bodies + chains.map(of_tensioner).sum::<f64>()
+        bodies + chains.map(of_tensioner).sum::<f64>() + self.energy_of_rotors()
+    }
+
+    /// [J] Kinetic energy of the motors' rotors, which turn over the chassis.
+    fn energy_of_rotors(&self) -> f64 {
+        let (model, state) = (self.dynamics.model(), &self.state);
+        let over_chassis = |rate: f64| (rate - state.angular_velocity).powi(2);
+        let drives = state.drives.iter().enumerate();
+        let of_drives = drives.map(|(k, d)| model.rotor_inertia(k) * over_chassis(d.spin));
+        let arms = model.flippers.iter().zip(&state.flippers);
+        let of_arms = arms.map(|(arm, turn)| arm.rotor_inertia * over_chassis(turn.rate));
+        0.5 * (of_drives.sum::<f64>() + of_arms.sum::<f64>())
     }
 
     /// Chassis, drives, flippers and shoes.

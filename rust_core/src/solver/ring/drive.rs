@@ -20,6 +20,8 @@ pub(crate) struct Drive {
     pub impulse: f64,
     /// [N s] Impulse about which a solve damps it.
     pub center: f64,
+    /// The impulse that its motor's rotor takes to give it a speed.
+    pub rotor: Damper,
 }
 
 /// How the drive acts on one link and on the base.

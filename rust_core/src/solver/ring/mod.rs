@@ -100,21 +100,23 @@ impl Ring {
     /// constraints [rad/s].
     pub(super) fn assemble(&mut self, motor: &Motor, spin: Option<[f64; 2]>) {
         self.system.start(self.slide);
-        let given = self.given(motor);
-        let damper = self.drive.damper().shifted(motor.target);
+        let holds = self.drive.damper().shifted(motor.target);
+        let given = self.given(motor).map_or(holds, Damper::constant);
+        let damper = given.plus(self.drive.rotor);
         if let (Some([inertia, rate]), Some(lever)) = (spin, self.drive.lever) {
             self.system.add_spin(inertia, rate);
-            let damper = given.map_or(damper, Damper::constant);
             self.system.turn_spin(lever, damper);
             return;
         }
+        let is_constant = damper.stiffness == 0.0;
         for grasp in &self.drive.grasps {
-            match given {
-                Some(impulse) => self.system.push(grasp, impulse),
-                None => self.system.add_grasp(grasp),
+            if is_constant {
+                self.system.push(grasp, damper.at(0.0));
+            } else {
+                self.system.add_grasp(grasp);
             }
         }
-        if given.is_none() {
+        if !is_constant {
             self.system.set_drive(damper);
         }
     }

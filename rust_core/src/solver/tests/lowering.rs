@@ -7,7 +7,7 @@ fn driving_off() -> Problem {
     let mut problem = body(Vector::new(0.0, -GRAVITY * TIME), 0.0);
     let (base, radius) = (problem.base, 0.05);
     let free = problem.free.base;
-    problem = Problem::new(base, vec![Spin::new(0.01)], Vec::new(), Vec::new());
+    problem = Problem::new(base, vec![Spin::new(0.01, 0.0)], Vec::new(), Vec::new());
     problem.mass_on_springs = Some(base.mass);
     problem.free.base = free;
     let mut motor = Motor::new(Driven::Spin(0), -radius, true);

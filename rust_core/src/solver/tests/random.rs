@@ -17,7 +17,7 @@ pub(super) fn drawn(draw: &mut Draw) -> Problem {
         inertia: draw.size(0.01, 5.0),
     };
     let spins: Vec<Spin> = (0..draw.below(3))
-        .map(|_| Spin::new(draw.size(1e-4, 0.1)))
+        .map(|_| Spin::new(draw.size(1e-4, 0.1), 0.0))
         .collect();
     let mut problem = Problem::new(base, spins, Vec::new(), Vec::new());
     problem.mass_on_springs = Some(base.mass);

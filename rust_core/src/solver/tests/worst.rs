@@ -74,7 +74,9 @@ fn problem_of(line: &str) -> Problem {
         mass: base[0],
         inertia: base[1],
     };
-    let spins = numbers(&given["spins"]).into_iter().map(Spin::new);
+    let spins = numbers(&given["spins"])
+        .into_iter()
+        .map(|inertia| Spin::new(inertia, 0.0));
     let joints = numbers(&given["joints"]).into_iter();
     let joints = joints.map(|inertia| Joint::new(inertia, f64::INFINITY));
     let mut problem = Problem::new(base, spins.collect(), joints.collect(), Vec::new());
@@ -86,12 +88,12 @@ fn problem_of(line: &str) -> Problem {
     let rates = numbers(&given["start_joints"]);
     problem.velocities.joints.copy_from_slice(&rates);
     problem.mass_on_springs = given["springs"].as_f64();
-    let hung = |entries: Vec<f64>| Hung {
-        joint: entries[0] as usize,
+    let inertia = |entries: Vec<f64>| Inertia {
+        acts: Acts::on_joint(entries[0] as usize),
         along: along(&entries[1..7]),
-        inertia: Damper::new(entries[7], entries[8]),
+        damper: Damper::new(entries[7], entries[8]),
     };
-    problem.hung = lists(&given["hung"]).map(hung).collect();
+    problem.inertias = lists(&given["hung"]).map(inertia).collect();
     problem.contacts = lists(&given["contacts"]).map(|c| contact_of(&c)).collect();
     problem.motors = lists(&given["motors"]).map(|m| motor_of(&m)).collect();
     problem

@@ -26,6 +26,7 @@ fn on_wheels() -> Simulation {
         angle: 0.6,
         rate_limit: 1.0,
         torque_limit: 30.0,
+        rotor_inertia: 0.0,
         track: None,
     });
     scenario.terrain = Terrain::Barrier {
