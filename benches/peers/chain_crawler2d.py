@@ -10,7 +10,8 @@ from benches.peers import chain_robot
 from benches.peers.chain_robot import ChainRobot
 from benches.peers.engine import Setting
 from benches.peers.motion import Array
-from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.drivetrain import Drivetrain
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
 from crawler2d.parameters.terrain import Points

@@ -26,9 +26,10 @@ from crawler2d.errors import (
     SimulationDiverged,
     StoreError,
 )
+from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.gaits import Climb, Hold
-from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.settings import Drive, SeizureCriteria, Solver, Start
 from crawler2d.parameters.track import (
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from crawler2d.sweeps.table import table
 
 __all__ = [
+    "PI",
     "Audit",
     "BatchInterrupted",
     "BeltTrack",

@@ -41,8 +41,8 @@ pub use geometry::{Disc, Gear, Grouser, ShoeLoop, Teeth, Vector};
 pub use limits::{Cancel, check_rounding};
 pub use observe::{Event, EventKind, Outcome, Reading};
 pub use robot::{
-    Body, BodyKind, ChainOfShoes, ChassisBody, Circuit, Flipper, Model, Mount, Part, Shape,
-    Sprocket, Tensioner, WheelBody,
+    Body, BodyKind, ChainOfShoes, ChassisBody, Circuit, Flipper, Model, MotorRule, Mount, Part,
+    Shape, Sprocket, Tensioner, WheelBody,
 };
 pub use run::{
     Checked, ContactTable, EscapeForce, Finished, Metrics, Poses, Progress, Record, Run,
@@ -53,8 +53,8 @@ pub use scenario::{
     BeltTrack, ChainMechanism, CircumferentialWheels, Climb, ClosedSurface, ClosedTrack,
     ContactMethod, Doubt, Drive, Drivetrain, End, Ends, Engine, FieldPattern, Flippers,
     ForceSupport, ForceTrack, Gait, GearWheel, GrouserBeltTrack, Hold, HybridWheels, LineOfWheels,
-    MAX_POINTS, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria, ShoeShape,
-    Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
+    MAX_POINTS, Pi, Robot, SCHEMA, Scenario, ScenarioError, SegmentalTrack, SeizureCriteria,
+    ShoeShape, Solver, Start, Stepfield, Terrain, TorqueSharing, Track, TrackOutline, Wheel,
 };
 pub use terrain::{Edge, Ground, Profile, Side};
 pub use version::{BUILD_ID, ENGINE};

@@ -3,7 +3,7 @@
 import math
 import random
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import crawler2d as c2d
 from crawler2d.common.ends import Disc, ends_of
@@ -209,6 +209,9 @@ def drawn_flippers(
         angle=max(-6.3, min(6.3, draw.signed(6.3, 3.0))),
         rate_limit=draw.size(TINY, 100.0, (0.1, 7.0)),
         torque_limit=draw.size_or_zero(1e-12, 1e6, (0.05 * mass * axles, 50.0 * mass * axles)),
+        rotor_inertia=draw.size_or_zero(1e-12, 1e3, (0.01 * mass, 0.1 * mass))
+        if draw.random() < 0.3
+        else 0.0,
         track=own,
     )
 
@@ -223,6 +226,33 @@ def drawn_belly(draw: Draw, outline: c2d.TrackOutline) -> list[tuple[float, floa
     count, turn = draw.whole(3, 64, (4, 8)), draw.random()
     angles = [2.0 * math.pi * (i + turn) / count for i in range(count)]
     return [(width * math.cos(a), height * math.sin(a)) for a in angles]
+
+
+def drawn_drivetrain(
+    draw: Draw, size: tuple[float, float], *, sharing: Literal["track", "wheel"]
+) -> c2d.Drivetrain:
+    mass, radius = size
+    torque, inertia = 10.0 * mass * radius, mass * radius**2
+    most = draw.size_or_zero(1e-12, 1e6, (0.01 * torque, 5.0 * torque))
+    motors: dict[str, Any] = {}
+    if draw.random() < 0.3:
+        motors["rotor_inertia"] = draw.size_or_zero(1e-12, 1e3, (0.01 * inertia, 30.0 * inertia))
+    if draw.random() < 0.15:
+        motors["no_load_speed"] = draw.size(TINY, 100.0, (0.2, 2.0))
+    elif draw.random() < 0.15:
+        fastest = draw.size(1e-3, 99.0, (0.2, 2.0))
+        motors["torque_curve"] = ((0.0, most), (fastest, draw.random() * most), (100.0, 0.0))
+    if draw.random() < 0.15:
+        gain = draw.size(1e-12, 1e9, (0.1 * torque * radius, 100.0 * torque * radius))
+        motors["controller"] = c2d.PI(gain, draw.size_or_zero(1e-12, 1e9, (gain, 30.0 * gain)))
+    return c2d.Drivetrain(
+        max_speed=draw.size(TINY, 100.0, (0.2, 2.0)),
+        max_acceleration=draw.size(TINY, 1e6, (0.05, 20.0)),
+        max_deceleration=draw.size(TINY, 1e6, (0.05, 20.0)),
+        max_torque=most,
+        torque_sharing=sharing,
+        **motors,
+    )
 
 
 def drawn_robot(draw: Draw) -> c2d.Robot:
@@ -241,7 +271,6 @@ def drawn_robot(draw: Draw) -> c2d.Robot:
     of_wheels = (c2d.LineOfWheels, c2d.CircumferentialWheels, c2d.HybridWheels, type(None))
     own = flippers.track if flippers else None
     share = wheels and isinstance(own, of_wheels) and draw.random() < 0.5
-    weight = 10.0 * mass * radius
     closed = draw.random() < 0.08
     return c2d.Robot(
         "drawn",
@@ -253,12 +282,6 @@ def drawn_robot(draw: Draw) -> c2d.Robot:
         belly=drawn_belly(draw, outline),  # type: ignore[arg-type]
         flippers=flippers,
         gauge=draw.size(1e-3, 100.0, (0.5 * axles, axles)),
-        drivetrain=c2d.Drivetrain(
-            max_speed=draw.size(TINY, 100.0, (0.2, 2.0)),
-            max_acceleration=draw.size(TINY, 1e6, (0.05, 20.0)),
-            max_deceleration=draw.size(TINY, 1e6, (0.05, 20.0)),
-            max_torque=draw.size_or_zero(1e-12, 1e6, (0.01 * weight, 5.0 * weight)),
-            torque_sharing="wheel" if share else "track",
-        ),
+        drivetrain=drawn_drivetrain(draw, (mass, radius), sharing="wheel" if share else "track"),
         track=c2d.ClosedTrack(track, surface=draw.choice(("own", "smooth"))) if closed else track,
     )

@@ -21,12 +21,14 @@ _FIELDS_BY_UNIT = {
     "rad/s": "rate_limit",
     "kg": "mass track_mass",
     "kg m^2": "moment_of_inertia rotor_inertia",
-    "m/s": "max_push_speed max_speed speed",
+    "m/s": "max_push_speed max_speed no_load_speed speed",
     "m/s^2": "gravity max_acceleration max_deceleration",
     "N": "pre_tension",
     "N/m": "tensioner_stiffness",
     "N s/m": "tensioner_damping",
     "N m": "max_torque",
+    "N m s/rad": "gain",
+    "N m/rad": "integral",
     "Hz": "contact_frequency",
     "1": (
         "belly_load contact_damping_ratio count creep_from creep_to friction grouser_count"
@@ -42,7 +44,11 @@ FIELDS = {name: unit for unit, names in _FIELDS_BY_UNIT.items() for name in name
 
 _FIELDS_BY_PLACE = {"robot.flippers.torque_limit": "N m"}
 
-_COLUMNS = {"drive.schedule": ("s", "m/s"), "drive.gait.schedule": ("s", "rad")}
+_COLUMNS = {
+    "drive.schedule": ("s", "m/s"),
+    "drive.gait.schedule": ("s", "rad"),
+    "robot.drivetrain.torque_curve": ("m/s", "N m"),
+}
 """Units by column, for arrays whose columns differ."""
 
 

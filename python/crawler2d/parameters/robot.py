@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from crawler2d import _core
 from crawler2d.common.arrays import frozen_rows, real_number
@@ -13,6 +13,7 @@ from crawler2d.common.ends import Disc, ends_of, is_short, two_discs
 from crawler2d.common.keywords import takes_keywords
 from crawler2d.common.table import Table
 from crawler2d.errors import ScenarioError
+from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.form import Form
 from crawler2d.parameters.plain import Parameters
@@ -23,7 +24,7 @@ from crawler2d.parameters.track import BeltTrack, Track
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Drivetrain", "Robot", "TrackOutline"]
+__all__ = ["Robot", "TrackOutline"]
 
 # Proportions of the Servosila Engineer's grousers, whose radius is 64 mm.
 _GROUSER_HEIGHT = 0.012 / 0.064
@@ -152,54 +153,6 @@ class TrackOutline(Parameters):
     def in_place_of(self) -> dict[str, tuple[str, ...]]:
         """What texts have in place of discs, if three numbers say it all."""
         return {"discs": self.besides} if is_short(self.discs) else {}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Drivetrain(Parameters):
-    """What drives the tracks, and within which limits.
-
-    Parameters
-    ----------
-    max_speed : float
-        [m/s] Largest track speed.
-    max_acceleration, max_deceleration : float
-        [m/s^2] Largest rates at which the commanded speed rises and falls in magnitude.
-    max_torque : float
-        [N m] Largest torque of one sprocket, acting at the belt radius. The robot has two.
-    torque_sharing : {"track", "wheel"}
-        "track": one motor per track; all its wheels keep one speed, and the sum of their traction
-        is limited. "wheel": each of the N wheels of a line has its own servo with 1/N of the
-        torque and of the rotor inertia.
-    rotor_inertia : float
-        [kg m^2] Of the motor of one track as its sprocket feels it: the rotor's own times the
-        square of the gear's ratio, MuJoCo's `armature`. It turns with the drive over the chassis
-        and holds the track's speed through a blow, which no torque limit can.
-
-    Examples
-    --------
-    A rotor carries a robot over the edge that stops it without one:
-
-    >>> from dataclasses import replace
-    >>> import crawler2d as c2d
-    >>> robot = c2d.robots.engineer(track=c2d.LineOfWheels(count=5)).without_flippers()
-    >>> for inertia in (0.0, 0.04):
-    ...     drivetrain = replace(robot.drivetrain, rotor_inertia=inertia)
-    ...     driven = replace(robot, drivetrain=drivetrain)
-    ...     run = c2d.simulate(driven, c2d.terrains.step(0.051), drive=c2d.Drive(speed=0.4))
-    ...     print(run.outcome)
-    seized
-    cleared
-    """
-
-    place: ClassVar[str] = "robot.drivetrain"
-    unsaid: ClassVar[tuple[str, ...]] = ("rotor_inertia",)
-
-    max_speed: float
-    max_acceleration: float
-    max_deceleration: float
-    max_torque: float
-    torque_sharing: Literal["track", "wheel"] = "track"
-    rotor_inertia: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from crawler2d.models.tree import Tree
 from crawler2d.models.where import Where
-from crawler2d.parameters.robot import Drivetrain
+from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.track import LineOfWheels, Track
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines

@@ -200,7 +200,7 @@ impl Scene<'_> {
             let slides = if slides(b) { b.slip.signum() } else { 0.0 };
             self.support(pose, &b.contact, slides)
         });
-        let torque = self.model.drive_force / weight;
+        let torque = self.model.motor.force / weight;
         Some(Statics::new(
             self.model,
             stance.angle,
@@ -229,6 +229,6 @@ impl Scene<'_> {
 
     /// Whether a motor is at its torque limit, on average.
     fn is_at_limit(&self, drive: &DriveMean) -> bool {
-        drive.force.abs() >= self.criteria.torque_limit * self.model.drive_force
+        drive.force.abs() >= self.criteria.torque_limit * self.model.motor.force
     }
 }

@@ -200,7 +200,7 @@ fn a_braked_robot_on_a_slope_holds_from_the_friction_of_the_angle_on() {
     let needed = libm::sin(angle) * stage.weight();
     for (share, holds) in [(1.01, true), (0.99, false)] {
         // Both tracks are one drive here.
-        stage.model.drive_force = share * needed / stage.model.motors as f64;
+        stage.model.motor.force = share * needed / stage.model.motors as f64;
         // What a residual of a millionth spares is less than what the halvings leave.
         let found = balance::balance(&stage.scene(), &stance, 1e-6).expect("there is a weight");
         assert_eq!(found.holds(), holds);

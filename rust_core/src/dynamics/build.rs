@@ -33,7 +33,7 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
         chains.iter().map(Chain::ring).collect(),
     );
     let of_drive = |k: usize| {
-        let has_motor = k < model.motors && model.drive_force > 0.0;
+        let has_motor = k < model.motors && model.motor.force > 0.0;
         let on = if k < chains.len() {
             Driven::Ring(k)
         } else {

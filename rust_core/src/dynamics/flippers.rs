@@ -101,7 +101,7 @@ impl Dynamics {
         }));
         let motors = &mut self.problem.motors[self.model.drives..];
         for (motor, arm) in motors.iter_mut().zip(&self.flippers) {
-            (motor.target, motor.most) = (arm.rate, arm.rule.torque_limit * time);
+            motor.aim(arm.rate, arm.rule.torque_limit * time);
         }
     }
 

@@ -17,12 +17,14 @@ mod chains;
 mod course;
 mod face;
 mod flippers;
+mod forces;
 mod identity;
 mod impulses;
 mod levers;
 mod loaded;
 mod local_error;
 mod meeting;
+mod motors;
 mod push;
 mod set_point;
 mod softness;
@@ -38,6 +40,7 @@ use arm::Arm;
 use build::built;
 use chain::Chain;
 use face::Face;
+use forces::Forces;
 use identity::{Identity, Numbered};
 use meeting::Meeting;
 use softness::Softness;
@@ -79,6 +82,8 @@ pub(crate) struct Dynamics {
     touches: Vec<Touch>,
     /// [N] The last force of a track that is modelled as a force only.
     push_force: Option<f64>,
+    /// Forces of the drives in this step, if they depend on their speeds.
+    forces: Vec<Forces>,
     flippers: Vec<Arm>,
     chains: Vec<Chain>,
     /// Speed of the fastest tip relative to the chassis, in units of the surface speed.
@@ -100,6 +105,7 @@ impl Dynamics {
             problem: built(&model, &chains, &arms, &solver),
             touches: Vec::new(),
             push_force: model.pushes_chassis.then_some(0.0),
+            forces: Vec::new(),
             flippers: arms,
             chains,
             tip_speed: model.tip_speed(),
@@ -216,7 +222,8 @@ impl Dynamics {
         self.start_chains(state, h);
         self.close_gaps(h);
         self.guess(half);
-        self.solve(state, set_point.middle, half);
+        self.drive_to_middle(state, set_point, half);
+        self.solve(state, half);
         self.moved.copy(state);
         self.move_on(state, h);
         self.move_chains(state, h);
@@ -226,8 +233,9 @@ impl Dynamics {
         self.hold_chains(state, h);
         self.guess_more();
         self.keep_closed(h);
-        self.solve(state, set_point.end, h);
-        self.collect_motors(state, h);
+        self.drive_to_end(state, set_point, h);
+        self.solve(state, h);
+        self.collect_motors(state, set_point, h);
         if strikes && self.solver.restitution > 0.0 {
             self.rebound(state);
         }

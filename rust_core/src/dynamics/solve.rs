@@ -8,11 +8,8 @@ use super::state::State;
 use crate::solver::{Acts, Damper, Inertia};
 
 impl Dynamics {
-    /// Solves for the velocities after a `time` [s] in which motors push, with surfaces that aim at a speed [m/s].
-    pub(super) fn solve(&mut self, state: &mut State, set_point: f64, time: f64) {
-        for motor in &mut self.problem.motors[..self.model.drives] {
-            (motor.target, motor.most) = (set_point, self.model.drive_force * time);
-        }
+    /// Solves for the velocities after a `time` [s] in which motors push.
+    pub(super) fn solve(&mut self, state: &mut State, time: f64) {
         self.problem.inertias.clear();
         self.turn_rotors();
         self.hang_flippers(time);
@@ -89,17 +86,6 @@ impl Dynamics {
         }
         for (chain, ring) in self.chains.iter_mut().zip(&self.problem.rings) {
             chain.remember(ring, h);
-        }
-    }
-
-    /// Stores the mean forces of the motors over a step of `h` [s].
-    pub(super) fn collect_motors(&mut self, state: &mut State, h: f64) {
-        let mut impulses = self.problem.motor_impulses();
-        for drive in &mut state.drives {
-            drive.force = impulses.next().unwrap_or_default() / h;
-        }
-        for flipper in &mut state.flippers {
-            flipper.torque = impulses.next().unwrap_or_default() / h;
         }
     }
 

@@ -104,6 +104,8 @@ pub(crate) struct DriveState {
     pub spin: f64,
     /// [m] Travel of the surface along its path.
     pub position: f64,
+    /// [N] What the sum of the errors of its speed adds to the force of its motor, if that corrects them.
+    pub integral: f64,
     /// [N] Mean force of the motor at the surface over the last step.
     pub force: f64,
     /// [N] Mean force of the ground on the robot along the surface over the last step.
@@ -326,7 +328,7 @@ impl State {
             && self
                 .drives
                 .iter()
-                .all(|d| d.spin.is_finite() && d.position.is_finite())
+                .all(|d| d.spin.is_finite() && d.position.is_finite() && d.integral.is_finite())
             && self.shoes.iter().all(Shoe::is_finite)
             && self.idlers.iter().all(|i| i.travel.is_finite())
             && self

@@ -235,7 +235,7 @@ fn force_alone_drives_the_chassis_in_the_air() {
     });
     advance(&mut dynamics, &mut state, 10, 100.0, &[]);
     let m = dynamics.model();
-    let expected = 0.01 * m.drive_force / (m.mass + m.drive_masses[0]);
+    let expected = 0.01 * m.motor.force / (m.mass + m.drive_masses[0]);
     // The motor's reaction turns the chassis back a little, which adds a quarter of a per cent.
     assert_relative_eq!(state.velocity.x, expected, max_relative = 5e-3);
     assert_relative_eq!(

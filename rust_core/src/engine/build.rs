@@ -131,8 +131,8 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
             let wheels: Vec<_> = axles.into_iter().zip(ratios).collect();
             joints::shaft(world, chassis, &wheels, shared * inertia)
         };
-        if drive < model.motors && model.drive_force > 0.0 {
-            let torque = model.drive_force * first.radius;
+        if drive < model.motors && model.motor.force > 0.0 {
+            let torque = model.motor.force * first.radius;
             if let Some(joint) = joints::turning(&mut world.multibody_joints, joint) {
                 joints::limit(joint, JointAxis::AngX, torque);
             }
@@ -140,8 +140,8 @@ fn build(world: &mut PhysicsWorld, model: &Model, ground: &Ground, state: &State
         }
     }
     free(world, chassis, pose.rotation.angle());
-    let pushes = model.pushes_chassis && model.drive_force > 0.0;
-    let push = pushes.then(|| joints::push(world, chassis, frame.translation, model.drive_force));
+    let pushes = model.pushes_chassis && model.motor.force > 0.0;
+    let push = pushes.then(|| joints::push(world, chassis, frame.translation, model.motor.force));
     Robot {
         chassis,
         wheels: built,

@@ -1,6 +1,8 @@
 //! What the engine cannot hold: refused by field and reason before anything runs.
 
-use crate::scenario::{ContactMethod, Engine, ForceSupport, Scenario, ScenarioError, Track};
+use crate::scenario::{
+    ContactMethod, Drivetrain, Engine, ForceSupport, Scenario, ScenarioError, Track,
+};
 
 /// Defaults of the settings of our own contacts, in the order in which they are checked.
 const OF_OUR_OWN: [f64; 5] = [1000.0, 5.0, 0.5, 2e-4, 0.0];
@@ -15,12 +17,7 @@ pub(crate) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
     }
     check_settings(scenario)?;
     let robot = &scenario.robot;
-    let rotor = robot.drivetrain.rotor_inertia;
-    if rotor > 0.0 {
-        let rule = "must be 0 where solver.engine is rapier: its motors have no rotor there";
-        let path = "robot.drivetrain.rotor_inertia";
-        return Err(ScenarioError::new(path, rotor, rule));
-    }
+    check_motors(&robot.drivetrain)?;
     if let Some((kind, reason)) = refused(&robot.track) {
         let rule = format!(
             "must be line, circumferential, hybrid or force where solver.engine is rapier, which {reason}"
@@ -31,6 +28,29 @@ pub(crate) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
         let rule =
             "must be null where solver.engine is rapier: arms and their servos are not built there";
         return Err(ScenarioError::new("robot.flippers", "flippers", rule));
+    }
+    Ok(())
+}
+
+fn check_motors(drivetrain: &Drivetrain) -> Result<(), ScenarioError> {
+    let refused = |name: &str, value: &dyn ToString, rule: &str| {
+        let rule = format!(
+            "must be {rule} where solver.engine is rapier: its motors hold their speed there"
+        );
+        let path = format!("robot.drivetrain.{name}");
+        Err(ScenarioError::new(path, value.to_string(), rule))
+    };
+    if drivetrain.rotor_inertia > 0.0 {
+        return refused("rotor_inertia", &drivetrain.rotor_inertia, "0");
+    }
+    if let Some(speed) = drivetrain.no_load_speed {
+        return refused("no_load_speed", &speed, "null");
+    }
+    if drivetrain.torque_curve.is_some() {
+        return refused("torque_curve", &"a curve", "null");
+    }
+    if drivetrain.controller.is_some() {
+        return refused("controller", &"pi", "null");
     }
     Ok(())
 }

@@ -60,14 +60,12 @@ impl Model {
         parts.extend(belly);
         let whole = self.with_circulating_mass();
         let mass: f64 = whole.drive_masses.iter().sum();
-        let of_motor = |one: f64| one * self.motors as f64 / tracks as f64;
         Ok(Self {
             parts,
             drives: tracks,
             motors: tracks,
             drive_masses: vec![mass / tracks as f64; tracks],
-            drive_force: of_motor(self.drive_force),
-            rotor_mass: of_motor(self.rotor_mass),
+            motor: self.motor.shared(self.motors, tracks),
             pushes_chassis: false,
             ..whole
         })

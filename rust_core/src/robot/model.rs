@@ -1,6 +1,6 @@
 //! The robot as it is simulated: one body, the parts that meet the ground, and the drives.
 
-use super::{BodyKind, ChainOfShoes, Flipper, Mount, Part, Running, Shape, track};
+use super::{BodyKind, ChainOfShoes, Flipper, MotorRule, Mount, Part, Running, Shape, track};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::scenario::{Robot, ScenarioError, Track};
 
@@ -23,10 +23,8 @@ pub struct Model {
     pub drive_masses: Vec<f64>,
     /// [m] Radius that relates surface speed and spin of a drive.
     pub drive_radius: f64,
-    /// [N] Largest traction of each motor.
-    pub drive_force: f64,
-    /// [kg] Mass at the surface that would be as hard to speed up as the rotor of each motor.
-    pub rotor_mass: f64,
+    /// What each motor can do.
+    pub motor: MotorRule,
     /// The drive pushes the chassis along its axis, whether it touches the ground or not.
     pub pushes_chassis: bool,
     /// Chains of shoes, each with the drive of the same number. If there are any, `mass`, `center_of_mass` and
@@ -81,8 +79,7 @@ impl Model {
             motors: track.motors,
             drive_masses,
             drive_radius: radius,
-            drive_force: robot.drivetrain.max_force(&robot.outline) / sharers as f64,
-            rotor_mass: robot.drivetrain.rotor_mass(&robot.outline) / sharers as f64,
+            motor: MotorRule::of(&robot.drivetrain, &robot.outline).shared(1, sharers),
             pushes_chassis: track.pushes_chassis,
             chains: Vec::new(),
             flippers: Vec::new(),
@@ -146,7 +143,7 @@ impl Model {
     /// [kg m^2] Moment of inertia of the rotor of one drive, as far as that turns over the chassis.
     pub(crate) fn rotor_inertia(&self, drive: usize) -> f64 {
         if drive < self.motors {
-            self.rotor_mass * self.drive_radius * self.drive_radius
+            self.motor.rotor_mass * self.drive_radius * self.drive_radius
         } else {
             0.0
         }

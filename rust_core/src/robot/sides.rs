@@ -94,14 +94,12 @@ impl Model {
         });
         let chains = chains.collect();
         let motors = shared + 2 * motors;
-        let of_motor = |all: f64| all * self.motors as f64 / motors as f64;
         Self {
             parts,
             drives,
             drive_masses,
             chains,
-            drive_force: of_motor(self.drive_force),
-            rotor_mass: of_motor(self.rotor_mass),
+            motor: self.motor.shared(self.motors, motors),
             motors,
             ..self
         }

@@ -89,6 +89,6 @@ fn explained(simulation: &Simulation, speed: f64) -> f64 {
     // The mass that a contact is as stiff as.
     let of_shoes = model.chains.iter().map(|chain| AT_END * chain.shoe_mass);
     let own = of_shoes.fold(mass, f64::min);
-    let load = simulation.weight() + model.motors as f64 * model.drive_force;
+    let load = simulation.weight() + model.motors as f64 * model.motor.force;
     load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN
 }

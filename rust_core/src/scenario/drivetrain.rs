@@ -5,6 +5,10 @@ use serde::Serialize;
 use super::fields::{Fields, ROTOR, Range, TORQUE, is_zero};
 use super::{ScenarioError, TrackOutline};
 
+const FASTEST: Range = Range::above(0.0, 100.0, "m/s");
+/// Largest number of points of a torque curve.
+const MOST: usize = 1000;
+
 /// What drives the tracks, and its limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Drivetrain {
@@ -22,6 +26,26 @@ pub struct Drivetrain {
     /// ratio.
     #[serde(skip_serializing_if = "is_zero")]
     pub rotor_inertia: f64,
+    /// [m/s] Track speed at which the torque of a motor, which falls in a line from its largest at rest, is used up; `None`
+    /// if it has that at any speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_load_speed: Option<f64>,
+    /// [m/s], [N m] Track speeds and torques of one sprocket there, which fall from the largest at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque_curve: Option<Vec<[f64; 2]>>,
+    /// How a motor corrects its speed; `None` if it holds that as long as its torque suffices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub controller: Option<Pi>,
+}
+
+/// A controller of the speed of a sprocket, whose torque is in proportion to the error, and to the error's sum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename = "pi")]
+pub struct Pi {
+    /// [N m s/rad] Torque of one sprocket for an error of its rate.
+    pub gain: f64,
+    /// [N m/rad] Torque for an error of its angle.
+    pub integral: f64,
 }
 
 /// How the wheels of a track share its torque.
@@ -39,12 +63,6 @@ impl Drivetrain {
     pub fn max_force(&self, outline: &TrackOutline) -> f64 {
         2.0 * self.max_torque / outline.belt_radius()
     }
-
-    /// [kg] Mass at the surface that would be as hard to speed up as the rotors of both tracks.
-    pub(crate) fn rotor_mass(&self, outline: &TrackOutline) -> f64 {
-        let radius = outline.belt_radius();
-        2.0 * self.rotor_inertia / (radius * radius)
-    }
 }
 
 impl Drivetrain {
@@ -54,14 +72,87 @@ impl Drivetrain {
             ("wheel", TorqueSharing::Wheel),
         ];
         let drivetrain = Self {
-            max_speed: f.number("max_speed", Range::above(0.0, 100.0, "m/s"))?,
+            max_speed: f.number("max_speed", FASTEST)?,
             max_acceleration: f.number("max_acceleration", Range::above(0.0, 1e6, "m/s^2"))?,
             max_deceleration: f.number("max_deceleration", Range::above(0.0, 1e6, "m/s^2"))?,
             max_torque: f.number("max_torque", TORQUE)?,
             torque_sharing: f.choice("torque_sharing", &sharing)?,
             rotor_inertia: f.number_or_zero("rotor_inertia", ROTOR)?,
+            no_load_speed: if f.has("no_load_speed") {
+                f.optional_number("no_load_speed", FASTEST)?
+            } else {
+                None
+            },
+            torque_curve: if f.has("torque_curve") {
+                read_curve(&mut f)?
+            } else {
+                None
+            },
+            controller: if f.has("controller") && !f.value("controller")?.is_null() {
+                Some(Pi::read(f.child("controller")?)?)
+            } else {
+                None
+            },
         };
+        if let (Some(_), Some(speed)) = (&drivetrain.torque_curve, drivetrain.no_load_speed) {
+            let rule =
+                "must not be given together with torque_curve, which says where the torque ends";
+            return Err(f.error("no_load_speed", speed, rule));
+        }
         f.finish()?;
         Ok(drivetrain)
     }
+}
+
+impl Pi {
+    fn read(mut f: Fields) -> Result<Self, ScenarioError> {
+        f.choice("kind", &[("pi", ())])?;
+        let pi = Self {
+            gain: f.number("gain", Range::above(0.0, 1e17, "N m s/rad"))?,
+            integral: f.number("integral", Range::between(0.0, 1e17, "N m/rad"))?,
+        };
+        f.finish()?;
+        Ok(pi)
+    }
+}
+
+/// Reads torques at track speeds, which start at rest with the largest and fall.
+fn read_curve(f: &mut Fields) -> Result<Option<Vec<[f64; 2]>>, ScenarioError> {
+    if f.value("torque_curve")?.is_null() {
+        return Ok(None);
+    }
+    let speeds = Range::between(0.0, 100.0, "m/s");
+    let curve = f.rows(
+        "torque_curve",
+        [("speed", speeds), ("torque", TORQUE)],
+        MOST,
+    )?;
+    let Some([from, largest]) = curve.first().copied() else {
+        let rule = "must have at least one pair of a speed and a torque";
+        return Err(f.error("torque_curve", "[]", rule));
+    };
+    if from != 0.0 {
+        return Err(f.error(
+            "torque_curve[0][0]",
+            from,
+            "must be 0 m/s: the torque at rest",
+        ));
+    }
+    let most = f.number("max_torque", TORQUE)?;
+    if (largest - most).abs() > 1e-9 * most {
+        let rule = format!("must be max_torque = {most} N m, the torque at rest");
+        return Err(f.error("torque_curve[0][1]", largest, rule));
+    }
+    for (i, pair) in curve.windows(2).enumerate() {
+        let ([speed, torque], [next, left]) = (pair[0], pair[1]);
+        if next <= speed {
+            let rule = format!("must be faster than the pair before, {speed} m/s");
+            return Err(f.error(&format!("torque_curve[{}][0]", i + 1), next, rule));
+        }
+        if left > torque {
+            let rule = format!("must not exceed the torque of the pair before, {torque} N m");
+            return Err(f.error(&format!("torque_curve[{}][1]", i + 1), left, rule));
+        }
+    }
+    Ok(Some(curve))
 }

@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 pub use doubts::Doubt;
 pub use drive::{Climb, Drive, Gait, Hold};
-pub use drivetrain::{Drivetrain, TorqueSharing};
+pub use drivetrain::{Drivetrain, Pi, TorqueSharing};
 pub use error::ScenarioError;
 pub use flippers::{End, Ends, Flippers};
 pub use outline::TrackOutline;

@@ -13,7 +13,7 @@ impl Problem {
     /// that keep links together matter more.
     pub(super) fn balance(&mut self) {
         if self.rings.is_empty() {
-            if self.inertias.is_empty() {
+            if self.inertias.is_empty() && !self.motors.iter().any(Motor::has_slope) {
                 self.balance_base();
             } else {
                 self.balance_bodies();
@@ -24,7 +24,7 @@ impl Problem {
     /// [N m s] Angular momentum of the base and of what turns with it, without contacts.
     pub(super) fn free_moment(&self) -> f64 {
         let of_spin = |motor: &Motor| match (motor.on, motor.given()) {
-            (Driven::Spin(_), Some(given)) => -motor.lever * given,
+            (Driven::Spin(_), Some(given)) => -motor.lever * given.at(0.0),
             (Driven::Spin(k), None) => {
                 let Spin { inertia, .. } = self.spins[k];
                 inertia * (self.free.spins[k] - motor.held_rate().unwrap_or_default())
@@ -51,13 +51,13 @@ impl Problem {
         self.turn_with_base();
         for motor in &self.motors {
             if let (Driven::Spin(k), Some(given)) = (motor.on, motor.given()) {
-                let change = self.torques[k] + motor.lever * given;
+                let change = self.torques[k] + motor.lever * given.at(0.0);
                 self.velocities.spins[k] = self.free.spins[k] + change / self.spins[k].inertia;
             }
         }
     }
 
-    /// The same with inertias that the base shares, so that all velocities hang together.
+    /// The same where inertias or motors act between base and spins, so that all velocities hang together.
     fn balance_bodies(&mut self) {
         self.assemble_bodies();
         for contact in &self.contacts {

@@ -78,7 +78,7 @@ impl Inertia {
 
     /// That of a rotor [kg m^2], with its rate over the base without constraints [rad/s].
     pub(crate) fn of_rotor(on: Acts, inertia: f64, free: f64) -> Self {
-        Self::new(on, Direction::over_base(on, 1.0), inertia, free)
+        Self::new(on, on.over_base(1.0), inertia, free)
     }
 
     /// The impulse that has changed its speed.

@@ -37,16 +37,24 @@ impl Switch {
 }
 
 impl Motor {
-    /// Calls `found` with the conditions of its state: the state that follows, and the value, from its impulse [N s] and
-    /// from how much too fast it is.
-    pub(super) fn conditions(&self, impulse: f64, ahead: f64, mut found: impl FnMut(Hold, f64)) {
+    /// Calls `found` with the conditions of its state at a speed [m/s]: the state that follows, and the value, from its
+    /// impulse [N s] and from how much too fast it is.
+    pub(super) fn conditions(
+        &self,
+        speed: f64,
+        [impulse, ahead]: [f64; 2],
+        mut found: impl FnMut(Hold, f64),
+    ) {
+        let [most, least] = self.limits.map(|limit| limit.at(speed));
+        let wanted = self.correction.map(|correction| correction.at(speed));
         match self.hold {
             Hold::Holds => {
-                found(Hold::Pushes, self.most - impulse);
-                found(Hold::Brakes, self.most + impulse);
+                let impulse = wanted.unwrap_or(impulse);
+                found(Hold::Pushes, most - impulse);
+                found(Hold::Brakes, impulse - least);
             }
-            Hold::Pushes => found(Hold::Holds, -ahead),
-            Hold::Brakes => found(Hold::Holds, ahead),
+            Hold::Pushes => found(Hold::Holds, wanted.map_or(-ahead, |wanted| wanted - most)),
+            Hold::Brakes => found(Hold::Holds, wanted.map_or(ahead, |wanted| least - wanted)),
             Hold::Free => {}
         }
     }

@@ -18,13 +18,14 @@ impl Problem {
         }
         for (k, motor) in self.motors.iter().enumerate() {
             let mut ahead = self.ahead(motor);
+            let speed = ahead + motor.target;
             let mut impulse = self.motor_impulse(motor);
             // The motor of a ring holds softly, so its impulse tells when it may hold again.
-            if let Driven::Ring(ring) = motor.on {
+            if let (Driven::Ring(ring), None) = (motor.on, motor.correction) {
                 impulse = self.rings[ring].drive.damper().at(ahead);
-                ahead = motor.given().unwrap_or_default() - impulse;
+                ahead = motor.given().map_or(0.0, |given| given.at(speed)) - impulse;
             }
-            motor.conditions(impulse, ahead, |hold, value| {
+            motor.conditions(speed, [impulse, ahead], |hold, value| {
                 found(Switch::Motor(k, hold), value);
             });
         }

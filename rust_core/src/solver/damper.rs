@@ -37,8 +37,13 @@ impl Damper {
         self.impulse - self.stiffness * speed
     }
 
+    /// A share of it.
+    pub(crate) fn times(self, share: f64) -> Self {
+        Self::new(self.impulse * share, self.stiffness * share)
+    }
+
     /// Both at one speed.
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self::new(
             self.impulse + other.impulse,
             self.stiffness + other.stiffness,

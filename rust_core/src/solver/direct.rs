@@ -70,7 +70,9 @@ impl Problem {
         for motor in &self.motors {
             if let Driven::Ring(k) = motor.on {
                 let (ahead, ring) = (self.ahead(motor), &self.rings[k]);
-                let given = ring.given(motor);
+                let given = ring
+                    .given(motor)
+                    .map(|given| given.at(ahead + motor.target));
                 off = off.max(self.rings[k].drive.follow(ahead, given));
             }
         }
@@ -104,7 +106,15 @@ impl Problem {
         for motor in &self.motors {
             let given = motor.given();
             match motor.on {
-                Driven::Spin(k) => system.turn(k, motor.lever * given.unwrap_or_default()),
+                Driven::Spin(k) => {
+                    let given = given.unwrap_or_default();
+                    system.turn(k, motor.lever * given.at(0.0));
+                    if given.stiffness != 0.0 {
+                        let acts = Acts::on_spin(k);
+                        let along = acts.over_base(motor.lever);
+                        system.add(acts, [&along; 2], Damper::new(0.0, given.stiffness));
+                    }
+                }
                 Driven::Ring(k) => {
                     let ring = &mut self.rings[k];
                     let spin = ring
@@ -116,8 +126,8 @@ impl Problem {
                     None => system.hold(k),
                     Some(given) => {
                         let acts = Acts::on_joint(k);
-                        let along = Direction::over_base(acts, motor.lever);
-                        system.add(acts, [&along; 2], Damper::constant(given));
+                        let along = acts.over_base(motor.lever);
+                        system.add(acts, [&along; 2], given);
                     }
                 },
             }

@@ -3,7 +3,6 @@
 //! The equations: docs/physics.md, "The problem".
 
 use super::twist::Twist;
-use super::velocities::Acts;
 use crate::geometry::Vector;
 
 /// A direction, with the levers by which velocities act along it.
@@ -23,17 +22,6 @@ pub(crate) struct Direction {
 }
 
 impl Direction {
-    /// The rate over the base of what spins there or is hinged to it, at a lever [m].
-    pub(super) fn over_base(acts: Acts, lever: f64) -> Self {
-        let of = |body: Option<usize>| body.map_or(0.0, |_| lever);
-        Self {
-            lever: -lever,
-            spin_lever: of(acts.spin()),
-            joint_lever: of(acts.joint()),
-            ..Self::default()
-        }
-    }
-
     /// The same once what spins, or what is hinged, turns with the base at these rates beside it [rad/s].
     pub(super) fn tied(self, spin: Option<f64>, joint: Option<f64>) -> Self {
         let mut tied = self;

@@ -1,16 +1,19 @@
-//! A motor: it holds a speed, up to the limit of its impulse.
+//! A motor: it holds a speed, or corrects it, up to the limits of its impulse.
 //!
 //! What it turns moves with the base while it holds: that is then no unknown, but adds to the inertia of the base,
-//! wherever it is. What a motor at its limit turns, or none, has a rate of its own to solve for.
+//! wherever it is. What a motor turns that corrects its speed, is at a limit, or is none, has a rate of its own to solve
+//! for.
 //!
 //! The equations: docs/physics.md, "Motors".
 
 use serde::{Deserialize, Serialize};
 
+use super::damper::Damper;
+
 /// The state of a motor in a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Hold {
-    /// Holds the speed.
+    /// Holds the speed, or corrects it.
     Holds,
     /// At its limit, forwards.
     Pushes,
@@ -39,34 +42,13 @@ pub(crate) struct Motor {
     pub on: Driven,
     /// [m] The lever, below 0 if it runs forwards while what it turns spins clockwise.
     pub lever: f64,
-    /// [m/s] The speed that it holds, ...
+    /// [m/s] The speed that it holds.
     pub target: f64,
-    /// [N s] ... and its largest impulse.
-    pub most: f64,
+    /// Its largest impulses at a speed, forwards and backwards.
+    pub limits: [Damper; 2],
+    /// Its impulse at a speed between these, if it corrects its speed; if not, it holds that.
+    pub correction: Option<Damper>,
     pub hold: Hold,
-}
-
-impl Hold {
-    /// Share of the limit with which it pushes; none if it holds.
-    pub(super) fn share(self) -> Option<f64> {
-        match self {
-            Self::Holds => None,
-            Self::Pushes => Some(1.0),
-            Self::Brakes => Some(-1.0),
-            Self::Free => Some(0.0),
-        }
-    }
-
-    /// That of a motor that holds with this impulse, or is at its limit if the impulse exceeds that.
-    fn within(impulse: f64, limit: f64) -> Self {
-        if impulse > limit {
-            Self::Pushes
-        } else if impulse < -limit {
-            Self::Brakes
-        } else {
-            Self::Holds
-        }
-    }
 }
 
 impl Motor {
@@ -76,9 +58,16 @@ impl Motor {
             on,
             lever,
             target: 0.0,
-            most: 0.0,
+            limits: [Damper::default(); 2],
+            correction: None,
             hold: if is_there { Hold::Holds } else { Hold::Free },
         }
+    }
+
+    /// Holds the target with at most this impulse either way [N s].
+    pub(crate) fn aim(&mut self, target: f64, most: f64) {
+        self.target = target;
+        self.limits = [most, -most].map(Damper::constant);
     }
 
     /// [rad/s] How much faster than the base it turns what it holds, if it does.
@@ -86,20 +75,34 @@ impl Motor {
         self.given().is_none().then(|| self.target / self.lever)
     }
 
-    /// [N s] Its impulse, if that is its limit.
-    pub(super) fn given(&self) -> Option<f64> {
-        self.hold.share().map(|share| share * self.most)
+    /// Its impulse at a speed; none if that is what holds the speed.
+    pub(super) fn given(&self) -> Option<Damper> {
+        match self.hold {
+            Hold::Holds => self.correction,
+            Hold::Pushes => Some(self.limits[0]),
+            Hold::Brakes => Some(self.limits[1]),
+            Hold::Free => Some(Damper::default()),
+        }
+    }
+
+    /// Whether its impulse depends on its speed.
+    pub(super) fn has_slope(&self) -> bool {
+        self.given().is_some_and(|given| given.stiffness != 0.0)
     }
 
     /// Its state after a solve in which it gave this impulse [N s], and was so much too fast [m/s].
     pub(super) fn next(&self, impulse: f64, ahead: f64) -> Hold {
-        match self.hold {
-            Hold::Free => Hold::Free,
-            Hold::Holds => Hold::within(impulse, self.most * (1.0 + AT_LIMIT)),
-            at_limit => {
-                let past = ahead * at_limit.share().unwrap_or_default();
-                if past > PAST { Hold::Holds } else { at_limit }
+        let mut next = self.hold;
+        self.conditions(ahead + self.target, [impulse, ahead], |hold, value| {
+            // A smaller excess is rounding.
+            let slack = match (self.hold, self.correction) {
+                (Hold::Holds, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
+                _ => PAST,
+            };
+            if value < -slack {
+                next = hold;
             }
-        }
+        });
+        next
     }
 }

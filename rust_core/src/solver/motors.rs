@@ -41,7 +41,7 @@ impl Problem {
             return self.rings[k].drive.impulse;
         }
         if let Some(given) = motor.given() {
-            return given;
+            return given.at(self.ahead(motor) + motor.target);
         }
         // It has made the change of momentum that the contacts have not.
         let made = match motor.on {

@@ -2,6 +2,7 @@
 //!
 //! The equations: docs/physics.md, "Impacts".
 
+use super::damper::Damper;
 use super::{Inertia, Problem};
 
 impl Problem {
@@ -41,7 +42,8 @@ impl Problem {
             *inertia = Inertia::new(acts, along, damper.stiffness, free);
         }
         for motor in &mut self.motors {
-            motor.most = 0.0;
+            motor.aim(motor.target, 0.0);
+            motor.correction = motor.correction.map(|_| Damper::default());
         }
         for row in &mut self.bilaterals {
             row.impulse = 0.0;

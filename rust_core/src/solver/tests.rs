@@ -187,7 +187,7 @@ fn opposed_contacts_on_one_belt_share_its_motor() {
         problem.mass_on_springs = Some(2.0);
         problem.free.base.velocity = Vector::new(1.0, 0.0);
         let mut motor = Motor::new(Driven::Spin(0), -radius, most > 0.0);
-        (motor.target, motor.most) = (0.0, most);
+        motor.aim(0.0, most);
         problem.motors.push(motor);
         for (up, load) in [(1.0, 0.3), (-1.0, 0.2)] {
             let mut on_belt = contact(Vector::new(0.0, -0.1 * up), Vector::Y * up, friction);

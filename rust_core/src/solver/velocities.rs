@@ -111,6 +111,17 @@ impl Acts {
         }
     }
 
+    /// The direction of the rate over the base of what spins there or is hinged to it, at a lever [m].
+    pub(super) fn over_base(self, lever: f64) -> Direction {
+        let of = |body: Option<usize>| body.map_or(0.0, |_| lever);
+        Direction {
+            lever: -lever,
+            spin_lever: of(self.spin()),
+            joint_lever: of(self.joint()),
+            ..Direction::default()
+        }
+    }
+
     /// [m/s] Speed along a direction, without its offset.
     pub(crate) fn speed(self, along: &Direction, of: &impl Moves) -> f64 {
         let of_link = |link: Link, beside: f64| {

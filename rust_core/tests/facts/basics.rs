@@ -106,7 +106,7 @@ fn every_model_is_the_same_robot() {
                 robot.track_mass,
                 max_relative = 1e-9
             );
-            let force = model.motors as f64 * model.drive_force;
+            let force = model.motors as f64 * model.motor.force;
             assert_relative_eq!(force, 2.0 * 6.0 / 0.052, max_relative = 1e-9);
         }
     }

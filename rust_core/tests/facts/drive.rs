@@ -196,7 +196,7 @@ fn no_robot_pulls_harder_than_its_grip_or_its_motors() {
             scenario.robot.drivetrain.max_acceleration = 10.0;
             scenario.terrain = slope(0.0, friction);
             let model = Model::new(&scenario.robot).expect("it can be built");
-            let of_motors = model.motors as f64 * model.drive_force;
+            let of_motors = model.motors as f64 * model.motor.force;
             let of_grip = friction * scenario.robot.mass * G;
             // What turns as a polygon of shoes or tips has a lever of up to 1.4 of the mean, and holds where it
             // stands.
@@ -221,9 +221,9 @@ fn no_robot_pulls_harder_than_its_grip_or_its_motors() {
             println!(
                 "{name}: {} motors of {:.1} N, grip {of_grip:.1} N, push {push:.1} N: {gained:+.3} m, \
                  hardest {hardest:.2} N",
-                model.motors, model.drive_force
+                model.motors, model.motor.force
             );
-            assert!(hardest <= model.drive_force * (1.0 + 1e-9));
+            assert!(hardest <= model.motor.force * (1.0 + 1e-9));
             // Where a polygon stands on its side it gives way by millimetres and holds.
             assert!(gained < 0.0 && farthest < 0.01, "{name}");
         }

@@ -81,7 +81,7 @@ fn two_tracks_have_the_mass_and_the_force_of_both() {
         let lumped = Model::new(&scenario.robot).expect("it can be built");
         let ground = equal_lanes(&scenario.terrain);
         let apart = Model::on(&scenario.robot, &ground).expect("it can be built");
-        let force = |m: &Model| m.motors as f64 * m.drive_force;
+        let force = |m: &Model| m.motors as f64 * m.motor.force;
         let mass = |m: &Model| m.total_mass() + m.drive_masses.iter().sum::<f64>();
         assert!((force(&apart) - force(&lumped)).abs() < 1e-9, "{name}");
         assert!((mass(&apart) - mass(&lumped)).abs() < 1e-9, "{name}");

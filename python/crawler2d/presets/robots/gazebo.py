@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Literal
 
 from crawler2d.common.keywords import takes_keywords
+from crawler2d.parameters.drivetrain import Drivetrain
 from crawler2d.parameters.flippers import Flippers
-from crawler2d.parameters.robot import Drivetrain, Robot, TrackOutline
+from crawler2d.parameters.robot import Robot, TrackOutline
 from crawler2d.parameters.track import BeltTrack, Track
 from crawler2d.presets.robots.finish import finished
 

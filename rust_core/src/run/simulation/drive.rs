@@ -39,6 +39,9 @@ mod tests {
         max_torque: 6.0,
         torque_sharing: TorqueSharing::Track,
         rotor_inertia: 0.0,
+        no_load_speed: None,
+        torque_curve: None,
+        controller: None,
     };
 
     #[test]

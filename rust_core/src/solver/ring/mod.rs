@@ -87,12 +87,12 @@ impl Ring {
             .sum()
     }
 
-    /// [N s] Impulse of the drive, if its motor does not hold the speed.
-    pub(super) fn given(&self, motor: &Motor) -> Option<f64> {
+    /// Impulse of the drive at a speed, if its motor does not hold that.
+    pub(super) fn given(&self, motor: &Motor) -> Option<Damper> {
         if self.drive.has_hold() {
             motor.given()
         } else {
-            Some(0.0)
+            Some(Damper::default())
         }
     }
 
@@ -101,8 +101,7 @@ impl Ring {
     pub(super) fn assemble(&mut self, motor: &Motor, spin: Option<[f64; 2]>) {
         self.system.start(self.slide);
         let holds = self.drive.damper().shifted(motor.target);
-        let given = self.given(motor).map_or(holds, Damper::constant);
-        let damper = given.plus(self.drive.rotor);
+        let damper = self.given(motor).unwrap_or(holds).plus(self.drive.rotor);
         if let (Some([inertia, rate]), Some(lever)) = (spin, self.drive.lever) {
             self.system.add_spin(inertia, rate);
             self.system.turn_spin(lever, damper);

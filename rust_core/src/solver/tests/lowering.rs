@@ -11,7 +11,7 @@ fn driving_off() -> Problem {
     problem.mass_on_springs = Some(base.mass);
     problem.free.base = free;
     let mut motor = Motor::new(Driven::Spin(0), -radius, true);
-    (motor.target, motor.most) = (5.0, 0.05);
+    motor.aim(5.0, 0.05);
     problem.motors.push(motor);
     for x in [-0.2, 0.15] {
         let mut on_belt = contact(Vector::new(x, -0.1), Vector::Y, 0.5);

@@ -31,8 +31,7 @@ pub(super) fn drawn(draw: &mut Draw) -> Problem {
     }
     for k in 0..problem.spins.len() {
         let mut motor = Motor::new(Driven::Spin(k), -0.1, draw.chance(0.8));
-        motor.target = draw.between(-1.0, 1.0);
-        motor.most = draw.size(1e-3, 10.0);
+        motor.aim(draw.between(-1.0, 1.0), draw.size(1e-3, 10.0));
         problem.motors.push(motor);
     }
     let friction = if draw.chance(0.1) {
@@ -93,7 +92,8 @@ pub(super) fn by_interior_point(problem: &Problem) -> DVector<f64> {
         {
             let mut row = DVector::zeros(dofs);
             (row[2], row[3 + k]) = (-motor.lever, motor.lever);
-            rows.push((row, motor.target, 0.0, (-motor.most, motor.most)));
+            let [most, least] = motor.limits.map(|limit| limit.at(0.0));
+            rows.push((row, motor.target, 0.0, (least, most)));
         }
     }
     // What can give no impulse gives none.

@@ -63,7 +63,7 @@ fn no_blow_gives_back_more_energy_than_it_took() {
             (contact.bias, contact.compliance) = (0.0, 0.0);
         }
         for motor in &mut problem.motors {
-            (motor.most, motor.target) = (0.0, 0.0);
+            motor.aim(0.0, 0.0);
         }
         problem.velocities = problem.free.clone();
         let before = energy(&problem);

@@ -62,7 +62,7 @@ fn motor_of(entries: &[f64]) -> Motor {
         Driven::Spin(at)
     };
     let mut motor = Motor::new(on, entries[2], true);
-    (motor.target, motor.most) = (entries[3], entries[4]);
+    motor.aim(entries[3], entries[4]);
     motor.hold = HOLDS[entries[5] as usize];
     motor
 }

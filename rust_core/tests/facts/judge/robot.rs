@@ -74,7 +74,7 @@ impl Robot {
             drives: model.drives,
             drive_mass: model.drive_masses[0],
             drive_radius: model.drive_radius,
-            drive_force: model.drive_force,
+            drive_force: model.motor.force,
         }
     }
 }

@@ -1,0 +1,94 @@
+//! The motors of the drives in a step.
+//!
+//! A force that depends on the speed is taken over a step by the trapezoidal rule up to its middle, and from there by the
+//! backward differentiation formula of second order: exact to second order, and what is stiff settles (Bank et al. 1985).
+//!
+//! The equations: docs/physics.md, "Motors".
+
+use super::Dynamics;
+use super::forces::Forces;
+use super::set_point::SetPoint;
+use super::state::State;
+use crate::solver::{Damper, Hold};
+
+impl Dynamics {
+    /// Has the motors drive to the middle of a step, `half` [s] from its beginning.
+    pub(super) fn drive_to_middle(&mut self, state: &State, set_point: SetPoint, half: f64) {
+        let (target, rule) = (set_point.middle, &self.model.motor);
+        let motors = &mut self.problem.motors[..self.model.drives];
+        if !rule.depends_on_speed() {
+            for motor in motors {
+                motor.aim(target, rule.force * half);
+            }
+            return;
+        }
+        self.forces.clear();
+        for (k, motor) in motors.iter_mut().enumerate() {
+            let speed = state.track_speed(&self.model, k);
+            let forces = Forces {
+                limits: rule.limits(speed).map(Damper::from),
+                error: 2.0 * set_point.middle - set_point.end - speed,
+            };
+            let [most, least] = forces.limits.map(|limit| limit.at(speed));
+            let over = |force: Damper, now: f64| {
+                force
+                    .times(0.5 * half)
+                    .plus(Damper::constant(0.5 * half * now))
+            };
+            motor.target = target;
+            motor.limits = [over(forces.limits[0], most), over(forces.limits[1], least)];
+            motor.correction = rule.correction.map(|rule| {
+                let now = rule.gain * forces.error + state.drives[k].integral;
+                let later = rule.force(target, forces.error, state.drives[k].integral, half);
+                over(later.into(), now.clamp(least, most))
+            });
+            self.forces.push(forces);
+        }
+    }
+
+    /// Has them drive to its end, `h` [s] from its beginning, once its middle is known.
+    pub(super) fn drive_to_end(&mut self, state: &State, set_point: SetPoint, h: f64) {
+        let (target, rule) = (set_point.end, &self.model.motor);
+        if !rule.depends_on_speed() {
+            for motor in &mut self.problem.motors[..self.model.drives] {
+                motor.aim(target, rule.force * h);
+            }
+            return;
+        }
+        let so_far: Vec<f64> = self.problem.motor_impulses().collect();
+        let motors = &mut self.problem.motors[..self.model.drives];
+        for ((k, motor), so_far) in motors.iter_mut().enumerate().zip(so_far) {
+            let forces = self.forces[k];
+            let over = |force: Damper| {
+                force
+                    .times(h / 3.0)
+                    .plus(Damper::constant(4.0 / 3.0 * so_far))
+            };
+            motor.target = target;
+            motor.limits = forces.limits.map(over);
+            let integral = state.drives[k].integral;
+            motor.correction = (rule.correction)
+                .map(|rule| over(rule.force(target, forces.error, integral, h).into()));
+        }
+    }
+
+    /// Stores the mean forces of the motors over a step of `h` [s], and what the errors of their speeds have added up to: at
+    /// its limits a motor adds up nothing.
+    pub(super) fn collect_motors(&mut self, state: &mut State, set_point: SetPoint, h: f64) {
+        for k in 0..self.forces.len() {
+            let error = set_point.end - state.track_speed(&self.model, k);
+            let correction = self.model.motor.correction;
+            if let (Some(rule), Hold::Holds) = (correction, self.problem.motors[k].hold) {
+                let mean = 0.5 * (self.forces[k].error + error);
+                state.drives[k].integral += rule.integral * mean * h;
+            }
+        }
+        let mut impulses = self.problem.motor_impulses();
+        for drive in &mut state.drives {
+            drive.force = impulses.next().unwrap_or_default() / h;
+        }
+        for flipper in &mut state.flippers {
+            flipper.torque = impulses.next().unwrap_or_default() / h;
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! What the motors of a robot can do at a speed, and how they correct it.
+//!
+//! The equations: docs/physics.md, "Motors".
+
+use crate::scenario::{Drivetrain, TrackOutline};
+
+/// One of the equal motors of a robot, as its surface feels it.
+#[derive(Clone, Debug)]
+pub struct MotorRule {
+    /// [N] Its largest force, which it has at rest.
+    pub force: f64,
+    /// [kg] Mass at the surface that would be as hard to speed up as its rotor.
+    pub rotor_mass: f64,
+    /// [m/s] Speeds of the surface, from 0, and shares of the largest force there; none if that is there at any speed.
+    pub(crate) curve: Vec<[f64; 2]>,
+    /// How it corrects its speed; `None` if it holds that.
+    pub(crate) correction: Option<Correction>,
+}
+
+/// Force of a motor against an error of its speed, and against the sum of those errors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Correction {
+    /// [N s/m]
+    pub gain: f64,
+    /// [N/m]
+    pub integral: f64,
+}
+
+/// A force that falls in a line with the speed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    /// [N]
+    pub at_rest: f64,
+    /// [N s/m]
+    pub slope: f64,
+}
+
+impl Correction {
+    /// Its force at a speed, a `time` [s] after the error of that was `error` [m/s] and the sum of errors made `integral` [N].
+    pub(crate) fn force(&self, target: f64, error: f64, integral: f64, time: f64) -> Line {
+        let later = 0.5 * time * self.integral;
+        let slope = self.gain + later;
+        Line {
+            at_rest: slope * target + later * error + integral,
+            slope,
+        }
+    }
+}
+
+impl MotorRule {
+    /// Both tracks' motors together.
+    pub(super) fn of(drivetrain: &Drivetrain, outline: &TrackOutline) -> Self {
+        let radius = outline.belt_radius();
+        // Of what one sprocket feels, a share of its radius acts at the belt; a rate is a speed over the radius.
+        let at_belt = 2.0 / (radius * radius);
+        let most = drivetrain.max_torque;
+        let line = drivetrain
+            .no_load_speed
+            .map(|speed| vec![[0.0, 1.0], [speed, 0.0]]);
+        let curve = drivetrain.torque_curve.as_ref().map(|curve| {
+            let share = |torque: f64| if most > 0.0 { torque / most } else { 0.0 };
+            curve
+                .iter()
+                .map(|[speed, torque]| [*speed, share(*torque)])
+                .collect()
+        });
+        Self {
+            force: drivetrain.max_force(outline),
+            rotor_mass: drivetrain.rotor_inertia * at_belt,
+            curve: line.or(curve).unwrap_or_default(),
+            correction: drivetrain.controller.map(|pi| Correction {
+                gain: pi.gain * at_belt,
+                integral: pi.integral * at_belt,
+            }),
+        }
+    }
+
+    /// One of so many motors that do together what some motors like this one do.
+    pub(super) fn shared(&self, now: usize, among: usize) -> Self {
+        let share = |of_one: f64| of_one * now as f64 / among as f64;
+        Self {
+            force: share(self.force),
+            rotor_mass: share(self.rotor_mass),
+            curve: self.curve.clone(),
+            correction: self.correction.map(|correction| Correction {
+                gain: share(correction.gain),
+                integral: share(correction.integral),
+            }),
+        }
+    }
+
+    /// Its largest forces near a speed [m/s] of the surface, forwards and backwards.
+    pub(crate) fn limits(&self, speed: f64) -> [Line; 2] {
+        let (forwards, backwards) = (self.limit(speed), self.limit(-speed));
+        let at_rest = -backwards.at_rest;
+        [
+            forwards,
+            Line {
+                at_rest,
+                ..backwards
+            },
+        ]
+    }
+
+    /// Its largest force forwards near a speed. Against its motion it has the force that it has at rest.
+    fn limit(&self, speed: f64) -> Line {
+        let pieces = self.curve.windows(2);
+        let piece = pieces
+            .filter(|_| speed >= 0.0)
+            .find(|piece| speed < piece[1][0]);
+        let Some([[from, share], [to, next]]) = piece.and_then(|piece| piece.as_array::<2>())
+        else {
+            let share = match self.curve.last() {
+                Some([_, last]) if speed >= 0.0 => *last,
+                _ => 1.0,
+            };
+            return Line {
+                at_rest: share * self.force,
+                slope: 0.0,
+            };
+        };
+        let slope = (share - next) / (to - from) * self.force;
+        Line {
+            at_rest: share * self.force + slope * from,
+            slope,
+        }
+    }
+
+    /// Whether its force depends on its speed, but for its limits where it holds that.
+    pub(crate) fn depends_on_speed(&self) -> bool {
+        !self.curve.is_empty() || self.correction.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    impl Line {
+        fn at(self, speed: f64) -> f64 {
+            self.at_rest - self.slope * speed
+        }
+    }
+
+    fn rule(curve: &[[f64; 2]]) -> MotorRule {
+        MotorRule {
+            force: 100.0,
+            rotor_mass: 0.0,
+            curve: curve.to_vec(),
+            correction: None,
+        }
+    }
+
+    #[test]
+    fn a_motor_without_a_curve_has_its_force_at_any_speed() {
+        for speed in [-3.0, 0.0, 3.0] {
+            let [most, least] = rule(&[]).limits(speed).map(|limit| limit.at(speed));
+            assert!(most == 100.0 && least == -100.0);
+        }
+    }
+
+    #[test]
+    fn its_force_follows_the_curve_forwards_and_brakes_with_all_of_it() {
+        let rule = rule(&[[0.0, 1.0], [1.0, 0.8], [2.0, 0.0]]);
+        for (speed, expected) in [
+            (0.0, 100.0),
+            (0.5, 90.0),
+            (1.0, 80.0),
+            (1.5, 40.0),
+            (2.0, 0.0),
+            (5.0, 0.0),
+        ] {
+            let [most, least] = rule.limits(speed).map(|limit| limit.at(speed));
+            assert!((most - expected).abs() < 1e-12, "{most} N at {speed} m/s");
+            let brakes = if speed > 0.0 { -100.0 } else { -expected };
+            assert_eq!(least, brakes);
+            let mirrored = rule.limits(-speed).map(|limit| limit.at(-speed));
+            assert_eq!(mirrored, [-least, -most]);
+        }
+    }
+}

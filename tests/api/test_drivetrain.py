@@ -1,0 +1,70 @@
+"""Rotors, torque curves and controllers as a user gives them."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crawler2d as c2d
+from tests.shared import refusal
+
+ENGINEER = c2d.robots.engineer().without_flippers()
+
+
+def driven(**fields: Any) -> c2d.Robot:
+    """The Engineer with other motors."""
+    return replace(ENGINEER, drivetrain=replace(ENGINEER.drivetrain, **fields))
+
+
+@pytest.mark.parametrize(
+    ("fields", "path"),
+    [
+        ({"rotor_inertia": -1.0}, "robot.drivetrain.rotor_inertia"),
+        ({"rotor_inertia": 1e9}, "robot.drivetrain.rotor_inertia"),
+        ({"no_load_speed": 0.0}, "robot.drivetrain.no_load_speed"),
+        ({"torque_curve": ((0.1, 6.0),)}, "robot.drivetrain.torque_curve[0][0]"),
+        ({"torque_curve": ((0.0, 5.0), (1.0, 0.0))}, "robot.drivetrain.torque_curve[0][1]"),
+        ({"torque_curve": ((0.0, 6.0), (0.0, 0.0))}, "robot.drivetrain.torque_curve[1][0]"),
+        ({"torque_curve": ((0.0, 6.0), (1.0, 7.0))}, "robot.drivetrain.torque_curve[1][1]"),
+        ({"controller": c2d.PI(0.0)}, "robot.drivetrain.controller.gain"),
+        ({"controller": c2d.PI(1.0, -1.0)}, "robot.drivetrain.controller.integral"),
+    ],
+)
+def test_motors_that_none_can_be_are_refused_by_field(fields: dict[str, Any], path: str) -> None:
+    assert refusal(driven(**fields)).path == path
+
+
+def test_a_line_and_a_curve_exclude_each_other() -> None:
+    robot = driven(no_load_speed=1.0, torque_curve=((0.0, 6.0), (1.0, 0.0)))
+    assert refusal(robot).path == "robot.drivetrain.no_load_speed"
+
+
+def test_texts_leave_out_what_motors_do_not_have() -> None:
+    scenario = c2d.Scenario(ENGINEER, c2d.terrains.flat())
+    assert "rotor_inertia" not in scenario.to_json()
+    assert "controller" not in scenario.to_json()
+
+
+def test_motors_come_back_from_json() -> None:
+    curve = ((0.0, 6.0), (0.5, 4.0), (1.0, 0.0))
+    robot = driven(rotor_inertia=0.03, torque_curve=curve, controller=c2d.PI(1.0, 2.0))
+    scenario = c2d.Scenario(robot, c2d.terrains.flat())
+    assert c2d.Scenario.from_json(scenario.to_json()) == scenario
+
+
+def test_a_snapshot_keeps_what_a_controller_has_summed_up() -> None:
+    robot = driven(rotor_inertia=0.03, no_load_speed=0.6, controller=c2d.PI(0.5, 5.0))
+    simulation = c2d.Simulation(c2d.Scenario(robot, c2d.terrains.ramp(0.2)))
+    simulation.advance(2.0)
+    other = c2d.Simulation.from_snapshot(simulation.snapshot())
+    for each in (simulation, other):
+        each.advance(1.0)
+    assert np.array_equal(simulation.state().position, other.state().position)
+    assert simulation.state().track_speed == other.state().track_speed
+
+
+def test_another_engine_refuses_motors_that_it_does_not_have() -> None:
+    solver = c2d.Solver(engine="rapier", accuracy=None, time_step=1e-3)
+    robot = driven(rotor_inertia=0.03).with_track(c2d.LineOfWheels(3))
+    assert refusal(robot, solver=solver).path == "robot.drivetrain.rotor_inertia"
