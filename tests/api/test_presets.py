@@ -4,9 +4,11 @@ import dataclasses
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import crawler2d as c2d
+from crawler2d.parameters.paths import read_path
 from crawler2d.parameters.scenario import Scenario
 
 
@@ -87,6 +89,45 @@ def test_public_absolem_without_flippers_seizes_on_no_step() -> None:
     outcomes = [str(run.outcome) for run in runs]
     assert "seized" not in outcomes
     assert outcomes[:3] == ["cleared"] * 3
+
+
+@pytest.mark.parametrize(
+    ("preset", "mass", "track", "flipper"),
+    [(c2d.robots.absolem, 40.0, 30.0, 30.0), (c2d.robots.marv, 70.0, 2 * 25.0, 180.0)],
+)
+def test_a_robot_that_was_published_twice_has_the_figures_of_the_source_asked_for(
+    preset: Any, mass: float, track: float, flipper: float
+) -> None:
+    subt, rough = preset(), preset(source="rough")
+    assert preset(source="subt") == subt
+    assert rough.mass == pytest.approx(mass)
+    assert rough.drivetrain.max_torque == track
+    assert rough.flippers.torque_limit == flipper
+    assert rough.outline == subt.outline
+    bare = [robot.without_flippers() for robot in (subt, rough)]
+    assert bare[1].center_of_mass == pytest.approx(bare[0].center_of_mass)
+    radii = [robot.moment_of_inertia / robot.mass for robot in bare]  # squared, of gyration
+    assert radii[1] == pytest.approx(radii[0])
+
+
+@pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.marv])
+def test_what_is_not_known_covers_both_sources(preset: Any) -> None:
+    robots = preset(), preset(source="rough")
+    for path in ("robot.mass", "robot.drivetrain.max_torque", "robot.flippers.torque_limit"):
+        own = [read_path(Scenario(robot, c2d.terrains.flat()), path) for robot in robots]
+        for robot, figure in zip(robots, own, strict=True):
+            within = c2d.unknowns.of_robot(robot)[path]
+            low, high = within.values(np.array([0.0, 1.0]), figure)
+            assert low <= min(own) * 1.001  # scales have three digits
+            assert high >= max(own) * 0.999
+
+
+@pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.marv])
+@pytest.mark.parametrize("source", ["SubT", "", None, 40.0])
+def test_a_word_that_is_no_source_is_refused(preset: Any, source: Any) -> None:
+    with pytest.raises(c2d.ScenarioError) as caught:
+        preset(source=source)
+    assert caught.value.path == "source"
 
 
 @pytest.mark.parametrize("name", c2d.robots.__all__)

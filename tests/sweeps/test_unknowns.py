@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import crawler2d as c2d
 from crawler2d.variation.ranges import Ranges
 from tests.sweeps.small import BASE, BRIEF, quiet, refusal
 
-PRESETS = {
+PRESETS: dict[str, Callable[[], c2d.Robot]] = {
     "engineer": c2d.robots.engineer,
     "absolem": c2d.robots.absolem,
     "marv": c2d.robots.marv,
@@ -138,6 +139,8 @@ def test_the_belly_moves_as_a_whole() -> None:
 def test_a_robot_without_belly_and_one_of_ones_own_have_ranges_too() -> None:
     own = c2d.Robot.simple(10.0, axle_distance=0.3, radius=0.05)
     assert "robot.belly[*][1]" not in c2d.unknowns.of_robot(own)
+    armless = c2d.robots.marv(flippers=None)
+    assert "robot.flippers.torque_limit" not in c2d.unknowns.of_robot(armless)
     quiet(
         c2d.Scenario(own, c2d.terrains.step(0.02), duration=0.0),
         {},

@@ -13,17 +13,17 @@ from __future__ import annotations
 
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
-from crawler2d.presets.robots.ranges import GENERAL, RANGES
+from crawler2d.presets.robots.ranges import ARMS, BELLY, GENERAL, RANGES
 from crawler2d.variation.distributions import uniform
 from crawler2d.variation.ranges import Ranges
 
 __all__ = ["of_ground", "of_robot"]
 
-_BELLY = "robot.belly[*][1]"
-
 
 def of_robot(robot: Robot) -> Ranges:
     """List what is not known of a robot: centre of mass, torque, clearance of the belly.
+
+    Of Absolem and MARV also the mass and the torque of the flippers, which were published twice.
 
     Parameters
     ----------
@@ -51,7 +51,9 @@ def of_robot(robot: Robot) -> Ranges:
         raise ScenarioError("robot", robot, "must be a Robot")
     ranges = dict(RANGES.get(robot.name, GENERAL))
     if robot.belly is None:
-        ranges.pop(_BELLY, None)
+        ranges.pop(BELLY, None)
+    if robot.flippers is None:
+        ranges.pop(ARMS, None)
     return Ranges(
         {path: distribution for path, (distribution, _) in ranges.items()},
         {path: source for path, (_, source) in ranges.items()},

@@ -9,7 +9,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import LineOfWheels, Track
-from crawler2d.presets.robots.finish import finished
+from crawler2d.presets.robots.finish import finished, is_rough
 
 __all__ = ["absolem"]
 
@@ -19,6 +19,7 @@ def absolem(
     *,
     flippers: Flippers | Literal["built"] | None = "built",
     track: Track | Literal["public"] | None = None,
+    source: Literal["subt", "rough"] = "subt",
 ) -> Robot:
     """Make the BlueBotics Absolem, a 39 kg tracked robot with four flippers.
 
@@ -30,6 +31,9 @@ def absolem(
         The model of the track; None takes `Robot`'s default. "public" has the wheels of the public
         simulation model: eight overlapping wheels per track, five per flipper. Its makers report
         that ground gets stuck between two of them and stops the robot where tracks would go on.
+    source : {"subt", "rough"}
+        Where mass and torques are from, which were published twice: the simulation model of the
+        SubT challenge, or the description of the ROUGH data set, which has 40 kg and rated torques.
 
     Returns
     -------
@@ -39,7 +43,7 @@ def absolem(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another string.
+        If `flippers`, `track` or `source` is another string.
 
     Notes
     -----
@@ -66,6 +70,10 @@ def absolem(
     max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
     max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
     mass, grousers
+    "rough"             40 kg with flippers                   ROUGH
+                        30 N m a sprocket, 30 N m a flipper   ROUGH: rated, of motors of 210 W
+                        moment of inertia in proportion,      estimate: what the robot has more is
+                        the same centre of mass               spread like the rest
     public wheels       8 of 0.089 m, evenly spaced between   absolem.sdf:1273 to 1690
                         the axles; 5 a flipper, 0.089 to      absolem.sdf:988 to 1234
                         0.029 m, evenly spaced
@@ -73,7 +81,8 @@ def absolem(
 
     absolem.sdf is model.sdf of submitted_models/ctu_cras_norlab_absolem_sensor_config_1 in
     osrf/subt, before its wheels were replaced by tracks (b626b6de^); absolem_specifications.md is
-    specifications.md there.
+    specifications.md there. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
+    (084cbea5), which the tests do not read.
 
     Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track; in
     side view the line is even. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922), here
@@ -103,6 +112,7 @@ def absolem(
     (0 of 21). Without flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm,
     friction 0.6 to 1.0.
     """
+    rough = is_rough(source)
     built = Flippers(
         length=0.33,
         root_radius=0.089,
@@ -111,9 +121,10 @@ def absolem(
         ends="both",
         angle=0.8,
         rate_limit=0.785398,
-        torque_limit=20.0,
+        torque_limit=30.0 if rough else 20.0,
     )
-    chassis = 35.6983
+    links = 35.6983
+    chassis = 40.0 - 4.0 * built.mass if rough else links
     whole = chassis + 4.0 * built.mass
     robot = Robot.simple(whole, axle_distance=0.5, radius=0.089, name="absolem", max_speed=0.4)
     rear, front, bottom, top = -0.372085, 0.187487, 0.02995, 0.16895
@@ -121,10 +132,12 @@ def absolem(
         robot,
         mass=chassis,
         center_of_mass=(-0.03139, 0.10286),
-        moment_of_inertia=1.5354,
+        moment_of_inertia=1.5354 * (chassis / links),
         belly=((rear, bottom), (front, bottom), (front, top), (rear, top)),
         gauge=0.397,
         drivetrain=replace(robot.drivetrain, max_acceleration=1.4),
     )
+    if rough:
+        robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=30.0))
     public = (LineOfWheels(8), LineOfWheels(5))
     return finished(robot, flippers=flippers, built=built, track=track, public=public)

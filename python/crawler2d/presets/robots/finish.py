@@ -1,4 +1,4 @@
-"""Shared by the presets: replace flippers and track model as the user chooses."""
+"""Shared by the presets: check and apply what the user chooses."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import Track
 
-__all__ = ["finished"]
+__all__ = ["finished", "is_rough"]
 
 
 def finished(
@@ -64,3 +64,16 @@ def finished(
     if of_flippers is not None:
         flippers = replace(flippers, track=of_flippers)
     return robot.with_flippers(flippers)
+
+
+def is_rough(source: object) -> bool:
+    """Return whether mass and torques are those of the ROUGH data set, not of the SubT model.
+
+    Raises
+    ------
+    ScenarioError
+        If it is neither "rough" nor "subt".
+    """
+    if not isinstance(source, str) or source not in ("rough", "subt"):
+        raise ScenarioError("source", source, 'must be "subt" or "rough"')
+    return source == "rough"

@@ -10,7 +10,7 @@ from crawler2d.common.keywords import takes_keywords
 from crawler2d.parameters.flippers import Flippers
 from crawler2d.parameters.robot import Robot
 from crawler2d.parameters.track import GrouserBeltTrack, LineOfWheels, Track
-from crawler2d.presets.robots.finish import finished
+from crawler2d.presets.robots.finish import finished, is_rough
 
 __all__ = ["marv"]
 
@@ -20,6 +20,7 @@ def marv(
     *,
     flippers: Flippers | Literal["built"] | None = "built",
     track: Track | Literal["public"] | None = None,
+    source: Literal["subt", "rough"] = "subt",
 ) -> Robot:
     """Make MARV of the SubT challenge, a 60 kg robot that has no tracks but four large flippers.
 
@@ -32,6 +33,10 @@ def marv(
         What runs between the flippers' pivots. None takes two wheels, the roots of the flippers,
         and belts with grousers round the arms. "public" has the wheels of the public simulation
         model, eight per flipper.
+    source : {"subt", "rough"}
+        Where mass and torques are from, which were published twice: the simulation model of the
+        SubT challenge, from drawings, or the description of the ROUGH data set, which has 70 kg and
+        rated torques.
 
     Returns
     -------
@@ -41,7 +46,7 @@ def marv(
     Raises
     ------
     ScenarioError
-        If `flippers` or `track` is another string.
+        If `flippers`, `track` or `source` is another string.
 
     Notes
     -----
@@ -68,6 +73,11 @@ def marv(
     max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
     max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
     mass, grousers
+    "rough"             70 kg with flippers                   ROUGH
+                        50 N m a side, 180 N m a flipper      ROUGH: rated, of motors of 200 W;
+                                                              25 N m for each of the four tracks
+                        moment of inertia in proportion,      estimate: what the robot has more is
+                        the same centre of mass               spread like the rest
     public wheels       8 a flipper, 0.1165 to 0.078 m,       marv.sdf:618 to 1063
                         evenly spaced
     ==================  ====================================  ====================================
@@ -75,7 +85,8 @@ def marv(
     marv.sdf is model.sdf of submitted_models/ctu_cras_norlab_marv_sensor_config_1 in osrf/subt,
     before its wheels were replaced by tracks (b626b6de^); the tests do not read common.yaml, where
     the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm become four chords here, at
-    most 1 mm inside.
+    most 1 mm inside. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
+    (084cbea5), which the tests do not read either.
 
     There is no track between the roots, so no ground is inside one there. The package gives the
     robot's mass as 61 kg; the sum over all links is 60.36 kg.
@@ -85,6 +96,7 @@ def marv(
     >>> round(marv().mass, 2)
     60.36
     """
+    rough = is_rough(source)
     built = Flippers(
         length=0.3035,
         root_radius=0.1165,
@@ -93,11 +105,12 @@ def marv(
         ends="both",
         angle=0.5,
         rate_limit=1.0,
-        torque_limit=120.0,
+        torque_limit=180.0 if rough else 120.0,
         track=GrouserBeltTrack(),
     )
     roots = LineOfWheels(2, as_track=False)
-    chassis = 45.726
+    links = 45.726
+    chassis = 70.0 - 4.0 * built.mass if rough else links
     whole = chassis + 4.0 * built.mass
     robot = Robot.simple(whole, axle_distance=0.512, radius=0.1165, name="marv", max_speed=1.0)
     bow = [_bow(step * math.pi / 8.0) for step in range(5)]
@@ -105,12 +118,14 @@ def marv(
         robot,
         mass=chassis,
         center_of_mass=(0.00292, 0.06481),
-        moment_of_inertia=1.7532,
+        moment_of_inertia=1.7532 * (chassis / links),
         belly=(*bow, (0.3, 0.1921), (-0.3, 0.1921), *((-x, y) for x, y in reversed(bow))),
         gauge=0.496,
         drivetrain=replace(robot.drivetrain, max_acceleration=3.0),
         track=roots,
     )
+    if rough:
+        robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=50.0))
     public = (roots, LineOfWheels(8))
     return finished(robot, flippers=flippers, built=built, track=track, public=public)
 

@@ -6,12 +6,16 @@ from collections.abc import Mapping
 
 from crawler2d.variation.distributions import Distribution, scaled, shifted
 
-__all__ = ["GENERAL", "RANGES"]
+__all__ = ["ARMS", "BELLY", "GENERAL", "RANGES"]
 
 Range = tuple[Distribution, str]
 
 _X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
-_TORQUE, _BELLY = "robot.drivetrain.max_torque", "robot.belly[*][1]"
+_MASS, _TORQUE = "robot.mass", "robot.drivetrain.max_torque"
+
+BELLY = "robot.belly[*][1]"
+ARMS = "robot.flippers.torque_limit"
+"""Paths that a robot without belly or flippers does not have."""
 
 _OF_FILE = "the sum over the links of its file; 10 mm for what is mounted or left off"
 _MOTORS = "the preset's is an estimate: half to twice"
@@ -20,7 +24,7 @@ GENERAL: Mapping[str, Range] = {
     _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
     _Y: (shifted(-0.05, 0.05, of="robot.outline.axle_distance"), "a twentieth of it"),
     _TORQUE: (scaled(0.5, 2.0), "half to twice"),
-    _BELLY: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
+    BELLY: (shifted(-0.1, 0.1, of="robot.outline.front_radius"), "a tenth of the radius"),
 }
 """Of a robot that is no preset: general estimates."""
 
@@ -36,28 +40,36 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
             "the preset's is an estimate; the arm raised or lowered by 48 mm moves the whole so",
         ),
         _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        _BELLY: (
+        BELLY: (
             shifted(-0.014, 0.010),
             "the preset's is an estimate: 20 to 44 mm above level ground",
         ),
     },
     "absolem": {
+        _MASS: (scaled(0.967, 1.034), "published twice: 38.7 kg (SubT) and 40 kg (ROUGH)"),
         _X: (shifted(-0.01, 0.01), _OF_FILE),
         _Y: (shifted(-0.01, 0.01), _OF_FILE),
-        _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        _BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        _TORQUE: (scaled(0.5, 2.0), "an estimate, or 30 N m rated (ROUGH): half to twice"),
+        ARMS: (scaled(0.66, 1.5), "published twice: 20 N m (SubT) and 30 N m rated (ROUGH)"),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
     },
     "marv": {
+        _MASS: (scaled(0.862, 1.16), "published twice: 60.4 kg (SubT) and 70 kg (ROUGH)"),
         _X: (shifted(-0.01, 0.01), _OF_FILE),
-        _Y: (shifted(-0.01, 0.01), _OF_FILE),
-        _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        _BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        _Y: (
+            shifted(-0.01, 0.03),
+            f"{_OF_FILE}, and up to 30 mm higher, if the 9.6 kg"
+            " that ROUGH has more are 0.2 m above the rest",
+        ),
+        _TORQUE: (scaled(0.5, 2.0), "an estimate, or 50 N m rated (ROUGH): half to twice"),
+        ARMS: (scaled(0.66, 1.5), "published twice: 120 N m (SubT) and 180 N m rated (ROUGH)"),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
     },
     "gz_tracked_vehicle": {
         _X: (shifted(-0.01, 0.01), _OF_FILE),
         _Y: (shifted(-0.01, 0.01), _OF_FILE),
         _TORQUE: (scaled(0.5, 2.0), _MOTORS),
-        _BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
     },
 }
 """Of the presets, by name."""
