@@ -13,7 +13,14 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Lanes
 from crawler2d.studies.multiplied import multiplied
 from crawler2d.sweeps.plan import Plan, Planner, plan_runs
-from crawler2d.variation.distributions import Levels, scaled, shifted, uniform, uniform_int
+from crawler2d.variation.distributions import (
+    Levels,
+    LogUniform,
+    scaled,
+    shifted,
+    uniform,
+    uniform_int,
+)
 from crawler2d.variation.draws import Variation, uniform_numbers
 from tests.shared import ROBOT, VARIANTS
 
@@ -90,6 +97,19 @@ def test_no_value_lies_beyond_the_upper_bound() -> None:
         assert distribution.low <= value(distribution, almost_1) <= distribution.high
 
 
+def test_every_octave_of_log_uniform_has_the_same_share() -> None:
+    octaves = LogUniform(0.25, 4.0)
+    shares = [value(octaves, share, own=7.0) for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    assert shares == pytest.approx([0.25, 0.5, 1.0, 2.0, 4.0], rel=1e-15)
+    for low, high in np.exp(np.random.default_rng(0).uniform(-9.0, 9.0, (1000, 2))):
+        distribution = LogUniform(min(low, high), max(low, high))
+        ends = value(distribution, 0.0), value(distribution, math.nextafter(1.0, 0.0))
+        assert distribution.low <= ends[0] <= ends[1] <= distribution.high
+    for low in (0.0, -1.0):
+        with pytest.raises(c2d.ScenarioError, match="low must be > 0, got"):
+            LogUniform(low, 1.0)
+
+
 def test_every_whole_number_of_its_bounds_has_the_same_share() -> None:
     six = uniform_int(-2, 3)
     assert [value(six, (i + 0.5) / 6.0) for i in range(6)] == [-2, -1, 0, 1, 2, 3]
@@ -114,7 +134,7 @@ def test_every_whole_number_of_its_bounds_has_the_same_share() -> None:
     ],
 )
 def test_bounds_are_finite_numbers_in_order(low: Any, high: Any, message: str) -> None:
-    for distribution in (uniform, scaled):
+    for distribution in (uniform, LogUniform, scaled):
         with pytest.raises(c2d.ScenarioError) as caught:
             distribution(low, high)
         assert str(caught.value) == message

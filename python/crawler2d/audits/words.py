@@ -17,6 +17,7 @@ from crawler2d.results.row import NO_RESULT
 from crawler2d.variation.distributions import (
     Distribution,
     Levels,
+    LogUniform,
     Scaled,
     Shifted,
     Uniform,
@@ -319,7 +320,7 @@ def range_of(path: str, distribution: Distribution) -> str:
     unit = unit_of(path)
     own = "" if unit in (None, "1") else f" {unit}"
     match distribution:
-        case Uniform(low, high):
+        case Uniform(low, high) | LogUniform(low, high):
             return f"{low:g} to {high:g}{own}"
         case UniformInt(low, high):
             return f"{low} to {high}"

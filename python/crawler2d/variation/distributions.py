@@ -22,6 +22,7 @@ __all__ = [
     "Distribution",
     "Frozen",
     "Levels",
+    "LogUniform",
     "Scaled",
     "Shifted",
     "Uniform",
@@ -114,6 +115,43 @@ class Uniform(_Bounded):
     def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
         """Map numbers from 0 to 1 to values; the field's own value is not used."""
         return _between(self.low, self.high, numbers)
+
+
+@dataclass(frozen=True, slots=True)
+class LogUniform(_Bounded):
+    """Any value from `low` to `high`, equally likely in every octave: known but for a factor.
+
+    Parameters
+    ----------
+    low, high : float
+        Bounds, in units of the field, above 0.
+
+    Raises
+    ------
+    ScenarioError
+        If they are not finite numbers with ``0 < low <= high``.
+
+    Examples
+    --------
+    >>> LogUniform(0.01, 1.0).values(np.array([0.0, 0.5, 1.0]), own=None).round(9).tolist()
+    [0.01, 0.1, 1.0]
+    """
+
+    def __post_init__(self) -> None:
+        """Check the bounds."""
+        _Bounded.__post_init__(self)
+        if self.low <= 0.0:
+            raise ScenarioError("low", self.low, "must be > 0")
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it varies about the field's own value."""
+        return False
+
+    def values(self, numbers: NDArray[np.float64], own: Any) -> NDArray[np.float64]:  # noqa: ARG002
+        """Map numbers from 0 to 1 to values; the field's own value is not used."""
+        logarithms = _between(math.log(self.low), math.log(self.high), numbers)
+        return np.clip(np.exp(logarithms), self.low, self.high)  # which rounding could pass
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,7 +378,7 @@ def read_distribution(given: object, place: str) -> Distribution:
     ScenarioError
         If it is neither; `place` names the argument.
     """
-    if isinstance(given, (Uniform, UniformInt, Scaled, Shifted, Levels, Frozen)):
+    if isinstance(given, (Uniform, LogUniform, UniformInt, Scaled, Shifted, Levels, Frozen)):
         return given
     if all(hasattr(given, name) for name in ("ppf", "dist", "args", "kwds")):
         return Frozen(given)
