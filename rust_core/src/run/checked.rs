@@ -86,7 +86,7 @@ impl Checked {
         }
         let vary = |row: &[f64]| {
             for ((pointer, whole), number) in fields.iter().zip(row) {
-                let Some(place) = value.pointer_mut(pointer) else {
+                let Some(place) = place_of(&mut value, pointer) else {
                     let error = ScenarioError::new(pointer, number, "must be a known field");
                     return Err(error.into());
                 };
@@ -237,6 +237,16 @@ pub(super) fn fastest_turn(scenario: &Scenario, parts: &[Part]) -> f64 {
     of_flippers.max(scenario.robot.drivetrain.max_speed / tip)
 }
 
+/// The place of a field in a text, also of one that is left out because it has its default.
+fn place_of<'a>(text: &'a mut Value, pointer: &str) -> Option<&'a mut Value> {
+    if text.pointer(pointer).is_some() {
+        return text.pointer_mut(pointer);
+    }
+    let (object, name) = pointer.rsplit_once('/')?;
+    let members = text.pointer_mut(object)?.as_object_mut()?;
+    Some(members.entry(name).or_insert(Value::Null))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,6 +306,27 @@ mod tests {
         );
         let own = found[2].as_ref().expect("it is valid");
         assert_eq!(own.scenario.terrain, engineer().terrain);
+    }
+
+    #[test]
+    fn a_field_that_texts_leave_out_can_be_varied() {
+        let first = opened(&engineer(), None);
+        let pointer = "/robot/drivetrain/rotor_inertia".to_owned();
+        let rows: [&[f64]; 2] = [&[0.02], &[0.0]];
+        let found = first.varied(&[(pointer, false)], rows);
+        let inertias = found.into_iter().map(|each| {
+            let varied = each.expect("it is valid");
+            varied.scenario.robot.drivetrain.rotor_inertia
+        });
+        assert_eq!(inertias.collect::<Vec<_>>(), [0.02, 0.0]);
+        for unknown in ["/robot/drivetrain/rotor", "/robot/rotors/inertia"] {
+            let found = first.varied(&[(unknown.to_owned(), false)], rows);
+            let error = found[0].as_ref().expect_err("there is no such field");
+            assert!(
+                error.to_string().contains("must be a known field"),
+                "{error}"
+            );
+        }
     }
 
     #[test]
