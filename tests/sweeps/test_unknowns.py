@@ -3,6 +3,7 @@
 import json
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -139,8 +140,8 @@ def test_the_belly_moves_as_a_whole() -> None:
 def test_a_robot_without_belly_and_one_of_ones_own_have_ranges_too() -> None:
     own = c2d.Robot.simple(10.0, axle_distance=0.3, radius=0.05)
     assert "robot.belly[*][1]" not in c2d.unknowns.of_robot(own)
-    armless = c2d.robots.marv(flippers=None)
-    assert "robot.flippers.torque_limit" not in c2d.unknowns.of_robot(armless)
+    armless = c2d.unknowns.of_robot(c2d.robots.marv(flippers=None))
+    assert not [path for path in armless if path.startswith("robot.flippers")]
     quiet(
         c2d.Scenario(own, c2d.terrains.step(0.02), duration=0.0),
         {},
@@ -150,6 +151,28 @@ def test_a_robot_without_belly_and_one_of_ones_own_have_ranges_too() -> None:
     )
     with pytest.raises(c2d.ScenarioError, match="must be a Robot"):
         c2d.unknowns.of_robot("engineer")  # type: ignore[arg-type]
+
+
+def test_rotors_that_a_robot_does_not_state_follow_from_its_torque_and_speed() -> None:
+    """As run-up times: 0.016 to 0.1 s, each octave alike."""
+    rotor, of_arm = "robot.drivetrain.rotor_inertia", "robot.flippers.rotor_inertia"
+    own = c2d.Robot.simple(10.0, axle_distance=0.3, radius=0.05, max_speed=0.5)
+    belt_radius = own.outline.rear_radius - own.outline.grouser_height
+    ends = np.array([0.0, 1.0])
+    found = c2d.unknowns.of_robot(own)[rotor].values(ends, 0.0)
+    times = found / own.drivetrain.max_torque * own.drivetrain.max_speed / belt_radius
+    assert times == pytest.approx([0.016, 0.1])
+    arms = c2d.Flippers(
+        length=0.2, root_radius=0.05, tip_radius=0.03, mass=0.5, rate_limit=2.0, torque_limit=10.0
+    )
+    found = c2d.unknowns.of_robot(own.with_flippers(arms))[of_arm].values(ends, 0.0)
+    assert found == pytest.approx([0.016 * 10.0 / 2.0, 0.1 * 10.0 / 2.0])
+    stated = replace(own, drivetrain=replace(own.drivetrain, rotor_inertia=0.01))
+    coasting = replace(own, drivetrain=replace(own.drivetrain, max_torque=0.0))
+    for robot in (stated, coasting):
+        assert rotor not in c2d.unknowns.of_robot(robot)
+    with pytest.raises(c2d.ScenarioError, match="max_speed"):
+        c2d.unknowns.of_robot(replace(own, drivetrain=replace(own.drivetrain, max_speed=0.0)))
 
 
 def test_joined_ranges_keep_their_sources() -> None:

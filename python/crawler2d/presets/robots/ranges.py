@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crawler2d.variation.distributions import Distribution, scaled, shifted
+from crawler2d.variation.distributions import Distribution, LogUniform, scaled, shifted
 
-__all__ = ["ARMS", "BELLY", "GENERAL", "RANGES"]
+__all__ = ["BELLY", "GENERAL", "OF_ARMS", "RANGES", "ROTOR", "ROTOR_OF_ARM", "Range"]
 
 Range = tuple[Distribution, str]
 
@@ -14,11 +14,14 @@ _X, _Y = "robot.center_of_mass[0]", "robot.center_of_mass[1]"
 _MASS, _TORQUE = "robot.mass", "robot.drivetrain.max_torque"
 
 BELLY = "robot.belly[*][1]"
-ARMS = "robot.flippers.torque_limit"
-"""Paths that a robot without belly or flippers does not have."""
+ROTOR, ROTOR_OF_ARM = "robot.drivetrain.rotor_inertia", "robot.flippers.rotor_inertia"
+_ARMS = "robot.flippers.torque_limit"
+OF_ARMS = (_ARMS, ROTOR_OF_ARM)
+"""Paths that a robot without flippers does not have."""
 
 _OF_FILE = "the sum over the links of its file; 10 mm for what is mounted or left off"
 _MOTORS = "the preset's is an estimate: half to twice"
+_RUN_UP = "0.016 to 0.1 s times rated torque squared over power, both from ROUGH"
 
 GENERAL: Mapping[str, Range] = {
     _X: (shifted(-0.1, 0.1, of="robot.outline.axle_distance"), "a tenth of the axle distance"),
@@ -44,14 +47,29 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
             shifted(-0.014, 0.010),
             "the preset's is an estimate: 20 to 44 mm above level ground",
         ),
+        ROTOR: (
+            LogUniform(0.0036, 0.078),
+            "0.016 s times torque over sprocket speed at the declared 1.39 m/s, to 0.1 s times that"
+            " at the measured 0.4 m/s (paper, Table 1)",
+        ),
+        ROTOR_OF_ARM: (
+            LogUniform(0.24, 6.0),
+            "0.016 to 0.1 s times torque over rate, which are estimates: half to twice",
+        ),
     },
     "absolem": {
         _MASS: (scaled(0.967, 1.034), "published twice: 38.7 kg (SubT) and 40 kg (ROUGH)"),
         _X: (shifted(-0.01, 0.01), _OF_FILE),
         _Y: (shifted(-0.01, 0.01), _OF_FILE),
         _TORQUE: (scaled(0.5, 2.0), "an estimate, or 30 N m rated (ROUGH): half to twice"),
-        ARMS: (scaled(0.66, 1.5), "published twice: 20 N m (SubT) and 30 N m rated (ROUGH)"),
+        _ARMS: (scaled(0.66, 1.5), "published twice: 20 N m (SubT) and 30 N m rated (ROUGH)"),
         BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        ROTOR: (LogUniform(0.069, 0.43), _RUN_UP),
+        ROTOR_OF_ARM: (
+            LogUniform(0.069, 2.5),
+            "0.016 s times torque squared over power (ROUGH), to 0.1 s times torque over rate"
+            " (SubT)",
+        ),
     },
     "marv": {
         _MASS: (scaled(0.862, 1.16), "published twice: 60.4 kg (SubT) and 70 kg (ROUGH)"),
@@ -62,8 +80,10 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
             " that ROUGH has more are 0.2 m above the rest",
         ),
         _TORQUE: (scaled(0.5, 2.0), "an estimate, or 50 N m rated (ROUGH): half to twice"),
-        ARMS: (scaled(0.66, 1.5), "published twice: 120 N m (SubT) and 180 N m rated (ROUGH)"),
+        _ARMS: (scaled(0.66, 1.5), "published twice: 120 N m (SubT) and 180 N m rated (ROUGH)"),
         BELLY: (shifted(-0.005, 0.005), "its file has it; 5 mm for what hangs below"),
+        ROTOR: (LogUniform(0.10, 0.63), f"{_RUN_UP}; of two motors"),
+        ROTOR_OF_ARM: (LogUniform(2.6, 16.0), _RUN_UP),
     },
     "gz_tracked_vehicle": {
         _X: (shifted(-0.01, 0.01), _OF_FILE),
