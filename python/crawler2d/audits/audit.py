@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from crawler2d._doubts import warn
+from crawler2d.audits.assumptions import Assumed, assumptions, seizure_under
 from crawler2d.audits.audited import Audited, Begun
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.call import Call
@@ -41,6 +42,7 @@ from crawler2d.parameters.terrain import Terrain
 from crawler2d.reading.reading import Reading
 from crawler2d.runs.progress import Progress
 from crawler2d.runs.threads import thread_count
+from crawler2d.variation.ranges import Ranges
 
 if TYPE_CHECKING:
     import xarray
@@ -69,6 +71,8 @@ class Audit(Audited):
         What it drove over, and what came of it.
     seizes : bool
         Whether it seizes on an obstacle that the belt clears.
+    assumed : tuple of Assumed
+        Whether seizures hang on rotors of the motors, or on what blows give back.
     repairs, repaired : tuple of Repair, and Repaired or None
         Changes that end the seizures, and all of the search for them.
     table : xarray.Dataset
@@ -355,7 +359,8 @@ def audit(
             ),
         )
         tell(head_of(begun))
-        verdicts, table = _driven(begun, runs, tell, show)
+        assumed = {} if "unknown" in begun.call.own else assumptions(own, unknown)
+        verdicts, others, table = _driven(begun, runs, assumed, tell, show)
         repairs = None
         if repair and any(each.word == "seizes" for each in verdicts):
             repairs = repaired(
@@ -373,7 +378,7 @@ def audit(
             warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
     parts = {each.name: getattr(begun, each.name) for each in fields(begun)}
     parts["lint"] = lint(own, read, _doubts(caught))
-    audit = Audit(**parts, verdicts=verdicts, repaired=repairs, table=table)
+    audit = Audit(**parts, verdicts=verdicts, assumed=others, repaired=repairs, table=table)
     late = [each for each in audit.lint if each not in begun.lint]
     if late:
         tell("\n".join(lint_of(late, "Lint, doubted in runs")))
@@ -382,19 +387,26 @@ def audit(
 
 
 def _driven(
-    begun: Begun, runs: Runs, tell: Callable[[str], None], show: Progress | None
-) -> tuple[tuple[Verdict, ...], xarray.Dataset]:
+    begun: Begun,
+    runs: Runs,
+    assumed: Mapping[str, Ranges],
+    tell: Callable[[str], None],
+    show: Progress | None,
+) -> tuple[tuple[Verdict, ...], tuple[Assumed, ...], xarray.Dataset]:
     """Drive over the obstacles one after another; tell each verdict as it comes."""
     xr = extra("xarray", "analysis")
     models = {OWN: begun.robot, BELT: begun.belt.robot}
     verdicts, tables = [], []
+    others: list[Assumed] = []
     count = Counted(show, len(begun.obstacles) * begun.call.samples * begun.call.repeats)
     for name, ground in begun.obstacles.items():
         verdict, table = verdict_on(runs.course(models, name, ground), name, count)
         tell(row_of(begun, verdict))
         verdicts.append(verdict)
         tables.append(table)
-    return tuple(verdicts), xr.concat(tables, "terrain")
+        if verdict.word == "seizes":
+            others += seizure_under(assumed, runs, begun.robot, (name, ground), count)
+    return tuple(verdicts), tuple(others), xr.concat(tables, "terrain")
 
 
 def _doubts(caught: list[warnings.WarningMessage]) -> list[str]:

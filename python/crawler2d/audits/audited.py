@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from crawler2d.audits.assumptions import Assumed
 from crawler2d.audits.beside import Belt
 from crawler2d.audits.call import Call
 from crawler2d.audits.finding import Finding
@@ -69,6 +70,8 @@ class Audited(Begun):
     ----------
     verdicts : tuple of Verdict
         One for each obstacle, in their order.
+    assumed : tuple of Assumed
+        What becomes of each seizure under other assumptions; none if `unknown` was given.
     repaired : Repaired, optional
         What the search for repairs came to; None if there was none.
     table : xarray.Dataset
@@ -80,6 +83,7 @@ class Audited(Begun):
     """
 
     verdicts: tuple[Verdict, ...]
+    assumed: tuple[Assumed, ...]
     repaired: Repaired | None
     table: xarray.Dataset
 

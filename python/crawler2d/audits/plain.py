@@ -34,6 +34,14 @@ def plain_of(audit: Audited) -> dict[str, Any]:
             "pockets": [dataclasses.asdict(each) for each in audit.pockets],
             "obstacles": {name: to_plain(each) for name, each in audit.obstacles.items()},
             "verdicts": [dataclasses.asdict(each) for each in audit.verdicts],
+            "assumed": [
+                {
+                    **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},
+                    "drawn": {path: str(range_) for path, range_ in each.drawn.items()},
+                    "holds": each.holds,
+                }
+                for each in audit.assumed
+            ],
             "repairs": [
                 {
                     **{f.name: getattr(each, f.name) for f in dataclasses.fields(each)},

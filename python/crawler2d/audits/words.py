@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
+    from crawler2d.audits.assumptions import Assumed
     from crawler2d.audits.audited import Audited, Begun
     from crawler2d.audits.repairs import Repair, Repaired
     from crawler2d.audits.share import Share
@@ -223,6 +224,7 @@ def conclusion(audit: Audited) -> list[str]:
         also = sum(each.belt_cleared.rate >= CLEARS for each in held)
         belt = f", and the belt {also} of the other {len(held)}" if held else ""
         found.append(f"It was not found to seize where the belt clears; {own}{belt}.")
+    found += list(_under(audit.assumed))
     if others:
         text = (
             "It also seizes where the belt clears less than 95 % of its runs (in brackets, how many"
@@ -233,6 +235,37 @@ def conclusion(audit: Audited) -> list[str]:
     if unsure:
         found.append(f"Not certain, for want of runs: {', '.join(unsure)}.")
     return found
+
+
+def _under(assumed: Sequence[Assumed]) -> Iterator[str]:
+    """Say of each assumption how often the seizures hold under it, and which hang on it."""
+    heads = {
+        "rotor": "With a real drive, whose motors have rotors",
+        "restitution": "With blows that give some or all of it back",
+    }
+    for name, head in heads.items():
+        own = [each for each in assumed if each.assumption == name]
+        if own:
+            runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
+            loose = ", ".join(each.obstacle for each in own if not each.holds)
+            hang = f"the verdicts on {loose} hang on that" if loose else "no verdict hangs on that"
+            drawn = ", ".join(
+                f"{_named(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
+            )
+            yield f"{head} ({drawn}), it seizes in: {runs}; {hang}."
+
+
+def _named(path: str) -> str:
+    """Write what a path is in words.
+
+    Examples
+    --------
+    >>> _named("robot.flippers.rotor_inertia"), _named("robot.drivetrain.rotor_inertia")
+    ('rotor inertia of a flipper', 'rotor inertia of a track')
+    """
+    place, _, field = path.rpartition(".")
+    of = {"robot.flippers": " of a flipper", "robot.drivetrain": " of a track"}.get(place, "")
+    return field.replace("_", " ") + of
 
 
 def _has_wheels_for_tracks(robot: Robot) -> bool:

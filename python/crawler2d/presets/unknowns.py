@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from crawler2d.errors import ScenarioError
 from crawler2d.parameters.robot import Robot
+from crawler2d.parameters.track import SegmentalTrack
 from crawler2d.presets.robots.ranges import (
     BELLY,
     GENERAL,
@@ -25,7 +26,7 @@ from crawler2d.presets.robots.ranges import (
 from crawler2d.variation.distributions import LogUniform, uniform
 from crawler2d.variation.ranges import Ranges
 
-__all__ = ["of_ground", "of_robot"]
+__all__ = ["of_blows", "of_ground", "of_robot"]
 
 # [s] In which its rated torque brings a bare rotor up to no-load speed. Gears do not change it, and
 # it differs less than the inertias of motors of one power: of 38 types by maxon and Faulhaber, 20
@@ -34,6 +35,26 @@ __all__ = ["of_ground", "of_robot"]
 # k_t, R, inertia, speed and thermal resistances are those of ekrimsk/MGDB (17337fa2). Five geared
 # joints of the KUKA youBot have 0.03 to 0.06 s.
 _RUN_UP = (0.016, 0.1)
+
+
+def of_blows(robot: Robot) -> Ranges:
+    """List what is not known of a blow on the ground: how much of it contacts give back.
+
+    Parameters
+    ----------
+    robot : Robot
+        Of a robot on chains there is nothing: those give nothing back.
+
+    Examples
+    --------
+    >>> import crawler2d as c2d
+    >>> dict(of_blows(c2d.robots.engineer()))
+    {'solver.restitution': Uniform(low=0.0, high=1.0)}
+    """
+    path, source = "solver.restitution", "between nothing and all, which no model of a robot states"
+    if isinstance(robot.track, SegmentalTrack):
+        return Ranges({})
+    return Ranges({path: uniform(0.0, 1.0)}, {path: source})
 
 
 def of_robot(robot: Robot) -> Ranges:

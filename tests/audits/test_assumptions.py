@@ -1,0 +1,50 @@
+"""An audit says of a seizure whether it hangs on rotors and on blows."""
+
+from dataclasses import replace
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.audits.assumptions import Assumed, assumptions
+from crawler2d.audits.words import conclusion
+from crawler2d.variation.ranges import Ranges
+
+ROBOT = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+STEP = {"step of 75 mm": c2d.terrains.step(0.075)}
+
+
+def test_a_rotor_that_is_stated_is_assumed_no_other() -> None:
+    stated = c2d.Robot.simple(20.0, axle_distance=0.4, radius=0.06)
+    assert list(assumptions(stated, {})) == ["rotor", "restitution"]
+    drivetrain = replace(stated.drivetrain, rotor_inertia=0.05)
+    assert list(assumptions(replace(stated, drivetrain=drivetrain), {})) == ["restitution"]
+
+
+def test_chains_give_back_nothing_of_a_blow() -> None:
+    robot = c2d.robots.engineer(flippers=None, track=c2d.SegmentalTrack())
+    assert dict(c2d.unknowns.of_blows(robot)) == {}
+
+
+@pytest.mark.parametrize(("seized", "holds"), [(0, False), (2, False), (3, True), (18, True)])
+def test_a_seizure_holds_if_the_lower_bound_of_its_rate_is_above_5_percent(
+    seized: int, *, holds: bool
+) -> None:
+    found = Assumed(obstacle="step", assumption="rotor", drawn=Ranges({}), seized=seized, made=18)
+    assert found.holds == holds
+
+
+def test_each_seizure_is_driven_again_under_each_assumption_and_told() -> None:
+    found = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
+    assert found.seizes
+    (blows,) = found.assumed
+    assert (blows.obstacle, blows.assumption, blows.made) == ("step of 75 mm", "restitution", 18)
+    assert blows.seized <= 18
+    assert any("With blows that give some or all of it back" in each for each in conclusion(found))
+    again = c2d.audit(ROBOT, STEP, quick=True, repair=False, progress=False)
+    assert again.assumed == found.assumed
+
+
+def test_nothing_is_assumed_where_everything_is_known() -> None:
+    found = c2d.audit(ROBOT, STEP, unknown={}, repeats=4, repair=False, progress=False)
+    assert found.seizes
+    assert found.assumed == ()
