@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 from typing import Any
 
 from benches.engines.engine import Engine, Scene
@@ -35,9 +34,7 @@ def scene_of(scenario: Scenario) -> Scene:
     )
 
 
-def driven(
-    engine: Engine, scenario: Scenario, start: tuple[float, float, float] | None = None
-) -> dict[str, Any]:
+def driven(engine: Engine, scenario: Scenario, scene: Scene | None = None) -> dict[str, Any]:
     """Drive through what a scenario says; the speed rises as in crawler2d.
 
     Parameters
@@ -46,14 +43,14 @@ def driven(
         In which.
     scenario : Scenario
         Robot, ground, command and longest time.
-    start : tuple of float, optional
-        [m], [m], [rad] Pose of the chassis at rest, in place of the scenario's start.
+    scene : Scene, optional
+        What is built, at rest, in place of what the scenario says.
 
     Returns
     -------
     dict
-        How the run ends, when [s], the last pose of the chassis frame [m, rad], the largest yaw and
-        roll [rad], and what a simulated second took [s].
+        How the run ends, when [s], the last pose of the chassis frame [m, rad], its heading in
+        space among it, the largest yaw and roll [rad], and what a simulated second took [s].
     """
     outline, drivetrain = scenario.robot.outline, scenario.robot.drivetrain
     goal = goal_of(scenario) + outline.rear_radius
@@ -63,10 +60,7 @@ def driven(
     looks = max(1, round(_LOOK / step))
     rise, top = drivetrain.max_acceleration, scenario.drive.speed
     begun = time.perf_counter()
-    scene = scene_of(scenario)
-    if start is not None:
-        scene = replace(scene, x=start[0], z=start[1], angle=start[2])
-    world = engine.world(scene)
+    world = engine.world(scene or scene_of(scenario))
     count, end, yaw, roll = 0, "", 0.0, 0.0
     while not end:
         steps = range(count + 1, count + looks + 1)
@@ -84,6 +78,7 @@ def driven(
         "x": round(float(pose.place[0]), 5),
         "y": round(float(pose.place[2]), 5),
         "angle": round(-angles[1], 5),
+        "heading": round(angles[2], 5),
         "yaw": round(yaw, 4),
         "roll": round(roll, 4),
         "cost": round((time.perf_counter() - begun) / (step * count), 4),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -44,6 +44,8 @@ PYBULLET = Setting(time_step=1.0 / 240.0, iterations=50, is_default=True)
 FINE = Setting(time_step=1e-3, iterations=200, is_default=False)
 
 _NEAR, _RESIDUAL = 0.002, 1e-7  # [m], [-]
+_TOUCH = 1e-5  # [m] to which heights are right
+_UP = 0.05  # [-] besides, or between two upright faces it would go to and fro for ever
 
 
 class Bullet:
@@ -65,6 +67,13 @@ class Bullet:
     def world(self, scene: Scene) -> BulletWorld:
         """Build a world."""
         return BulletWorld(scene, self.setting)
+
+    def clear(self, scene: Scene) -> Scene:
+        """Return a scene whose robot is moved forward and up until no ground is inside it."""
+        world = BulletWorld(scene, self.setting)
+        forward, up = world.let_out()
+        world.close()
+        return replace(scene, x=scene.x + forward, z=scene.z + up)
 
 
 class BulletWorld:
@@ -89,8 +98,7 @@ class BulletWorld:
             deterministicOverlappingPairs=1,
             **more,
         )
-        for block in scene.ground:
-            self._block(block, scene.friction)
+        self._ground = [self._block(block, scene.friction) for block in scene.ground]
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE
         if not setting.is_default:
             flags |= pybullet.URDF_USE_IMPLICIT_CYLINDER
@@ -134,7 +142,7 @@ class BulletWorld:
         )
         self._call("changeDynamics", body, link, lateralFriction=friction, **damping)
 
-    def _block(self, block: TurnedBox, friction: float) -> None:
+    def _block(self, block: TurnedBox, friction: float) -> int:
         half = [0.5 * each for each in block.size]
         shape = self._call("createCollisionShape", pybullet.GEOM_BOX, halfExtents=half)
         turn = pybullet.getQuaternionFromEuler((0.0, 0.0, block.yaw))
@@ -142,6 +150,28 @@ class BulletWorld:
             "createMultiBody", 0.0, shape, basePosition=block.center, baseOrientation=turn
         )
         self._surface(body, -1, friction)
+        return int(body)
+
+    def let_out(self) -> tuple[float, float]:
+        """[m] Move the robot forward and up until no ground is inside it; return how far.
+
+        It goes the shortest way out of whatever is deepest, again and again.
+        """
+        (x, y, z), turn = self._call("getBasePositionAndOrientation", self._body)
+        forward = up = 0.0
+        while True:
+            point = min(self._closest(), key=lambda each: each[8], default=None)
+            if point is None or -point[8] < _TOUCH:
+                return forward, up
+            forward -= point[8] * point[7][0]
+            up -= point[8] * (point[7][2] + _UP)
+            place = x + forward, y, z + up
+            self._call("resetBasePositionAndOrientation", self._body, place, turn)
+
+    def _closest(self) -> Iterator[Any]:
+        """Yield where ground and robot touch, the 7th being the normal and the 8th the distance."""
+        for block in self._ground:
+            yield from self._call("getClosestPoints", self._body, block, 0.0)
 
     def advance(self, speeds: Sequence[float]) -> None:
         """Take a step for each set-point."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from crawler2d.parameters.scenario import Scenario
 from crawler2d.parameters.terrain import Barrier, DiagonalBarrier, Lanes, RandomStepfield
 from crawler2d.runs.batch import simulate_many
 
-__all__ = ["TurnedBox", "blocks_of", "goal_of"]
+__all__ = ["TurnedBox", "blocks_of", "goal_of", "turned"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,33 @@ def blocks_of(scenario: Scenario) -> list[TurnedBox]:
     if isinstance(ground, RandomStepfield):
         return _posts(scenario)
     return [TurnedBox(box.center, box.size) for box in boxes_of(profile_of(ground))]
+
+
+def turned(blocks: Sequence[TurnedBox], yaw: float, x: float = 0.0) -> list[TurnedBox]:
+    """Return blocks turned about the vertical through a point of the middle.
+
+    Parameters
+    ----------
+    blocks : sequence of TurnedBox
+        What is turned.
+    yaw : float
+        [rad] Counter-clockwise seen from above.
+    x : float
+        [m] Of that point.
+
+    Examples
+    --------
+    >>> (block,) = turned([TurnedBox((3.0, 0.0, 0.5), (2.0, 6.0, 1.0))], math.pi / 2.0, 1.0)
+    >>> [round(each, 9) for each in block.center]
+    [1.0, 2.0, 0.5]
+    """
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    found = []
+    for block in blocks:
+        along, y, z = block.center[0] - x, *block.center[1:]
+        center = x + along * cos - y * sin, along * sin + y * cos, z
+        found.append(TurnedBox(center, block.size, block.yaw + yaw))
+    return found
 
 
 def goal_of(scenario: Scenario) -> float:

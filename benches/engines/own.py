@@ -32,8 +32,8 @@ def simulated(scenario: Scenario, engine: str | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        As of `driven`, "end" being the outcome, with the mechanism of a stop; one that is refused
-        ends so, with the path of the field.
+        As of `driven`, "end" being the outcome, with the mechanism of a stop and no heading; one
+        that is refused ends so, with the path of the field.
     """
     if engine is not None:
         scenario = scenario.replace({"solver.engine": engine})

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from benches.engines.agreement import Run, pairs
 from benches.engines.cells import Cell
 from benches.engines.convergence import LADDERS
-from benches.engines.driving import driven
+from benches.engines.driving import driven, scene_of
 from benches.engines.engine import Engine
 from benches.engines.own import simulated
 from benches.engines.predict import read
@@ -109,6 +110,7 @@ def _from(engine: Engine | None, cell: Cell, scenario: Scenario, stop: Run) -> s
         return ""
     if "gears" in cell.model or stop["end"] not in ("seized", "stalled", "slipping", "hung_up"):
         return ""
-    found = driven(engine, scenario, (stop["x"], stop["y"], stop["angle"]))
+    scene = replace(scene_of(scenario), x=stop["x"], z=stop["y"], angle=stop["angle"])
+    found = driven(engine, scenario, scene)
     away = math.hypot(found["x"] - stop["x"], found["y"] - stop["y"])
     return "stays" if found["end"] == "stopped" and away < _STAYS else "leaves"

@@ -18,7 +18,7 @@ from crawler2d.presets.robots.absolem import absolem
 from crawler2d.presets.robots.engineer import engineer
 from crawler2d.presets.robots.marv import marv
 
-__all__ = ["DRIVES", "MODELS", "ROBOTS", "robot_of"]
+__all__ = ["DRIVES", "MODELS", "ROBOTS", "motorized", "robot_of"]
 
 _AHEAD = (0.026, 0.02)  # [m] 26 mm ahead of the preset's
 
@@ -69,7 +69,11 @@ def robot_of(robot: str, model: str, drive: str) -> Robot:
     >>> robot_of("marv", "line of 5", "6 N m, servos").drivetrain.torque_sharing
     'wheel'
     """
-    made = ROBOTS[robot](MODELS[model])
+    return motorized(ROBOTS[robot](MODELS[model]), drive)
+
+
+def motorized(made: Robot, drive: str) -> Robot:
+    """Return a robot with motors by their name in `DRIVES`."""
     torque, sharing = DRIVES[drive]
     if drive == "100 N m a wheel":
         # The sprocket's torque acts at the belt, each wheel's at its own radius.

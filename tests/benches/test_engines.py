@@ -15,7 +15,7 @@ from benches.engines.driving import driven, scene_of
 from benches.engines.engine import Engine
 from benches.engines.engine_ode import Ode
 from benches.engines.engines import ENGINES, engine_of, holds
-from benches.engines.ground import blocks_of, goal_of
+from benches.engines.ground import blocks_of, goal_of, turned
 from benches.engines.predict import PREDICTIONS, check, hash_of, unlike
 from benches.engines.predict import read as predictions
 from benches.engines.robots import DRIVES, MODELS, ROBOTS, robot_of
@@ -196,6 +196,26 @@ def test_a_step_field_has_a_row_of_posts_for_each_track() -> None:
     )
     assert left != right
     assert goal_of(scenario) == pytest.approx(0.6)
+
+
+def test_turned_ground_has_its_edge_at_the_pivot_still() -> None:
+    front, behind = turned(blocks_of(on(Step(0.05))), 0.1, 0.0)
+    normal = np.array([np.cos(0.1), np.sin(0.1)])
+    for block, side in ((front, -1.0), (behind, 1.0)):
+        assert block.yaw == 0.1
+        assert block.center[:2] @ normal == pytest.approx(0.5 * side * block.size[0])
+
+
+def test_bullet_moves_a_robot_out_of_the_ground_by_no_more_than_it_is_in_there() -> None:
+    pytest.importorskip("pybullet")
+    from benches.engines.engine_bullet import FINE, Bullet  # noqa: PLC0415 - loads Bullet
+
+    scene = scene_of(replace(CELL, model="line of 3").scenarios(1)[0])
+    moved = Bullet(FINE).clear(replace(scene, z=scene.z - 0.01))
+    # Out of level ground straight up; 0.05 of that on top, which keeps it from going to and fro.
+    assert moved.x == pytest.approx(scene.x, abs=1e-6)
+    assert 0.0 <= moved.z - scene.z <= 6e-4
+    assert Bullet(FINE).clear(moved).z == moved.z
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if name != "rapier"])
