@@ -1,7 +1,7 @@
 """Compare crawler2d with other physics engines on the same scenarios.
 
 Usage, from the repository root: ``python -m benches.engines scan``, ``predict``, ``run``,
-``converge``, ``refine``, ``speeds``, ``costs`` or ``table``.
+``converge``, ``refine``, ``speeds``, ``yaw``, ``costs`` or ``table``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from benches.engines import costs
+from benches.engines import costs, yaw
 from benches.engines.cells import STARTS, Cell, read, write
 from benches.engines.convergence import FINER, JAM, LADDERS, USUAL, converge
 from benches.engines.engines import ENGINES, FINE
@@ -54,9 +54,10 @@ def main() -> None:
     faster = verbs.add_parser("speeds", help="from which speed on is a robot carried past a stop?")
     faster.add_argument("--engines", nargs="+", choices=ENGINES, default=["pymunk", "ode-fine"])
     faster.add_argument("--starts", type=int, default=3, help="runs of each cell")
+    askew = verbs.add_parser("yaw", help="do jams hold before edges that are not square to them?")
     sitting = verbs.add_parser("costs", help="time a simulated second in each engine")
     tables = verbs.add_parser("table", help="print the tables, and put them into the page")
-    for verb in (runs, finer, again, faster, sitting, tables):
+    for verb in (runs, finer, again, faster, askew, sitting, tables):
         verb.add_argument("--output", type=Path, help=f"default: {RESULTS.name} beside this file")
     for verb in (runs, tables):
         verb.add_argument("--quick", action="store_true", help=f"a look, kept in {_QUICK}")
@@ -74,6 +75,8 @@ def main() -> None:
             refine(read(), given.engines, given.output or RESULTS, given.most)
         case "speeds":
             speed_up(_jams()[0], given.engines, given.starts, given.output or RESULTS)
+        case "yaw":
+            yaw.turn(given.output or RESULTS)
         case "costs":
             costs.measure(given.output or RESULTS)
         case _:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benches.engines import convergence, costs, momentum, refining
+from benches.engines import convergence, costs, momentum, refining, yaw
 from benches.engines.agreement import Run, Runs, apart, cleared, pairs, rate, share
 from benches.engines.cells import GROUNDS, Cell
 from benches.engines.engines import ENGINES, holds
@@ -66,6 +66,7 @@ def parts(cells: Sequence[Cell], folder: Path) -> dict[str, str]:
         "jam": convergence.table(folder / convergence.JAM),
         "speeds": momentum.table(folder),
         "refined": refining.table(folder),
+        "yaw": yaw.table(folder),
         "cells": _cells(plane, predicted, results),
     }
 

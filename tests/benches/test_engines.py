@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benches.engines import running
+from benches.engines import running, yaw
 from benches.engines.agreement import apart, pairs, rate, share
 from benches.engines.cells import GROUNDS, STARTS, Cell, read, write
 from benches.engines.driving import driven, scene_of
@@ -204,6 +204,16 @@ def test_turned_ground_has_its_edge_at_the_pivot_still() -> None:
     for block, side in ((front, -1.0), (behind, 1.0)):
         assert block.yaw == 0.1
         assert block.center[:2] @ normal == pytest.approx(0.5 * side * block.size[0])
+
+
+def test_the_jams_of_the_results_are_those_that_are_drawn() -> None:
+    kept = json.loads((running.RESULTS / "yaw.json").read_text(encoding="utf-8"))["jams"]
+    for model, jams in kept.items():
+        label, _, stop, push = next(yaw.drawn(model))
+        assert jams[0]["label"] == label
+        assert jams[0]["x"] == pytest.approx(stop.position[0], abs=1e-5)  # as it is rounded
+        assert jams[0]["push"] == pytest.approx(push, abs=1e-4)
+        assert len({jam["label"] for jam in jams}) == len(jams) == 20
 
 
 def test_bullet_moves_a_robot_out_of_the_ground_by_no_more_than_it_is_in_there() -> None:
