@@ -172,8 +172,14 @@ class Joint:
         [rad/s] or [m/s] Largest speed.
     stiffness : float
         [N m/rad] or [N/m] Of a spring.
-    at, effort_at, velocity_at : Where
-        Its line, and those of its limits.
+    damping : float
+        [N m s/rad] or [N s/m] Of viscous friction.
+    friction : float
+        [N m] or [N] Of dry friction.
+    armature : float
+        [kg m^2] or [kg] Of the motor's rotor behind its gear, on top of the link's inertia.
+    at, effort_at, velocity_at, dynamics_at : Where
+        Its line, and those of its limits and of damping, friction and armature.
     """
 
     name: str
@@ -187,9 +193,13 @@ class Joint:
     effort: float | None = None
     velocity: float | None = None
     stiffness: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+    armature: float = 0.0
     at: Where = MADE
     effort_at: Where = MADE
     velocity_at: Where = MADE
+    dynamics_at: Where = MADE
 
     @property
     def is_locked(self) -> bool:

@@ -46,6 +46,8 @@ class Assembly:
         The model.
     tolerance : float
         [m] By how much the two sides may differ.
+    engine : str
+        By whose laws its motors work.
     told : Telling
         What is told about it.
     view : SideView
@@ -58,6 +60,7 @@ class Assembly:
 
     tree: Tree
     tolerance: float
+    engine: str
     told: Telling
     view: SideView = field(init=False)
     middle: float = field(init=False)
@@ -109,9 +112,17 @@ class Assembly:
         driven = pairs or [pair for end in by_end.values() for pair in end.pair.pairs]
         torque = _holding_torque(total.mass, rear.radius)
         drivetrain = drivetrain_of(
-            tree, driven, track, radius=rear.radius, torque=torque, note=self.told.note
+            self.told,
+            tree,
+            driven,
+            track,
+            engine=self.engine,
+            radius=rear.radius,
+            torque=torque,
         )
-        flippers = flippers_of(self.told, by_end, total.mass)
+        flippers = flippers_of(
+            self.told, by_end, total.mass, engine=self.engine, is_mjcf=tree.format == "MJCF"
+        )
         if flippers is not None and isinstance(flippers.track, BeltTrack):
             drivetrain = replace(drivetrain, torque_sharing="track")
         self.note_rows(pairs, by_end)
@@ -265,7 +276,7 @@ def assembled(
     tree: Tree, *, forward: str | None, tolerance: float, engine: str, ground: float
 ) -> tuple[Robot, float, Assembly]:
     """Make a robot of a tree, with its friction on the ground and where that is from."""
-    work = Assembly(tree=tree, tolerance=tolerance, told=Telling(at=tree.at))
+    work = Assembly(tree=tree, tolerance=tolerance, engine=engine, told=Telling(at=tree.at))
     robot = work.robot(forward)
     runners = [runner for _, runner in work.told.rows]
     friction, source, places = combined(runners, work.view, engine, ground)

@@ -2,72 +2,121 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
-from crawler2d.models.tree import Tree
+from crawler2d.models.tree import Joint, Tree
 from crawler2d.models.where import Where
 from crawler2d.parameters.drivetrain import Drivetrain
-from crawler2d.parameters.track import LineOfWheels, Track
+from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
+from crawler2d.reading.actuators import (
+    ACTUATORS,
+    FASTEST,
+    resistance,
+    rotor_inertia,
+    tell_ignored,
+    tell_lost,
+)
+from crawler2d.reading.plugins import wheel_torques
 from crawler2d.reading.sides import Pair
 from crawler2d.reading.sources import estimate, lines
+from crawler2d.reading.telling import Telling
 
 __all__ = ["drivetrain_of"]
 
 _SPEED, _ACCELERATION, _DECELERATION = 1.0, 1.0, 4.0  # those of Robot.simple
-FASTEST = 100.0  # [rad/s] and [m/s] Larger figures are meant as no limit.
 WEIGHT, MARGIN = 9.81, 1.6  # [m/s^2] and the margin of Robot.simple
 
 Note = Callable[[str, str], None]
 
 
 def drivetrain_of(
-    tree: Tree, pairs: list[Pair], track: Track, *, radius: float, torque: float, note: Note
+    told: Telling,
+    tree: Tree,
+    pairs: list[Pair],
+    track: Track,
+    *,
+    engine: str,
+    radius: float,
+    torque: float,
 ) -> Drivetrain:
     """Return speed and torque of the tracks.
 
     Parameters
     ----------
+    told : Telling
+        Takes the sources of the figures, and what the engine ignores.
     tree : Tree
         The model.
     pairs : list of Pair
         Wheels of the chassis, or of the flippers if it has none; drums have no joint.
     track : Track
         The model of the track of the chassis.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
+        The engine that drives it.
     radius : float
         [m] Of the rear end, at which the torque of a robot acts.
     torque : float
         [N m] The estimate for a motor without limit.
-    note : callable
-        Takes path and source of a figure.
     """
+    note = told.note
+    told.notes.append(ACTUATORS[engine].in_words(is_belt=isinstance(track, BeltTrack)))
     speed, source = _speed(tree, pairs)
     note("robot.drivetrain.max_speed", source)
     for name in ("max_acceleration", "max_deceleration"):
         note(f"robot.drivetrain.{name}", estimate("that of Robot.simple"))
-    wheels = [wheel for pair in pairs for wheel in pair.both if wheel.joint is not None]
-    efforts = [wheel.joint.effort for wheel in wheels if wheel.joint and wheel.joint.effort]
+    sides = [_wheels(tree, pairs, side, engine) for side in ("left", "right")]
+    joints = [joint for side in sides for joint, _ in side]
+    efforts = [joint.effort for joint in joints if joint.effort]
     sharing = "track"
-    if wheels and len(efforts) == len(wheels):
+    if joints and len(efforts) == len(joints):
         # Every wheel has its own motor; the robot's figure is that of one side.
         torque = 0.5 * sum(
-            effort * radius / wheel.radius for effort, wheel in zip(efforts, wheels, strict=True)
+            (joint.effort or 0.0) * radius / own for side in sides for joint, own in side
         )
-        note(
-            "robot.drivetrain.max_torque",
-            lines([w.joint.effort_at for w in wheels if w.joint], "sum of one side"),
-        )
+        places = [joint.effort_at for joint in joints]
+        note("robot.drivetrain.max_torque", lines(places, "sum of one side"))
         sharing = "wheel" if isinstance(track, LineOfWheels) and len(set(efforts)) == 1 else "track"
-        note("robot.drivetrain.torque_sharing", lines([w.joint.at for w in wheels if w.joint]))
+        note("robot.drivetrain.torque_sharing", lines([joint.at for joint in joints]))
     else:
         note("robot.drivetrain.max_torque", estimate("that of Robot.simple: the file has no limit"))
         note("robot.drivetrain.torque_sharing", estimate("one speed, as motors without limit hold"))
+    tell_ignored(told, joints, engine=engine, is_mjcf=tree.format == "MJCF")
+    lost = 0.5 * sum(
+        resistance(joint, speed / own, engine) * radius / own
+        for side in sides
+        for joint, own in side
+    )
+    tell_lost(told, joints, lost, torque, engine=engine)
+    # At the sprocket a wheel's rotor counts by the square of the ratio of their rates.
+    rotors = [[joint.armature * (radius / own) ** 2 for joint, own in side] for side in sides]
+    shares = [sum(side) for side in rotors]
+    if sharing == "wheel":
+        shares = [len(side) * rotor for side in rotors for rotor in side]
+    path = "robot.drivetrain.rotor_inertia"
     return Drivetrain(
         max_speed=speed,
         max_acceleration=_ACCELERATION,
         max_deceleration=_DECELERATION,
         max_torque=torque,
         torque_sharing="wheel" if sharing == "wheel" else "track",
+        rotor_inertia=rotor_inertia(told, path, shares, joints, engine=engine, at=tree.at),
     )
+
+
+def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[tuple[Joint, float]]:
+    """Return the joints of one side with the radii [m] of their wheels; drums have none."""
+    # The differential drives of Gazebo Classic limit their motors by themselves.
+    torques = wheel_torques(tree.plugins) if engine == "classic" else {}
+    found = []
+    for runner in [each for pair in pairs for each in getattr(pair, side)]:
+        joint = runner.joint
+        if joint is not None and joint.name in torques:
+            effort, where = torques[joint.name]
+            joint = replace(joint, effort=effort, effort_at=where)
+        if joint is not None:
+            found.append((joint, runner.radius))
+    return found
 
 
 def _speed(tree: Tree, pairs: list[Pair]) -> tuple[float, str]:

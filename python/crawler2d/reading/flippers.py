@@ -5,8 +5,16 @@ from __future__ import annotations
 import math
 
 from crawler2d.parameters.flippers import Flippers
+from crawler2d.reading.actuators import (
+    FASTEST,
+    resistance,
+    rotor_inertia,
+    tell_ignored,
+    tell_lost,
+)
 from crawler2d.reading.arms import ArmPair, AtEnd, at_end, refuse_unlike
-from crawler2d.reading.drive import FASTEST, MARGIN, WEIGHT, Note
+from crawler2d.reading.drive import MARGIN, WEIGHT, Note
+from crawler2d.reading.parts import Arm
 from crawler2d.reading.sources import estimate, lines
 from crawler2d.reading.telling import Telling, place_of
 from crawler2d.reading.tracks import Base
@@ -56,8 +64,10 @@ def arms_at(
     return {end: found[end] for end in ("front", "rear") if end in found}
 
 
-def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flippers | None:
-    """Return the flippers with the sources of their figures."""
+def flippers_of(
+    told: Telling, by_end: dict[str, AtEnd], mass: float, *, engine: str, is_mjcf: bool
+) -> Flippers | None:
+    """Return the flippers with the sources of their figures, driven by an engine."""
     if not by_end:
         told.note("robot.flippers", f"{told.at}: none")
         return None
@@ -84,6 +94,13 @@ def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flipper
     of_all = [shape.size_at for runner in runners for shape in runner.surfaces]
     told.note("robot.flippers.track", lines(of_all, "sizes"))
     rate, torque = _limits(ends, mass=mass, note=told.note)
+    motors = [(arm.joint, share) for end in ends for arm, share in _arms(end)]
+    turning = [joint for joint, _ in motors]
+    tell_ignored(told, turning, engine=engine, is_mjcf=is_mjcf)
+    lost = max(resistance(joint, rate, engine) / share for joint, share in motors)
+    tell_lost(told, turning, lost, torque, engine=engine)
+    rotors = [joint.armature / share for joint, share in motors]
+    path = "robot.flippers.rotor_inertia"
     return Flippers(
         length=first.length,
         root_radius=first.root_radius,
@@ -93,6 +110,7 @@ def flippers_of(told: Telling, by_end: dict[str, AtEnd], mass: float) -> Flipper
         angle=first.angle,
         rate_limit=rate,
         torque_limit=torque,
+        rotor_inertia=rotor_inertia(told, path, rotors, turning, engine=engine, at=told.at),
         track=first.track,
     )
 
@@ -108,10 +126,16 @@ def _mass(told: Telling, ends: list[AtEnd], whole: float) -> float:
     return least
 
 
+def _arms(end: AtEnd) -> list[tuple[Arm, float]]:
+    """Return the arms at one end, and how many flippers the joint of each turns."""
+    arms = end.pair.arms
+    return [(arm, 2.0 / len(arms)) for arm in arms]
+
+
 def _limits(ends: list[AtEnd], *, mass: float, note: Note) -> tuple[float, float]:
     """Return rate [rad/s] and torque [N m] of one flipper."""
-    joints = [arm.joint for end in ends for arm in end.pair.arms]
-    shares = [2.0 if len(end.pair.arms) == 1 else 1.0 for end in ends for _ in end.pair.arms]
+    joints = [arm.joint for end in ends for arm, _ in _arms(end)]
+    shares = [share for end in ends for _, share in _arms(end)]
     length = max(end.length for end in ends)
     rate, torque = _RATE, MARGIN * 0.5 * mass * WEIGHT * length / 2.0
     rates = [

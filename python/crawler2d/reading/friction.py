@@ -15,7 +15,7 @@ from crawler2d.reading.view import SideView
 
 __all__ = ["ENGINES", "Engine", "combined"]
 
-Engine = Literal["gz", "mujoco", "isaac"]
+Engine = Literal["gz", "classic", "bullet", "mujoco", "isaac"]
 
 _SAME = 1e-9  # [-] Coefficients are as written: no rounding lies between two that are meant equal.
 
@@ -40,9 +40,12 @@ class Rule:
 
 
 ENGINES: dict[str, Rule] = {
-    # The smaller: ODEPhysics::Collide of Gazebo Classic, DefaultContactSurfaceHandler of DART,
-    # which gz-sim runs. In SDFormat, mu is 1.
+    # The smaller: DefaultContactSurfaceHandler of DART, which gz-sim runs, and ODEPhysics::Collide
+    # of Gazebo Classic. In SDFormat, mu is 1.
     "gz": Rule(of_two=min, word="min", usual=1.0),
+    "classic": Rule(of_two=min, word="min", usual=1.0),
+    # btManifoldResult::calculateCombinedFriction; URDF's lateral_friction is 0.5 in UrdfParser.
+    "bullet": Rule(of_two=lambda a, b: min(a * b, 10.0), word="product", usual=0.5),
     # MuJoCo's documentation, Computation, Contact parameters: the larger, element by element,
     # unless one geom has the higher priority. The default of geom/friction is 1.
     "mujoco": Rule(of_two=max, word="max", usual=1.0),
@@ -63,7 +66,7 @@ def combined(
         All wheels and drums, at least one.
     view : SideView
         The side view, for the direction of the coefficients.
-    engine : {"gz", "mujoco", "isaac"}
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}
         The engine.
     ground : float
         [-] Coefficient of the ground's own surface.

@@ -26,7 +26,7 @@ class How:
     Parameters
     ----------
     engine : str or None
-        By whose rule the friction of two surfaces is combined.
+        By whose rules the friction of two surfaces is combined, and motors drive.
     forward : str or None
         Direction of the model that is forward.
     model : str or None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from crawler2d.errors import ScenarioError
@@ -13,12 +13,12 @@ from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element
 from crawler2d.reading.telling import Doubt
 
-__all__ = ["joint_of", "moving", "settled"]
+__all__ = ["Limit", "joint_of", "moving", "settled"]
 
 _KINDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
 Limit = tuple[float, Where]
-"""A limit of effort or speed, and its line; a negative or an infinite one is none."""
+"""A figure of a joint and its line. A negative or infinite limit of effort or speed is none."""
 
 
 def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -> Joint:
@@ -46,6 +46,7 @@ def joint_of(element: Element, name: str, parent: str, child: str, pose: Pose) -
         at=element.where,
         effort_at=element.where,
         velocity_at=element.where,
+        dynamics_at=element.where,
     )
 
 
@@ -83,7 +84,7 @@ def moving(
     bounds: tuple[float, float],
     effort: Limit | None,
     velocity: Limit | None,
-    stiffness: float = 0.0,
+    dynamics: Mapping[str, Limit],
 ) -> Joint:
     """Return a joint with its axis and limits.
 
@@ -99,8 +100,8 @@ def moving(
         [rad] or [m] The lower and the upper limit.
     effort, velocity : Limit or None
         As the file has them.
-    stiffness : float
-        [N m/rad] or [N/m] Of a spring.
+    dynamics : mapping of str to Limit
+        "stiffness", "damping" and "friction" as far as the file has them.
 
     Raises
     ------
@@ -109,6 +110,10 @@ def moving(
         the upper.
     """
     axis, (lower, upper) = unit(along), bounds
+    stiffness, damping, friction = (
+        dynamics[name][0] if name in dynamics else 0.0
+        for name in ("stiffness", "damping", "friction")
+    )
     if axis is None and lower == upper:
         return replace(joint, kind="fixed")  # locked, so it needs none
     if axis is None:
@@ -123,8 +128,11 @@ def moving(
         effort=_figure(effort),
         velocity=_figure(velocity),
         stiffness=stiffness,
+        damping=max(0.0, damping),
+        friction=max(0.0, friction),
         effort_at=effort[1] if effort else joint.at,
         velocity_at=velocity[1] if velocity else joint.at,
+        dynamics_at=next((where for _, where in dynamics.values()), joint.at),
     )
 
 

@@ -193,6 +193,7 @@ class _Model:
                 at=self.where(body),
                 effort_at=self.where(body),
                 velocity_at=self.where(body),
+                dynamics_at=self.where(body),
             )
         (joint,) = found
         motor = self.motors.get(joint["name"], {})
@@ -212,9 +213,13 @@ class _Model:
             effort=min(efforts, default=None),
             velocity=motor.get("velocity"),
             stiffness=joint["stiffness"],
+            damping=joint["damping"] + motor.get("damping", 0.0),
+            friction=joint["friction"],
+            armature=joint["armature"] + motor.get("armature", 0.0),
             at=self.where(joint),
             effort_at=motor_at if motor.get("effort") is not None else self.where(joint),
             velocity_at=motor_at,
+            dynamics_at=self.where(joint),
         )
 
     def link(self, number: int, pose: Pose) -> Link:

@@ -138,6 +138,7 @@ def _body(model: Any, body: Any) -> dict[str, Any]:
 def _joint(model: Any, joint: Any) -> dict[str, Any]:
     i = joint.id
     limited = bool(model.jnt_limited[i])
+    first = int(model.jnt_dofadr[i])  # the only one of hinges and slides
     return {
         "name": joint.name or f"joint {i}",
         "kind": _JOINTS.get(int(model.jnt_type[i]), "unknown"),
@@ -146,6 +147,9 @@ def _joint(model: Any, joint: Any) -> dict[str, Any]:
         "axis": model.jnt_axis[i].tolist(),
         "range": model.jnt_range[i].tolist() if limited else None,
         "stiffness": float(model.jnt_stiffness[i].flat[0]),
+        "damping": float(model.dof_damping[first]),
+        "friction": float(model.dof_frictionloss[first]),
+        "armature": float(model.dof_armature[first]),
         "effort": float(model.jnt_actfrcrange[i, 1]) if model.jnt_actfrclimited[i] else None,
         "line": _line(joint),
     }
@@ -195,6 +199,8 @@ def _motor(model: Any, actuator: Any) -> dict[str, Any]:
     return {
         "joint": actuator.target,
         "effort": effort,
+        "damping": float(model.actuator_damping[i]) * gear**2,
+        "armature": float(model.actuator_armature[i]) * gear**2,
         "velocity": most / gear if is_servo and most is not None and gear > 0.0 else None,
         "line": _line(actuator),
     }

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
 from crawler2d.models.tree import Plugin, Tree
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element
 
-__all__ = ["driven_by", "moved_links", "named_tracks", "plugin_of"]
+__all__ = ["driven_by", "moved_links", "named_tracks", "plugin_of", "wheel_torques"]
 
 _DEEPEST_SETTING = 3  # no setting of a plugin that is read lies deeper
 
@@ -34,6 +35,20 @@ def driven_by(plugins: tuple[Plugin, ...]) -> dict[str, Where]:
         if "diff" in f"{plugin.name} {plugin.filename}".lower()
         for joint, where in plugin.values("left_joint", "right_joint", "leftJoint", "rightJoint")
     }
+
+
+def wheel_torques(plugins: tuple[Plugin, ...]) -> dict[str, tuple[float, Where]]:
+    """[N m] Return the torques that differential drives of Gazebo Classic give to joints."""
+    found: dict[str, tuple[float, Where]] = {}
+    for plugin in plugins:
+        for text, where in plugin.values("max_wheel_torque", "wheelTorque", "torque"):
+            try:
+                torque = float(text)
+            except ValueError:
+                continue
+            if 0.0 < torque < math.inf:
+                found |= dict.fromkeys(driven_by((plugin,)), (torque, where))
+    return found
 
 
 def moved_links(tree: Tree) -> dict[str, Where]:

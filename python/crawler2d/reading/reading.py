@@ -53,7 +53,7 @@ class Reading:
     doubts : tuple of str
         What is legal but hardly meant, in words; each was also a `ScenarioWarning`.
     engine : str
-        The engine whose rule combined the friction.
+        The engine whose rules combined the friction and drive the motors.
     tree : Tree
         Links, joints and collision shapes as the file has them.
     silhouettes : tuple of Silhouette
@@ -154,11 +154,13 @@ def read_robot(
     ----------
     path : str or PathLike
         The file; one with xacro is named ``*.xacro``.
-    engine : {"gz", "mujoco", "isaac"}, optional
-        By whose rule the friction of two surfaces is combined. "gz": the smaller, as in ODE and
-        DART. "mujoco": the larger, or that of the geom of higher priority (MuJoCo's documentation,
-        "Contact parameters"). "isaac": the mean, the default of a PhysX material
-        (``PxCombineMode::eAVERAGE``). None takes "mujoco" for MJCF and "gz" for the rest.
+    engine : {"gz", "classic", "bullet", "mujoco", "isaac"}, optional
+        The simulator by whose rules the model is read: gz-sim with DART, Gazebo Classic with ODE,
+        PyBullet, MuJoCo or Isaac Sim; none of them runs. It says how the friction of two surfaces
+        is combined, what a commanded speed does (a note of the reading), and which figures of a
+        joint play a part: a rotor inertia where the engine has one, and doubts about what it
+        ignores. ``docs/conventions.md``, "Reading a model file", has the rules with their sources.
+        None takes "mujoco" for MJCF and "gz" for the rest.
     forward : {"+x", "-x", "+y", "-y"}, optional
         Direction of the model that is forward. None takes the side of the links called front, or
         else +x; where neither tells, it must be given.
@@ -177,7 +179,7 @@ def read_robot(
         Links whose surface something outside the file moves, as a controller in Isaac does.
     ground_friction : float, optional
         [-] Coefficient of the ground's own surface. None takes the engine's default: 1.0, in Isaac
-        0.5.
+        and Bullet 0.5.
     tolerance : float
         [m] By how much the two sides may differ in side view.
     scale : float, optional

@@ -27,6 +27,8 @@ __all__ = ["read_sdf"]
 _USUAL_MASS = _USUAL_FRICTION = 1.0
 _USUAL_DENSITY = 1000.0  # [kg/m^3] Where masses are to be worked out: that of water.
 
+_DYNAMICS = {"stiffness": "spring_stiffness", "damping": "damping", "friction": "friction"}
+
 _LONGEST_CHAIN = 100  # Frames, each of which is attached to the next.
 
 
@@ -355,7 +357,6 @@ class _Model:
             for each in (() if limit is None else limit.children)
             if each.tag in ("lower", "upper", "effort", "velocity")
         }
-        stiffness = axis.only("dynamics/spring_stiffness")
         return moving(
             made,
             axis,
@@ -366,7 +367,11 @@ class _Model:
             ),
             effort=values.get("effort"),
             velocity=values.get("velocity"),
-            stiffness=0.0 if stiffness is None else stiffness.reals(1)[0],
+            dynamics={
+                name: (real(found, found.text, unlimited=True), found.where)
+                for name, tag in _DYNAMICS.items()
+                if (found := axis.only(f"dynamics/{tag}")) is not None
+            },
         )
 
 

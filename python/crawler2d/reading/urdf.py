@@ -11,7 +11,7 @@ from crawler2d.models.poses import Pose, from_rpy, unit
 from crawler2d.models.tree import Friction, Joint, Link, Shape, Tree, Unread
 from crawler2d.models.where import Where
 from crawler2d.reading.elements import Element, real
-from crawler2d.reading.joints import joint_of, moving, settled
+from crawler2d.reading.joints import Limit, joint_of, moving, settled
 from crawler2d.reading.meshes import Meshes
 from crawler2d.reading.order import carrying, checked
 from crawler2d.reading.plugins import named_tracks, plugin_of
@@ -291,7 +291,17 @@ def _moving(made: Joint, element: Element, pose: Pose) -> Joint:
         bounds=bounds,
         effort=effort,
         velocity=velocity,
+        dynamics=_dynamics(element),
     )
+
+
+def _dynamics(joint: Element) -> dict[str, Limit]:
+    found = next(joint.all("dynamics"), joint)
+    return {
+        name: (real(found, found.attributes[name], f"@{name}", unlimited=True), found.where)
+        for name in ("damping", "friction")
+        if name in found.attributes
+    }
 
 
 def _driven(root: Element) -> dict[str, Where]:

@@ -66,7 +66,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     ci.add_arguments(parser)
     reading = parser.add_argument_group("how to read the file, as in crawler2d.read_robot")
-    reading.add_argument("--engine", choices=sorted(ENGINES), help="whose rule of friction holds")
+    reading.add_argument(
+        "--engine", choices=sorted(ENGINES), help="whose rules of friction and of motors hold"
+    )
     reading.add_argument("--forward", choices=["+x", "-x", "+y", "-y"])
     reading.add_argument("--model", help="name of the model in a world")
     reading.add_argument("--mesh", choices=get_args(MeshRule), default="hull")

@@ -191,7 +191,7 @@ def _made(audit: Audited) -> Iterator[tuple[str, str]]:
     yield "seed of the draws", str(audit.call.seed)
     if audit.reading is not None:
         yield "file", f"{audit.reading.tree.file}, {audit.reading.tree.format}"
-        yield "rule of friction", f"that of {audit.reading.engine}"
+        yield "rules of friction and motors", f"those of {audit.reading.engine}"
     build = _core.build_info()
     yield "crawler2d", ", ".join(f"{name} {value}" for name, value in build.items())
 

@@ -1,0 +1,146 @@
+"""What engines make of commanded speeds, and of damping, friction and armature of joints."""
+
+from pathlib import Path
+
+import pytest
+
+import crawler2d as c2d
+from crawler2d.reading.actuators import ACTUATORS
+from crawler2d.reading.friction import ENGINES
+from tests.reading.carts import FILES, SIDES, pair, read, urdf
+
+
+def mjcf(joint: str, changed: str = "") -> str:
+    """The cart, whose joints have these attributes by default, and its left front wheel others."""
+    text = (FILES / "cart.xml").read_text()
+    text = text.replace("<default>", f"<default><joint {joint}/>", 1)
+    return text.replace(
+        '<joint name="left_front_joint"', f'<joint name="left_front_joint" {changed}'
+    )
+
+
+def stated(*parts: str, dynamics: str = "") -> str:
+    """The cart as a URDF, whose wheels have limits, damping and friction."""
+    limit = f'<limit effort="5" velocity="10"/>{dynamics}'
+    return urdf(*(pair(end, x, limit=limit) for end, x in (("front", 0.2), ("rear", -0.2))), *parts)
+
+
+def test_every_engine_has_both_rules() -> None:
+    assert ACTUATORS.keys() == ENGINES.keys()
+
+
+def test_the_armature_of_one_side_is_the_rotor_inertia(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml")
+    # Three wheels a side, as large as the rear end.
+    assert reading.robot.drivetrain.rotor_inertia == pytest.approx(0.03, rel=1e-12)
+    assert reading.sources["robot.drivetrain.rotor_inertia"].startswith("cart.xml:")
+    assert not [doubt for doubt in reading.doubts if "rotor" in doubt or "armature" in doubt]
+
+
+def test_the_armature_of_an_actuator_counts_by_the_square_of_its_gear(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = mjcf('armature="0.01"').replace("<velocity ", '<velocity gear="3" armature="0.002" ')
+    rotor = read(tmp_path, text, "cart.xml").robot.drivetrain.rotor_inertia
+    assert rotor == pytest.approx(3.0 * (0.01 + 0.002 * 9.0), rel=1e-12)
+
+
+def test_rotors_that_differ_have_their_mean_and_a_doubt(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf('armature="0.01"', 'armature="0.07"'), "cart.xml")
+    assert reading.robot.drivetrain.torque_sharing == "wheel"
+    assert reading.robot.drivetrain.rotor_inertia == pytest.approx((0.09 + 0.03) / 2.0)
+    assert any("got 0.03 to 0.21 kg m^2" in doubt for doubt in reading.doubts)
+
+
+@pytest.mark.parametrize("engine", ["gz", "classic", "bullet"])
+def test_an_engine_without_rotors_has_none(engine: str, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf('armature="0.01"'), "cart.xml", engine=engine)
+    assert reading.robot.drivetrain.rotor_inertia == 0.0
+    assert "none in" in reading.sources["robot.drivetrain.rotor_inertia"]
+    assert any("armature[" in doubt and "plays no part in" in doubt for doubt in reading.doubts)
+
+
+def test_formats_without_armature_say_that_there_is_none(tmp_path: Path) -> None:
+    reading = read(tmp_path, stated())
+    assert reading.robot.drivetrain.rotor_inertia == 0.0
+    assert reading.sources["robot.drivetrain.rotor_inertia"].endswith(": none")
+
+
+@pytest.mark.parametrize(
+    ("engine", "ignored"),
+    [
+        ("gz", set()),
+        ("classic", {"velocity", "friction"}),
+        ("bullet", {"effort", "velocity", "friction"}),
+        ("mujoco", {"velocity"}),
+        ("isaac", {"damping", "friction"}),
+    ],
+)
+def test_what_an_engine_ignores_of_a_urdf_is_doubted(
+    engine: str, ignored: set[str], tmp_path: Path
+) -> None:
+    text = stated(dynamics='<dynamics damping="0.001" friction="0.002"/>')
+    reading = read(tmp_path, text, engine=engine)
+    found = [doubt for doubt in reading.doubts if "plays no part" in doubt]
+    assert {doubt.split(": ")[1].split("[")[0] for doubt in found} == ignored
+    assert all(doubt.startswith("cart.urdf:") for doubt in found)
+
+
+def test_speeds_of_commands_are_limits_in_mujoco(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf(""), "cart.xml")
+    assert reading.robot.drivetrain.max_speed == pytest.approx(10.0 * 0.125)
+    assert not [doubt for doubt in reading.doubts if "plays no part" in doubt]
+
+
+def test_losses_of_joints_are_told(tmp_path: Path) -> None:
+    """Two wheels a side at 10 rad/s: 0.4 and 0.02 N m each, of 5."""
+    large = read(tmp_path, stated(dynamics='<dynamics damping="0.03" friction="0.4"/>'))
+    assert any("1.4 of 10 N m" in doubt and "gz-sim" in doubt for doubt in large.doubts)
+    small = read(tmp_path, stated(dynamics='<dynamics damping="0.03"/>'))
+    assert any("0.6 of 10 N m" in note for note in small.notes)
+    assert not [doubt for doubt in small.doubts if " N m" in doubt]
+
+
+def test_the_first_dynamics_of_a_urdf_count(tmp_path: Path) -> None:
+    twice = '<dynamics friction="0.1"/><dynamics friction="2"/>'
+    assert any("0.2 of 10 N m" in note for note in read(tmp_path, stated(dynamics=twice)).notes)
+
+
+def test_dynamics_of_sdf_are_read(tmp_path: Path) -> None:
+    text = (FILES / "cart.sdf").read_text()
+    assert "</limit>" in text
+    text = text.replace("</limit>", "</limit><dynamics><friction>0.05</friction></dynamics>")
+    # Three wheels a side, of 5 N m each.
+    assert any("0.15 of 15 N m" in note for note in read(tmp_path, text, "cart.sdf").notes)
+
+
+def test_a_differential_drive_of_gazebo_classic_limits_the_torque(tmp_path: Path) -> None:
+    joints = "".join(
+        f"<{side}_joint>{side}_{end}_joint</{side}_joint>"
+        for side, _ in SIDES
+        for end in ("front", "rear")
+    )
+    plugin = f'<gazebo><plugin name="diff_drive" filename="x">{joints}'
+    plugin += "<max_wheel_torque>3</max_wheel_torque></plugin></gazebo>"
+    classic = read(tmp_path, stated(plugin), engine="classic").robot.drivetrain
+    assert classic.max_torque == pytest.approx(2.0 * 3.0)
+    assert read(tmp_path, stated(plugin)).robot.drivetrain.max_torque == pytest.approx(2.0 * 5.0)
+
+
+def test_a_note_says_what_a_commanded_speed_does(tmp_path: Path) -> None:
+    for engine, words in (
+        ("gz", "within one step"),
+        ("mujoco", "kv times the error"),
+        ("isaac", "not run"),
+    ):
+        notes = read(tmp_path, stated(), engine=engine).notes
+        assert [words in note for note in notes if note.startswith("motors in")] == [True]
+
+
+def test_bullet_multiplies_two_coefficients(tmp_path: Path) -> None:
+    assert read(tmp_path, stated(), engine="bullet").friction == 0.25
+    assert read(tmp_path, stated(), engine="bullet", ground_friction=1.0).friction == 0.5
+    assert read(tmp_path, stated(), engine="classic").friction == 1.0
