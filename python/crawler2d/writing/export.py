@@ -104,7 +104,7 @@ def modelled(
     if not 0.0 <= friction <= 1e3:
         raise ScenarioError("friction", friction, "must be between 0 and 1000")
     tree = model_of(robot, text, across, friction=friction, form=_WRITERS[name][0])
-    comment = _comment(robot, across, friction)
+    comment = _comment(robot, across, friction, _left_out(robot, tree, _WRITERS[name][0]))
     return Model(tree=tree, across=across, limits=_limits(robot), comment=comment)
 
 
@@ -156,7 +156,18 @@ def _limits(robot: dict[str, Any]) -> Limits:
     )
 
 
-def _comment(robot: dict[str, Any], across: Across, friction: float) -> str:
+def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
+    """Return what the file cannot hold: rotors, also of belts, which have no joint."""
+    has_wheels = any(joint.armature for joint in tree.joints.values() if joint.is_unlimited)
+    found = []
+    for part, is_held in (("drivetrain", has_wheels), ("flippers", True)):
+        rotor = (robot[part] or {}).get("rotor_inertia", 0.0)
+        if rotor and not (form.has_rotors and is_held):
+            found.append(f"Left out, without a place here: {part}.rotor_inertia {rotor:g} kg m^2.")
+    return found
+
+
+def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: list[str]) -> str:
     """Return where the file comes from, and what in it is not from the robot."""
     return "\n".join(
         [
@@ -165,6 +176,7 @@ def _comment(robot: dict[str, Any], across: Across, friction: float) -> str:
             f"chassis {across.chassis_width:g} m and flippers {across.flipper_width:g} m;",
             "moments of inertia about x and z; masses of single wheels, shares of their motors;",
             "limits of half a turn for flippers.",
+            *left_out,
             f"The robot: {commented(robot)}",
         ]
     )

@@ -25,6 +25,8 @@ class Format:
         Whether it can move the surface of a shape, as a belt needs.
     has_hulls : bool
         Whether it can hold the corners of a convex hull.
+    has_rotors : bool
+        Whether it can hold the rotor inertia of a motor at its joint.
     reserved : str
         A pattern of names that it keeps for itself.
     """
@@ -32,6 +34,7 @@ class Format:
     name: str
     moves_surfaces: bool
     has_hulls: bool
+    has_rotors: bool
     reserved: str = ""
 
 

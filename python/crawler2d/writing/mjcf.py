@@ -9,7 +9,7 @@ from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["MJCF", "mjcf_of"]
 
-MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True)
+MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
 """MJCF has the corners of meshes in the file itself, and surfaces that move."""
 
 # A motor gives all of its torque where it is off by this share of its largest speed, or this angle.
@@ -101,6 +101,8 @@ def _joint(joint: Joint, link: Link) -> XML:
     made.set("axis", numbers(link.pose.turn.T @ joint.axis))
     if not joint.is_unlimited:
         made.set("range", numbers((joint.lower, joint.upper)))
+    if joint.armature:
+        made.set("armature", numbers(joint.armature))
     return made
 
 

@@ -79,7 +79,10 @@ class _Model:
         self.speed = float(drivetrain["max_speed"])
         # [N] Of one side; its torque acts at the radius of the belt round the rear end.
         rear, front = ends_of(discs_in(outline))
-        self.force = drivetrain["max_torque"] / (rear[2] - outline["grouser_height"])
+        belt_radius = rear[2] - outline["grouser_height"]
+        self.force = drivetrain["max_torque"] / belt_radius
+        # [kg] At the surface of one side, as heavy as the rotor of its motor.
+        self.rotor = drivetrain.get("rotor_inertia", 0.0) / belt_radius**2
         # [m] The end axles, on which flippers pivot, and what the track takes between them.
         self.axles = {"rear": np.array(rear[:2]), "front": np.array(front[:2])}
         self.length = front[0] - rear[0]
@@ -219,6 +222,7 @@ class _Model:
                     upper=_HALF_TURN,
                     effort=flippers["torque_limit"],
                     velocity=flippers["rate_limit"],
+                    armature=flippers.get("rotor_inertia", 0.0),
                 ),
             )
             for number, wheel in enumerate(arm.wheels, 1):
@@ -229,7 +233,9 @@ class _Model:
     ) -> None:
         """Add a wheel with a motor of its own: an equal share of the force of its side."""
         part, place = wheel.part(is_hoop=is_hoop), in_space(wheel.center, y)
-        share = self.force / max(1, len(self.chassis.wheels))
+        count = max(1, len(self.chassis.wheels))
+        # Of the rotor, which the wheels of the chassis share; those of flippers have none.
+        rotor = 0.0 if carrier.end else self.rotor / count
         width = self.across.flipper_width if carrier.end else self.across.track_width
         self.add(
             Link(
@@ -247,8 +253,9 @@ class _Model:
                 child=name,
                 place=place,
                 axis=_AXLE,
-                effort=share * wheel.radius,
+                effort=self.force / count * wheel.radius,
                 velocity=self.speed / wheel.radius,
+                armature=rotor * wheel.radius**2,
             ),
         )
 

@@ -11,8 +11,15 @@ from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["SDF", "pose_text", "sdf_of", "surface"]
 
-SDF = Format(name="SDF", moves_surfaces=True, has_hulls=False, reserved=".*::.*|__.*__")
-"""SDF has meshes in files of their own only."""
+SDF = Format(
+    name="SDF",
+    moves_surfaces=True,
+    has_hulls=False,
+    has_rotors=False,
+    reserved=".*::.*|__.*__",
+)
+"""SDF has meshes in files of their own only. A rotor inertia has a place in extensions of Drake
+only."""
 
 # Newer versions add nothing that is needed here, and DART reads none of them.
 _VERSION = "1.6"

@@ -9,8 +9,9 @@ from crawler2d.writing.xml import XML, element, exactly, numbers
 
 __all__ = ["URDF", "urdf_of"]
 
-URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False)
-"""URDF has meshes in files of their own only, and nothing that moves a surface."""
+URDF = Format(name="URDF", moves_surfaces=False, has_hulls=False, has_rotors=False)
+"""URDF has meshes in files of their own only, and nothing that moves a surface. A rotor inertia has
+a place in extensions of Drake only."""
 
 _UPPER = [(row, column) for row in range(3) for column in range(row, 3)]
 
