@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import crawler2d as c2d
 from crawler2d.reading.actuators import ACTUATORS
 from crawler2d.reading.friction import ENGINES
 from tests.reading.carts import FILES, SIDES, pair, read, urdf
@@ -143,3 +144,29 @@ def test_bullet_multiplies_two_coefficients(tmp_path: Path) -> None:
     assert read(tmp_path, stated(), engine="bullet").friction == 0.25
     assert read(tmp_path, stated(), engine="bullet", ground_friction=1.0).friction == 0.5
     assert read(tmp_path, stated(), engine="classic").friction == 1.0
+
+
+def test_the_servos_of_mujoco_are_a_controller(tmp_path: Path) -> None:
+    """Three wheels a side with kv = 10, as large as the rear end."""
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf(""), "cart.xml")
+    assert reading.robot.drivetrain.controller == c2d.PI(gain=30.0)
+    assert reading.sources["robot.drivetrain.controller"].startswith("cart.xml:")
+    geared = read(tmp_path, mjcf("").replace("<velocity ", '<velocity gear="2" '), "cart.xml")
+    assert geared.robot.drivetrain.controller == c2d.PI(gain=120.0)
+
+
+@pytest.mark.parametrize("engine", ["gz", "classic", "bullet", "isaac"])
+def test_other_engines_hold_the_commanded_speed(engine: str, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf(""), "cart.xml", engine=engine)
+    assert reading.robot.drivetrain.controller is None
+    assert reading.sources["robot.drivetrain.controller"].endswith(": none")
+
+
+def test_wheels_without_servos_of_speed_have_no_controller(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    text = mjcf("").replace(
+        '<velocity joint="left_front_joint" kv="10"', '<motor joint="left_front_joint"'
+    )
+    assert read(tmp_path, text, "cart.xml").robot.drivetrain.controller is None

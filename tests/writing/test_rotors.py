@@ -1,7 +1,9 @@
 """Rotor inertias are the armature of joints in MJCF, and a comment where there is none."""
 
 import dataclasses
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -39,6 +41,12 @@ def belt_radius(robot: c2d.Robot) -> float:
     return robot.outline.rear_radius - robot.outline.grouser_height
 
 
+def left_out(text: str) -> list[str]:
+    """Names of what the comment says is left out."""
+    found = re.search(r"Left out, for [A-Z]+ has no place for it: (.*)\.\n", text)
+    return [] if found is None else found[1].split(", ")
+
+
 def with_rotors(robot: c2d.Robot) -> c2d.Robot:
     drivetrain = dataclasses.replace(robot.drivetrain, rotor_inertia=0.02)
     flippers = robot.flippers
@@ -50,19 +58,17 @@ def with_rotors(robot: c2d.Robot) -> c2d.Robot:
 def test_what_a_file_cannot_hold_of_rotors_is_in_its_comment() -> None:
     wheeled = with_rotors(c2d.robots.engineer(track=c2d.LineOfWheels(3)))
     for text in (wheeled.to_sdf(), wheeled.to_urdf()):
-        assert "drivetrain.rotor_inertia 0.02 kg m^2" in text
-        assert "flippers.rotor_inertia 0.3 kg m^2" in text
+        assert left_out(text) == ["drivetrain.rotor_inertia", "flippers.rotor_inertia"]
         assert "armature" not in text
-    assert "Left out" not in wheeled.to_mjcf()
+    assert left_out(wheeled.to_mjcf()) == []
     belted = with_rotors(c2d.robots.engineer()).to_mjcf()
-    assert "Left out, without a place here: drivetrain.rotor_inertia" in belted
-    assert "Left out, without a place here: flippers" not in belted
+    assert left_out(belted) == ["drivetrain.rotor_inertia"]
 
 
 def test_without_rotors_files_are_as_before() -> None:
     robot = c2d.robots.engineer(track=c2d.LineOfWheels(3))
     assert "armature" not in robot.to_mjcf()
-    assert "Left out" not in robot.to_sdf()
+    assert left_out(robot.to_sdf()) == []
 
 
 def test_mujoco_has_the_rotors_in_its_joints() -> None:
@@ -78,3 +84,33 @@ def test_mujoco_has_the_rotors_in_its_joints() -> None:
     assert robot.flippers is not None
     arms = 4 if robot.flippers.ends == "both" else 2
     assert sorted(each for each in found if each) == pytest.approx([of_wheel] * 6 + [0.3] * arms)
+
+
+@pytest.mark.parametrize("robot", ON_WHEELS.values(), ids=ON_WHEELS)
+def test_the_gain_of_a_controller_comes_back_from_mjcf(robot: c2d.Robot, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    robot = with_motors(robot, controller=c2d.PI(gain=4.0))
+    path = tmp_path / "robot.xml"
+    assert left_out(robot.to_mjcf(path)) == []
+    again = quietly(path).robot
+    assert again.drivetrain.controller is not None
+    assert again.drivetrain.controller.gain / again.outline.rear_radius**2 == pytest.approx(
+        4.0 / belt_radius(robot) ** 2, rel=1e-9
+    )
+
+
+def test_motors_that_no_file_holds_are_in_its_comment() -> None:
+    robot = ON_WHEELS["all round"]
+    line = with_motors(robot, controller=c2d.PI(gain=4.0, integral=1.0), no_load_speed=2.0)
+    assert left_out(line.to_mjcf()) == [
+        "drivetrain.no_load_speed",
+        "drivetrain.controller.integral",
+    ]
+    torque = robot.drivetrain.max_torque
+    curve = with_motors(robot, torque_curve=((0.0, torque), (1.0, 0.5 * torque)))
+    assert left_out(curve.to_urdf()) == ["drivetrain.torque_curve"]
+
+
+def with_motors(robot: c2d.Robot, **motors: Any) -> c2d.Robot:
+    drivetrain = dataclasses.replace(robot.drivetrain, **motors)
+    return dataclasses.replace(robot, drivetrain=drivetrain)

@@ -178,8 +178,10 @@ class Joint:
         [N m] or [N] Of dry friction.
     armature : float
         [kg m^2] or [kg] Of the motor's rotor behind its gear, on top of the link's inertia.
-    at, effort_at, velocity_at, dynamics_at : Where
-        Its line, and those of its limits and of damping, friction and armature.
+    gain : float, optional
+        [N m s/rad] or [N s/m] Of a servo of its speed: torque or force for an error of that.
+    at, effort_at, velocity_at, dynamics_at, gain_at : Where
+        Its line, and those of its limits, of damping, friction and armature, and of its servo.
     """
 
     name: str
@@ -196,10 +198,12 @@ class Joint:
     damping: float = 0.0
     friction: float = 0.0
     armature: float = 0.0
+    gain: float | None = None
     at: Where = MADE
     effort_at: Where = MADE
     velocity_at: Where = MADE
     dynamics_at: Where = MADE
+    gain_at: Where = MADE
 
     @property
     def is_locked(self) -> bool:

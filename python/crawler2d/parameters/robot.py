@@ -373,8 +373,8 @@ class Robot(Parameters):
         with boxes, belts as shapes that Gazebo's ``TrackController`` moves, flippers on limited
         joints, the belly. `read_robot` finds this robot in all that the file states; the robot
         itself is in a comment. ``docs/conventions.md``, "Writing a model file", says what each
-        format holds and which figures are estimates. SDF has no place for rotor inertias: they are
-        left out, and a comment says so.
+        format holds and which figures are estimates. SDF has no place for rotor inertias,
+        controllers and curves of torque: they are left out, and the comment says so.
 
         Parameters
         ----------
@@ -423,7 +423,7 @@ class Robot(Parameters):
         """Write the robot as URDF, as ROS and most simulators read it.
 
         As `to_sdf`, but URDF holds neither belts nor motors: wheels have the limits of theirs.
-        Rotor inertias are left out here, too.
+        What SDF leaves out of them is left out here, too.
 
         Parameters
         ----------
@@ -476,9 +476,10 @@ class Robot(Parameters):
         """Write the robot as MJCF, as MuJoCo reads it.
 
         As `to_sdf`. Wheels have servos of their speed, flippers of their rate, both with the rotor
-        inertia as ``armature``, which the wheels of a track share. The surfaces of belts move at
-        the largest speed; at run time ``MjModel.geom_surfacevel`` sets another one. Gear wheels and
-        belly may have any shape. The file has no ground.
+        inertia as ``armature``, which the wheels of a track share as they do the gain of its
+        controller; without one, servos are firm. Curves of torque are left out. The surfaces of
+        belts move at the largest speed; at run time ``MjModel.geom_surfacevel`` sets another one.
+        Gear wheels and belly may have any shape. The file has no ground.
 
         Parameters
         ----------

@@ -53,6 +53,8 @@ class Actuator:
         What a commanded speed of a belt is, whose surface is moved; empty if it moves none.
     basis : str
         What that rests on: whether it was run or read.
+    has_gain : bool
+        Whether the gain of a servo in the file is that of the motor.
     ignored : mapping of str to str
         The figures of a joint that play no part, each with the reason: "effort", "velocity",
         "damping", "friction", "armature".
@@ -62,6 +64,7 @@ class Actuator:
     command: str
     surface: str
     basis: str
+    has_gain: bool = False
     ignored: Mapping[str, str] = field(default_factory=dict)
 
     def in_words(self, *, is_belt: bool) -> str:
@@ -124,6 +127,7 @@ ACTUATORS: dict[str, Actuator] = {
         command="a torque of kv times the error of the speed, within forcerange",
         surface="the commanded speed at any load, as surfacevel of the geom (run in MuJoCo 4.0)",
         basis="run in MuJoCo 4.0",
+        has_gain=True,
         ignored={
             "velocity": "MuJoCo has no limit of a joint's speed: ctrlrange limits the command"
         },
@@ -134,7 +138,8 @@ ACTUATORS: dict[str, Actuator] = {
     # PxArticulationDrive and PhysxJointAxisAPI: an implicit PD controller, armature.
     "isaac": Actuator(
         name="Isaac Sim",
-        command="a torque of the drive's damping times the error of the speed, within maxForce",
+        command="a torque of the drive's damping times the error of the speed, within maxForce;"
+        " the import sets the damping, and here the speed is held",
         surface="",
         basis="read in its importer and its documentation, not run",
         ignored={

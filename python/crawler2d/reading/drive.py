@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from crawler2d.models.tree import Joint, Tree
 from crawler2d.models.where import Where
-from crawler2d.parameters.drivetrain import Drivetrain
+from crawler2d.parameters.drivetrain import PI, Drivetrain
 from crawler2d.parameters.track import BeltTrack, LineOfWheels, Track
 from crawler2d.reading.actuators import (
     ACTUATORS,
@@ -88,6 +88,8 @@ def drivetrain_of(
         for joint, own in side
     )
     tell_lost(told, joints, lost, torque, engine=engine)
+    for name in ("no_load_speed", "torque_curve"):
+        note(f"robot.drivetrain.{name}", f"{tree.at}: none")
     # At the sprocket a wheel's rotor counts by the square of the ratio of their rates.
     rotors = [[joint.armature * (radius / own) ** 2 for joint, own in side] for side in sides]
     shares = [sum(side) for side in rotors]
@@ -101,7 +103,27 @@ def drivetrain_of(
         max_torque=torque,
         torque_sharing="wheel" if sharing == "wheel" else "track",
         rotor_inertia=rotor_inertia(told, path, shares, joints, engine=engine, at=tree.at),
+        controller=_controller(told, sides, engine=engine, radius=radius, at=tree.at),
     )
+
+
+def _controller(
+    told: Telling,
+    sides: Sequence[Sequence[tuple[Joint, float]]],
+    *,
+    engine: str,
+    radius: float,
+    at: Where,
+) -> PI | None:
+    """Return the controller of one side: the servos of its wheels, if the engine has such."""
+    wheels = [wheel for side in sides for wheel in side]
+    gains = [(joint.gain or 0.0) * (radius / own) ** 2 for joint, own in wheels]
+    if not ACTUATORS[engine].has_gain or not gains or not min(gains) > 0.0:
+        told.note("robot.drivetrain.controller", f"{at}: none")
+        return None
+    places = lines([joint.gain_at for joint, _ in wheels], "sum of one side")
+    told.note("robot.drivetrain.controller", places)
+    return PI(gain=0.5 * sum(gains))
 
 
 def _wheels(tree: Tree, pairs: Sequence[Pair], side: str, engine: str) -> list[tuple[Joint, float]]:

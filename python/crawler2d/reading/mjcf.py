@@ -216,10 +216,12 @@ class _Model:
             damping=joint["damping"] + motor.get("damping", 0.0),
             friction=joint["friction"],
             armature=joint["armature"] + motor.get("armature", 0.0),
+            gain=motor.get("gain"),
             at=self.where(joint),
             effort_at=motor_at if motor.get("effort") is not None else self.where(joint),
             velocity_at=motor_at,
             dynamics_at=self.where(joint),
+            gain_at=motor_at,
         )
 
     def link(self, number: int, pose: Pose) -> Link:

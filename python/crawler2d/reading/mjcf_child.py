@@ -195,12 +195,14 @@ def _motor(model: Any, actuator: Any) -> dict[str, Any]:
     # A servo of speed holds control / gear; one of position has a bias on the position, too, and
     # holds a speed if it integrates its control.
     is_integrator = int(model.actuator_dyntype[i]) == _INTEGRATOR
-    is_servo = is_integrator or (bias[2] < 0.0 and bias[1] == 0.0)
+    is_of_speed = not is_integrator and bias[2] < 0.0 and bias[1] == 0.0
+    is_servo = is_integrator or is_of_speed
     return {
         "joint": actuator.target,
         "effort": effort,
         "damping": float(model.actuator_damping[i]) * gear**2,
         "armature": float(model.actuator_armature[i]) * gear**2,
+        "gain": -float(bias[2]) * gear**2 if is_of_speed else None,
         "velocity": most / gear if is_servo and most is not None and gear > 0.0 else None,
         "line": _line(actuator),
     }

@@ -157,14 +157,22 @@ def _limits(robot: dict[str, Any]) -> Limits:
 
 
 def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
-    """Return what the file cannot hold: rotors, also of belts, which have no joint."""
-    has_wheels = any(joint.armature for joint in tree.joints.values() if joint.is_unlimited)
-    found = []
-    for part, is_held in (("drivetrain", has_wheels), ("flippers", True)):
-        rotor = (robot[part] or {}).get("rotor_inertia", 0.0)
-        if rotor and not (form.has_rotors and is_held):
-            found.append(f"Left out, without a place here: {part}.rotor_inertia {rotor:g} kg m^2.")
-    return found
+    """Return what the file cannot hold of the motors, such as rotors of belts, without joints."""
+    has_motors = form.has_rotors and any(joint.is_unlimited for joint in tree.joints.values())
+    drivetrain, flippers = robot["drivetrain"], robot["flippers"] or {}
+    is_held = {
+        "drivetrain.rotor_inertia": has_motors,
+        "drivetrain.no_load_speed": False,
+        "drivetrain.torque_curve": False,
+        "drivetrain.controller": has_motors,
+        "drivetrain.controller.integral": False,
+        "flippers.rotor_inertia": form.has_rotors,
+    }
+    given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
+    given |= {f"flippers.{name}": value for name, value in flippers.items()}
+    given["drivetrain.controller.integral"] = (drivetrain.get("controller") or {}).get("integral")
+    names = [name for name, held in is_held.items() if given.get(name) and not held]
+    return [f"Left out, for {form.name} has no place for it: {', '.join(names)}."] if names else []
 
 
 def _comment(robot: dict[str, Any], across: Across, friction: float, left_out: list[str]) -> str:

@@ -26,7 +26,7 @@ class Format:
     has_hulls : bool
         Whether it can hold the corners of a convex hull.
     has_rotors : bool
-        Whether it can hold the rotor inertia of a motor at its joint.
+        Whether it can hold the rotor inertia of a motor at its joint, and the gain of a servo.
     reserved : str
         A pattern of names that it keeps for itself.
     """

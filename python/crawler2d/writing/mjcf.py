@@ -12,7 +12,8 @@ __all__ = ["MJCF", "mjcf_of"]
 MJCF = Format(name="MJCF", moves_surfaces=True, has_hulls=True, has_rotors=True)
 """MJCF has the corners of meshes in the file itself, and surfaces that move."""
 
-# A motor gives all of its torque where it is off by this share of its largest speed, or this angle.
+# A motor without a controller gives all of its torque where it is off by this share of its largest
+# speed, or this angle.
 _OFF_SPEED, _OFF_ANGLE = 0.02, 0.02  # [-] and [rad]
 
 
@@ -117,7 +118,8 @@ def _motor(joint: Joint) -> XML | None:
         "forcerange": numbers((-joint.effort, joint.effort)),
     }
     if joint.is_unlimited:
-        gain = joint.effort / (_OFF_SPEED * joint.velocity)
+        firm = joint.effort / (_OFF_SPEED * joint.velocity)
+        gain = firm if joint.gain is None else joint.gain
         return element("velocity", kv=numbers(gain), **given)
     angles = numbers((joint.lower, joint.upper))
     gain = joint.effort / _OFF_ANGLE

@@ -83,6 +83,9 @@ class _Model:
         self.force = drivetrain["max_torque"] / belt_radius
         # [kg] At the surface of one side, as heavy as the rotor of its motor.
         self.rotor = drivetrain.get("rotor_inertia", 0.0) / belt_radius**2
+        # [N s/m] Of its controller; None: it holds the speed.
+        controller = drivetrain.get("controller")
+        self.gain = None if controller is None else controller["gain"] / belt_radius**2
         # [m] The end axles, on which flippers pivot, and what the track takes between them.
         self.axles = {"rear": np.array(rear[:2]), "front": np.array(front[:2])}
         self.length = front[0] - rear[0]
@@ -256,6 +259,7 @@ class _Model:
                 effort=self.force / count * wheel.radius,
                 velocity=self.speed / wheel.radius,
                 armature=rotor * wheel.radius**2,
+                gain=None if self.gain is None else self.gain / count * wheel.radius**2,
             ),
         )
 
