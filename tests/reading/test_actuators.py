@@ -1,5 +1,6 @@
 """What engines make of commanded speeds, and of damping, friction and armature of joints."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -144,6 +145,20 @@ def test_bullet_multiplies_two_coefficients(tmp_path: Path) -> None:
     assert read(tmp_path, stated(), engine="bullet").friction == 0.25
     assert read(tmp_path, stated(), engine="bullet", ground_friction=1.0).friction == 0.5
     assert read(tmp_path, stated(), engine="classic").friction == 1.0
+
+
+def test_bullet_reads_its_own_friction_of_a_urdf_only(tmp_path: Path) -> None:
+    wheels = [f"{side}_{end}" for side, _ in SIDES for end in ("front", "rear")]
+    gazebo = "".join(f'<gazebo reference="{each}"><mu1>0.7</mu1></gazebo>' for each in wheels)
+    own = '<contact><lateral_friction value="0.8"/></contact></link><joint name="{}_joint"'
+    both = stated(gazebo)
+    for each in wheels:
+        both = re.sub(rf'</link>\s*<joint name="{each}_joint"', own.format(each), both)
+    assert both.count("lateral_friction") == 4
+    for text, gz, bullet in ((stated(gazebo), 0.7, 0.5), (both, 0.7, 0.8)):
+        for engine, expected in (("gz", gz), ("bullet", bullet)):
+            found = read(tmp_path, text, engine=engine, ground_friction=1.0).friction
+            assert found == pytest.approx(expected, rel=1e-12)
 
 
 def test_the_servos_of_mujoco_are_a_controller(tmp_path: Path) -> None:

@@ -114,3 +114,30 @@ def test_motors_that_no_file_holds_are_in_its_comment() -> None:
 def with_motors(robot: c2d.Robot, **motors: Any) -> c2d.Robot:
     drivetrain = dataclasses.replace(robot.drivetrain, **motors)
     return dataclasses.replace(robot, drivetrain=drivetrain)
+
+
+def test_rotor_and_gain_speed_a_robot_up_as_in_mujoco() -> None:
+    """On level ground, to 2 %: contacts in MuJoCo creep."""
+    mujoco = pytest.importorskip("mujoco")
+    robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
+    robot = with_motors(
+        robot, rotor_inertia=0.05, controller=c2d.PI(gain=0.5), max_acceleration=1e4
+    )
+    text = robot.to_mjcf(friction=0.9)
+    ground = '<worldbody><geom type="plane" size="50 50 1"/>'
+    model = mujoco.MjModel.from_xml_string(text.replace("<worldbody>", ground))
+    model.opt.timestep = 5e-4
+    data = mujoco.MjData(model)
+    while data.time < 0.2:  # it settles
+        mujoco.mj_step(model, data)
+    data.ctrl[:] = 0.4 / robot.outline.rear_radius
+    scenario = c2d.Scenario(
+        robot, c2d.terrains.flat(friction=0.9), drive=c2d.Drive(speed=0.4), duration=1.0
+    )
+    simulation = c2d.Simulation(scenario)
+    for _ in range(4):
+        simulation.advance(0.1)
+        for _ in range(200):
+            mujoco.mj_step(model, data)
+        assert simulation.state().velocity[0] == pytest.approx(data.qvel[0], rel=0.02)
+    assert data.qvel[0] < 0.38  # [m/s] as yet

@@ -90,7 +90,13 @@ def tree_of(data: bytes, path: Path, how: How) -> Found:
         if root.tag == "sdf":
             tree = read_sdf(root, how.model, meshes, doubts)
         elif root.tag == "robot":
-            tree = read_urdf(root, meshes, doubts, leave_out=how.leaves_out_missing)
+            tree = read_urdf(
+                root,
+                meshes,
+                doubts,
+                leave_out=how.leaves_out_missing,
+                is_bullet=how.engine == "bullet",
+            )
         elif root.tag == "mujoco":
             tree = read_mjcf(root, text, how.model, meshes)
         else:

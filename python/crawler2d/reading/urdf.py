@@ -24,7 +24,12 @@ _WORLD = "world"  # what holds a robot to it is a joint from a link of this name
 
 
 def read_urdf(
-    root: Element, meshes: Meshes, doubts: list[Doubt], *, leave_out: bool = False
+    root: Element,
+    meshes: Meshes,
+    doubts: list[Doubt],
+    *,
+    leave_out: bool = False,
+    is_bullet: bool = False,
 ) -> Tree:
     """Read the robot of a URDF.
 
@@ -38,6 +43,8 @@ def read_urdf(
         Where to note what is left out.
     leave_out : bool
         Whether joints whose links are missing are left out, or refused.
+    is_bullet : bool
+        Whether it is for Bullet, which does not read the friction that is meant for Gazebo.
 
     Returns
     -------
@@ -94,7 +101,7 @@ def read_urdf(
         remedy='; missing="leave_out" leaves joints of links that are meant to be missing out',
     )
     by_child = {child: (joint, parent) for joint, _, parent, child in ends if child in order}
-    frictions = _frictions(root)
+    frictions = _frictions(root, is_bullet=is_bullet)
     poses: dict[str, Pose] = {}
     links = []
     for name in order:
@@ -217,7 +224,7 @@ def _shape(
     )
 
 
-def _frictions(root: Element) -> dict[str, Friction]:
+def _frictions(root: Element, *, is_bullet: bool) -> dict[str, Friction]:
     """Return what the extensions say, by link; the direction in the frame of the collision."""
     found: dict[str, Friction] = {}
     for link in root.all("link"):
@@ -225,7 +232,7 @@ def _frictions(root: Element) -> dict[str, Friction]:
         if bullet is not None:
             (value,) = bullet.reals(1, "value")
             found[link.attribute("name")] = _friction(bullet, [(value, bullet.where)] * 2, None)
-    for block in root.all("gazebo"):
+    for block in () if is_bullet else root.all("gazebo"):
         name = block.attributes.get("reference", "")
         given = [block.only(tag) for tag in ("mu1", "mu2")]
         if not name or given == [None, None]:
