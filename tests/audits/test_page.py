@@ -210,6 +210,7 @@ def test_every_figure_of_a_file_has_its_value_and_its_source(
     assert len(rows) == len(sources)
     assert rows["mass"] == ["16 kg", sources["robot.mass"]]
     assert rows["outline: axle distance"][0] == "0.365 m"
+    assert rows["drivetrain: rotor inertia"] == ["0 kg m^2", "cart.urdf:1: none"]
     assert rows["friction"] == ["1", sources["friction"]]
     marked = [text for _, text in file_page.all("strong", **{"class": "estimate"})]
     assert len(marked) == len(sources.estimates) > 0

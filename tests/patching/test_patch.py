@@ -56,6 +56,37 @@ def test_a_line_of_another_number_of_wheels_reads_back(
     assert again.track_mass == pytest.approx(robot.track_mass, rel=1e-6)
 
 
+ROTORS = {
+    "class": ("<default>", '<default><joint armature="0.01"/>'),
+    "joint": ("<joint name=", '<joint armature="0.01" name='),
+    "motor": ("<velocity ", '<velocity armature="0.01" '),
+}
+
+
+@pytest.mark.parametrize("where", ROTORS)
+def test_more_and_larger_wheels_keep_the_rotor_of_their_side(where: str, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    old, new = ROTORS[where]
+    path = tmp_path / "rotor.xml"
+    path.write_text(
+        (FILES / "cart.xml").read_text().replace(old, new, 1 if where == "class" else -1)
+    )
+    reading = quietly(path)
+    for radius in (None, 0.1):
+        again = reread(reading, patched(reading, on_chassis(reading, 5, radius)).text, tmp_path)
+        was, found = (
+            (each.drivetrain, each.outline.rear_radius) for each in (reading.robot, again.robot)
+        )
+        assert was[0].controller is not None
+        assert found[0].controller is not None
+        for before, after in (
+            (was[0].rotor_inertia, found[0].rotor_inertia),
+            (was[0].controller.gain, found[0].controller.gain),
+        ):
+            assert before > 0.0
+            assert after / found[1] ** 2 == pytest.approx(before / was[1] ** 2, rel=1e-6)
+
+
 @pytest.mark.parametrize("name", CARTS)
 def test_larger_wheels_keep_speed_and_force(name: str, tmp_path: Path) -> None:
     reading = quietly(FILES / name)

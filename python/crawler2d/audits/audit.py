@@ -93,11 +93,11 @@ class Audit(Audited):
         """Write the file that was audited with a repair: the best there is, with its label.
 
         Wheels are changed in the file, and nothing else. All wheels of a carrier together keep
-        their mass and the torque of their motors; a new one is a copy of its neighbour, with all
-        that drives it. What was made is read again, and refused if that is not the repaired robot.
-        Settings of plugins that may no longer be right for so many wheels are left as they are,
-        with a `ScenarioWarning` each. Belts are written anew, as `Robot.to_sdf` and `to_mjcf` do.
-        The first comment of the file says what it has, and how well that does.
+        their mass, and torque and rotors of their motors; a new one is a copy of its neighbour,
+        with all that drives it. What was made is read again, and refused if that is not the
+        repaired robot. Settings of plugins that may no longer be right for so many wheels are left
+        as they are, with a `ScenarioWarning` each. Belts are written anew, as `Robot.to_sdf` and
+        `to_mjcf` do. The first comment of the file says what it has, and how well that does.
 
         Parameters
         ----------

@@ -31,11 +31,20 @@ def change_mjcf(document: Document, scope: Span, change: Change, tree: Tree) -> 
         document.add_to(body, shift.tolist(), "pos")
     for each in every:
         _change_body(document, each, change, tree.by_name[each.name])
+    motors = [
+        each
+        for each in scope.within()
+        if each.attributes.get("joint") == change.joint.name and "actuator" in _above(each)
+    ]
+    for motor in motors:
+        _change_motor(document, motor, change)
+    has_rotor = any("armature" in each.attributes for each in (*motors, *body.all("joint")))
     for joint in body.all("joint"):
         document.multiply(joint, [change.effort] * 2, "actuatorfrcrange")
-    for motor in scope.within():
-        if motor.attributes.get("joint") == change.joint.name and "actuator" in _above(motor):
-            _change_motor(document, motor, change)
+        document.multiply(joint, [change.inertia], "armature")
+        if not has_rotor and change.joint.armature > 0.0 and change.inertia != 1.0:  # by a class
+            rotor = change.inertia * change.joint.armature
+            document.set_attribute(joint, "armature", written([rotor]))
     _add_grousers(document, body, change, tree.by_name[change.link].pose)
 
 
@@ -54,7 +63,8 @@ def _change_motor(document: Document, motor: Span, change: Change) -> None:
         )
     if motor.tag in ("velocity", "intvelocity"):
         document.multiply(motor, [1.0 / change.size] * 2, "ctrlrange")
-    document.multiply(motor, [change.effort * change.size], "kv")
+    for name in ("kv", "armature"):
+        document.multiply(motor, [change.inertia], name)
 
 
 def _change_body(document: Document, body: Span, change: Change, link: Link) -> None:

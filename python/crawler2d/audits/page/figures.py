@@ -33,10 +33,12 @@ _STATED = (
     "flippers.length",
     "flippers.angle",
     "flippers.track",
+    "flippers.rotor_inertia",
     "belly",
     "gauge",
     "drivetrain.max_speed",
     "drivetrain.max_torque",
+    "drivetrain.rotor_inertia",
 )
 """Of a robot that was not read from a file, whose other fields are where it was made."""
 
