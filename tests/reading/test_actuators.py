@@ -167,8 +167,18 @@ def test_the_servos_of_mujoco_are_a_controller(tmp_path: Path) -> None:
     reading = read(tmp_path, mjcf(""), "cart.xml")
     assert reading.robot.drivetrain.controller == c2d.PI(gain=30.0)
     assert reading.sources["robot.drivetrain.controller"].startswith("cart.xml:")
+    assert not [doubt for doubt in reading.doubts if "soft" in doubt]
     geared = read(tmp_path, mjcf("").replace("<velocity ", '<velocity gear="2" '), "cart.xml")
     assert geared.robot.drivetrain.controller == c2d.PI(gain=120.0)
+
+
+def test_a_servo_that_never_gives_its_torque_is_doubted(tmp_path: Path) -> None:
+    """0.4 N m s/rad at 10 rad/s are 4 of 5 N m."""
+    pytest.importorskip("mujoco")
+    reading = read(tmp_path, mjcf("").replace('kv="10"', 'kv="0.4"'), "cart.xml")
+    (soft,) = [doubt for doubt in reading.doubts if "soft" in doubt]
+    assert soft.startswith("cart.xml:75: gain[left_rear_joint] is too soft")
+    assert "12 of 15 N m" in soft
 
 
 @pytest.mark.parametrize("engine", ["gz", "classic", "bullet", "isaac"])

@@ -96,6 +96,12 @@ def drivetrain_of(
     if sharing == "wheel":
         shares = [len(side) * rotor for side in rotors for rotor in side]
     path = "robot.drivetrain.rotor_inertia"
+    controller = _controller(told, sides, engine=engine, radius=radius, at=tree.at)
+    firm = torque if controller is None else controller.gain * speed / radius
+    if firm < torque and len(efforts) == len(joints):
+        where = f"{joints[0].gain_at}: gain[{joints[0].name}]"
+        value = f"{firm:.3g} of {torque:.3g} N m of a side"
+        told.doubts.append((where, value, "is too soft for the torque limit, even at full speed"))
     return Drivetrain(
         max_speed=speed,
         max_acceleration=_ACCELERATION,
@@ -103,7 +109,7 @@ def drivetrain_of(
         max_torque=torque,
         torque_sharing="wheel" if sharing == "wheel" else "track",
         rotor_inertia=rotor_inertia(told, path, shares, joints, engine=engine, at=tree.at),
-        controller=_controller(told, sides, engine=engine, radius=radius, at=tree.at),
+        controller=controller,
     )
 
 
