@@ -7,7 +7,16 @@ import pytest
 
 import crawler2d as c2d
 from crawler2d.common.units import METRICS, unit_of
-from crawler2d.parameters import flippers, gaits, robot, scenario, settings, terrain, track
+from crawler2d.parameters import (
+    drivetrain,
+    flippers,
+    gaits,
+    robot,
+    scenario,
+    settings,
+    terrain,
+    track,
+)
 from crawler2d.parameters.plain import Parameters
 
 
@@ -27,6 +36,8 @@ def test_every_metric_has_a_unit(run: c2d.Run) -> None:
         ("drive.gait.schedule[0][1]", "rad"),
         ("drive.schedule[0]", None),  # two units
         ("drive.schedule", None),
+        ("robot.drivetrain.torque_curve[1][0]", "m/s"),
+        ("robot.drivetrain.torque_curve[1][1]", "N m"),
     ],
 )
 def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> None:
@@ -35,7 +46,7 @@ def test_an_element_has_the_unit_of_its_column(path: str, unit: str | None) -> N
 
 def test_units_are_those_of_the_docstrings() -> None:
     documented: dict[str, str] = {}
-    for module in (scenario, settings, gaits, robot, flippers, terrain, track):
+    for module in (scenario, settings, gaits, robot, drivetrain, flippers, terrain, track):
         for kind in vars(module).values():
             if inspect.isclass(kind) and issubclass(kind, Parameters):
                 text = inspect.getdoc(kind) or ""

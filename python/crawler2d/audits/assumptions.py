@@ -57,8 +57,8 @@ class Assumed:
 def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
     """Return what verdicts may hang on, and is not drawn in all runs anyway.
 
-    Rotors are those of a real drive, of which a file for a simulator says nothing. Chains are left
-    out of blows: they give nothing back.
+    Rotors are those of a real drive, of which a file for a simulator says nothing; under them motors
+    hold their speed. Chains are left out of blows: they give nothing back.
 
     Examples
     --------
@@ -76,6 +76,11 @@ def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges
         "restitution": of_blows(robot),
     }
     return {name: ranges for name, ranges in found.items() if ranges}
+
+
+def _held(robot: Robot) -> Robot:
+    """Have motors hold their speed, as real drives do: a servo's gain is a simulator's setting."""
+    return replace(robot, drivetrain=replace(robot.drivetrain, controller=None))
 
 
 def seizure_under(
@@ -105,7 +110,8 @@ def seizure_under(
     for name, ranges in assumed.items():
         unknown = Ranges(runs.unknown) | ranges
         others = replace(runs, unknown=unknown, repeats=1, trials=())
-        course = others.course({OWN: robot}, obstacle, ground)
+        driven = _held(robot) if name == "rotor" else robot
+        course = others.course({OWN: driven}, obstacle, ground)
         course.drive(OWN, min(_SAMPLES, course.samples), count.part())
         ends = column(course.table(), "outcome", model=OWN, terrain=obstacle)
         made = int(np.isin(ends, RESULTS).sum())

@@ -240,7 +240,7 @@ def conclusion(audit: Audited) -> list[str]:
 def _under(assumed: Sequence[Assumed]) -> Iterator[str]:
     """Say of each assumption how often the seizures hold under it, and which hang on it."""
     heads = {
-        "rotor": "With a real drive, whose motors have rotors",
+        "rotor": "With a real drive, which holds its speed and has rotors",
         "restitution": "With blows that give some or all of it back",
     }
     for name, head in heads.items():

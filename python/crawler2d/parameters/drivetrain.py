@@ -78,7 +78,7 @@ class Drivetrain(Parameters):
         [m/s] Track speed at which the torque, which falls in a line from `max_torque` at rest, is
         used up, as that of a DC motor does. None: the motor has `max_torque` at any speed.
     torque_curve : array_like, shape (n, 2), optional
-        [m/s], [N m] In place of that line: track speeds, from 0, and the torques of one sprocket
+        In place of that line: track speeds [m/s], from 0, and the torques [N m] of one sprocket
         there, which start with `max_torque` and do not rise; straight between them, and the last
         beyond. Against its motion a motor has the torque that it has at rest.
     controller : PI, optional
