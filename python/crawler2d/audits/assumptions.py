@@ -57,8 +57,8 @@ class Assumed:
 def assumptions(robot: Robot, unknown: Mapping[str, object]) -> dict[str, Ranges]:
     """Return what verdicts may hang on, and is not drawn in all runs anyway.
 
-    Rotors are those of a real drive, of which a file for a simulator says nothing; under them motors
-    hold their speed. Chains are left out of blows: they give nothing back.
+    Rotors are those of a real drive, of which a file for a simulator says nothing; with them
+    motors hold their speed. Chains are left out of blows: they give nothing back.
 
     Examples
     --------
