@@ -1,8 +1,9 @@
-"""The project's own studies: `seizure`, the main one, `chains`, `chain-steps` and `flippers`.
+"""The project's own studies: `seizure`, the main one, `chains`, `chain-steps`, `flippers`, `drive`.
 
 `seizure` asks which track models get the Engineer over an edge, how often, and why not; `chains`
 compares chains of shoes with simpler models on steps, `chain-steps` finds out how finely a chain
-must be stepped, `flippers` finds the highest step that the Engineer climbs with its flippers.
+must be stepped, `flippers` finds the highest step that the Engineer climbs with its flippers, and
+`drive` the highest edge that it clears with rotors of its motors; a store keeps the runs of that.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +19,15 @@ from crawler2d.reports import report, stops_report
 from crawler2d.reports import tables as rows
 from crawler2d.reports.chain_steps import chain_steps, chain_steps_text
 from crawler2d.reports.chains import CHAINS, CHAINS_QUICK, chain_models
+from crawler2d.reports.drive import (
+    Plan,
+    cases,
+    design,
+    highest_edges,
+    highest_edges_text,
+    other_cases,
+    paired_text,
+)
 from crawler2d.reports.flippers import HEIGHTS, highest_steps, highest_steps_text
 from crawler2d.reports.models import gear_pairs
 from crawler2d.reports.public_model import posts, public_wheel_model
@@ -36,10 +47,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("seizure", "chains", "chain-steps", "flippers"),
+        choices=("seizure", "chains", "chain-steps", "flippers", "drive"),
         default="seizure",
         help="the seizure study (default); chains beside belt and gears; how finely to step"
-        " them; or the highest step with flippers",
+        " them; the highest step with flippers; or the highest edge with rotors of motors",
     )
     parser.add_argument("--quick", action="store_true", help="few heights and repeats")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for the results")
@@ -69,6 +80,8 @@ def run(options: argparse.Namespace) -> int:
             text = f"{highest_steps_text(highest)}\n"
             print(f"\n{text}")
             (options.out / "flippers.txt").write_text(text, encoding="utf-8")
+        elif options.what == "drive":
+            _run_drive(options)
         else:
             design = QUICK if options.quick else FULL
             study = Study(design=design, seed=options.seed, threads=options.threads)
@@ -158,6 +171,28 @@ def _run_chains(study: Study, out: Path) -> None:
     except ImportError as missing:
         print(f"no picture: {missing}", file=sys.stderr)
     print(f"{table['outcome'].size} runs in {took:.0f} s; table and picture are in {out}")
+
+
+def _run_drive(options: argparse.Namespace) -> None:
+    out = options.out
+    plan = Plan(seed=options.seed, threads=options.threads, store=out / "drive.sqlite")
+    asked, others = design(), other_cases()
+    if options.quick:
+        plan = replace(plan, repeats=3)
+        asked = cases(("line of 5",), speeds=(0.4,), inertias=(0.0, 0.1))
+        others = others[:1]
+    rotors, drives = highest_edges(asked, plan), highest_edges(others, plan)
+    tables = (highest_edges_text(rotors), paired_text(rotors), highest_edges_text(drives))
+    text = "\n\n\n".join(tables) + "\n"
+    print(f"\n{text}")
+    (out / "drive.txt").write_text(text, encoding="utf-8")
+    rows.write_csv(out / "drive.csv", [*rotors, *drives])
+    try:
+        from crawler2d.reports.drive_plot import plot_drive  # noqa: PLC0415 - optional
+
+        plot_drive(rotors).savefig(out / "drive.png", dpi=100)
+    except ImportError as missing:
+        print(f"no picture: {missing}", file=sys.stderr)
 
 
 def _draw(
