@@ -1,5 +1,6 @@
 """The models that the package ships are one robot in three formats, and it seizes as is meant."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,10 @@ def test_the_samples_are_of_every_format() -> None:
 @pytest.mark.parametrize("name", NAMES[1:])
 def test_each_format_has_the_same_robot(name: str) -> None:
     first, other = read(NAMES[0]), read(name)
-    expected, found = (leaves(to_plain(each.robot)) for each in (first, other))
+    # MuJoCo's servos correct a speed by a gain where those of other simulators hold it.
+    held = replace(other.robot.drivetrain, controller=None)
+    robots = (first.robot, replace(other.robot, drivetrain=held))
+    expected, found = (leaves(to_plain(each)) for each in robots)
     assert set(found) == set(expected)
     for path, value in expected.items():
         if isinstance(value, float):
