@@ -46,6 +46,11 @@ impl Touch {
         solved.normal_impulse > 0.0 || self.gap <= TOUCHING
     }
 
+    /// Whether it did not touch when the step began.
+    pub(super) fn was_open(&self) -> bool {
+        self.start > TOUCHING
+    }
+
     /// Its part's motion.
     fn swing(
         &self,

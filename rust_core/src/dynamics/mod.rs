@@ -231,13 +231,13 @@ impl Dynamics {
         self.pull_flippers(state, began, half);
         self.aim_at_end(state, began);
         self.hold_chains(state, h);
-        self.guess_more();
+        self.guess_more(strikes);
         self.keep_closed(h);
         self.drive_to_end(state, set_point, h);
         self.solve(state, h);
         self.collect_motors(state, set_point, h);
-        if strikes && self.solver.restitution > 0.0 {
-            self.rebound(state);
+        if strikes {
+            self.blow(state);
         }
         self.collect_tractions(state, h);
         if let Some(before) = before {

@@ -44,9 +44,12 @@ impl Dynamics {
         }
     }
 
-    /// Ends a step that was a blow: contacts give back some of its impulses.
-    pub(super) fn rebound(&mut self, state: &mut State) {
-        self.problem.rebound(self.solver.restitution);
+    /// Ends a step with the blow of what strikes in it, on all contacts that bear.
+    pub(super) fn blow(&mut self, state: &mut State) {
+        for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
+            solved.bears |= touch.strikes;
+        }
+        self.problem.blow(self.solver.restitution);
         state.take_velocities(&self.problem.velocities);
     }
 
@@ -63,10 +66,16 @@ impl Dynamics {
 
     /// Starts the solve over all of the step, for contacts that bear: from the forces of its first half, in which springs
     /// shared the load. From those of the last step, wheels that share a load in many ways went on to pass it round.
-    pub(super) fn guess_more(&mut self) {
-        for (touch, solved) in self.touches.iter().zip(&mut self.problem.contacts) {
-            solved.bears = touch.has_closed(solved);
+    /// Where something `strikes`, what closes is left to the blow.
+    pub(super) fn guess_more(&mut self, strikes: bool) {
+        for (touch, solved) in self.touches.iter_mut().zip(&mut self.problem.contacts) {
             (solved.bias, solved.compliance) = (0.0, 0.0);
+            solved.bears = touch.has_closed(solved);
+            touch.strikes = strikes && solved.bears && touch.was_open();
+            if touch.strikes {
+                solved.bears = false;
+                (solved.normal_impulse, solved.friction_impulse) = (0.0, 0.0);
+            }
             solved.normal_impulse *= 2.0;
             solved.friction_impulse *= 2.0;
         }

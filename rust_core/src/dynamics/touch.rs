@@ -36,6 +36,8 @@ pub(super) struct Touch {
     pub face: Face,
     /// [m] How far the ground has fallen away below an arc that has left its face within the step.
     pub overrun: f64,
+    /// Whether it closes in a step in which something strikes the ground.
+    pub strikes: bool,
     /// Index among the shoe's rests.
     pub place: usize,
 }

@@ -8,6 +8,7 @@
 
 mod balance;
 mod bilateral;
+mod blow;
 mod bodies;
 mod change;
 mod condition;
@@ -22,7 +23,6 @@ mod law;
 mod lowering;
 mod motor;
 mod motors;
-mod rebound;
 mod ring;
 mod settling;
 mod steps;

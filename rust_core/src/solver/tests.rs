@@ -1,9 +1,9 @@
 //! Problems with known solutions, and random ones beside another method.
 
+mod blow;
 mod interior_point;
 mod lowering;
 mod random;
-mod rebound;
 mod rings;
 mod worst;
 

@@ -10,10 +10,12 @@ use crate::solver::Effort;
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
 /// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
 const COLLISION_SPEED: f64 = 0.001;
-/// [s] Length of the step with a collision: what closes within it collides at the same time. What motor and weight
-/// do in it adds to the impact: 0.25 ms would shift the friction at which a robot just climbs by 1 %, this value
-/// shifts it by less than 0.1 %.
-const COLLISION_STEP: f64 = 2e-5;
+/// [s] What closes up to so long after the first strike is of the same blow: the step ends then.
+const SAME_BLOW: f64 = 1e-5;
+/// [s] How long before a strike the step before it ends.
+const LEAD: f64 = 1e-5;
+/// [s] Length of the step with a strike, if it has its time before.
+const COLLISION_STEP: f64 = LEAD + SAME_BLOW;
 /// [m] Depth up to which new contacts are found; half of what counts as sinking in.
 const UNSEEN: f64 = 5e-4;
 /// How fast parts may gain speed within a step, in units of gravity, as far as the search for contacts looks ahead.
@@ -240,13 +242,16 @@ impl Simulation {
 /// ground at this time [s], and whether it does so in that piece.
 fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
     // Leaves enough for the collision.
-    let before = (strike - 0.5 * COLLISION_STEP).min(left - COLLISION_STEP);
-    let piece = if before > COLLISION_STEP {
-        before
-    } else if left <= h && left < 2.0 * COLLISION_STEP {
+    let before = (strike - LEAD).min(left - COLLISION_STEP);
+    if before > COLLISION_STEP {
+        return (before, strike <= before);
+    }
+    let after = (strike + SAME_BLOW).min(h.max(COLLISION_STEP)).min(left);
+    // Leaves no short step for the end.
+    let piece = if left <= h && left - after < LEAD {
         left
     } else {
-        COLLISION_STEP
+        after
     };
     (piece, strike <= piece)
 }

@@ -1,4 +1,4 @@
-//! What blows give back.
+//! Blows, and what they give back.
 
 use super::*;
 use crate::draw::Draw;
@@ -51,6 +51,50 @@ fn a_body_that_jams_between_two_edges_turns_back() {
     assert!(blow > 0.1 && turn.abs() < 1e-6, "{turn} rad/s, {blow} N s");
     assert_relative_eq!(jammed(1.0).0, -1.0, max_relative = 1e-5);
     assert_relative_eq!(jammed(0.4).0, -0.4, max_relative = 1e-5);
+}
+
+/// A flank on what a motor turns strikes at the speed that the motor holds. The blow meets the body and what spins on it, as if
+/// there were no motor, and the solve before it keeps what the motor gave.
+#[test]
+fn a_blow_meets_inertia_and_no_motor() {
+    let (radius, speed, inertia) = (0.1, 0.5, 0.01);
+    for most in [1e-3, 1.0, 1e3] {
+        let mut problem = body(Vector::ZERO, 0.0);
+        problem = Problem::new(
+            problem.base,
+            vec![Spin::new(inertia, 0.0)],
+            Vec::new(),
+            Vec::new(),
+        );
+        problem.mass_on_springs = Some(2.0);
+        problem.free.spins[0] = speed / radius;
+        let mut motor = Motor::new(Driven::Spin(0), radius, true);
+        motor.aim(speed, most);
+        problem.motors.push(motor);
+        let mut flank = contact(Vector::ZERO, Vector::X, 0.0);
+        flank.acts = Acts::on_spin(0);
+        flank.normal.spin_lever = -radius;
+        flank.bears = false;
+        problem.contacts.push(flank);
+        problem.solve();
+        assert_relative_eq!(problem.velocities.spins[0], speed / radius, epsilon = 1e-9);
+        problem.contacts[0].bears = true;
+        problem.blow(0.0);
+        let per_impulse = 1.0 / 2.0 + radius * radius / inertia;
+        let blow = speed / per_impulse;
+        assert_relative_eq!(
+            problem.contacts[0].normal_impulse,
+            blow,
+            max_relative = 1e-6
+        );
+        assert_relative_eq!(
+            problem.velocities.base.velocity.x,
+            blow / 2.0,
+            max_relative = 1e-6
+        );
+        assert!(problem.motor_impulses().all(|impulse| impulse.abs() < 1e-9));
+        assert_eq!(problem.motors[0].hold, Hold::Holds);
+    }
 }
 
 /// In Poisson's hypothesis with friction given back as well, no blow can gain energy.

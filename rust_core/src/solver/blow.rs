@@ -1,0 +1,78 @@
+//! A blow: what closes stops at once, by impulses of contacts and inertia alone, and contacts may give back of it.
+//!
+//! The equations: docs/physics.md, "Impacts".
+
+use super::{Contact, Hold, Inertia, Problem};
+
+impl Problem {
+    /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing. Contacts that
+    /// bear leave nothing that approaches, and give back a share of the blow. Its impulses are added to those of the solve.
+    pub(crate) fn blow(&mut self, restitution: f64) {
+        let before: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
+        let along: Vec<f64> = self.bilaterals.iter().map(|row| row.impulse).collect();
+        let holds: Vec<Hold> = self.motors.iter().map(|motor| motor.hold).collect();
+        self.start_from_here();
+        self.solve_anew();
+        if restitution > 0.0 {
+            self.rebound(restitution);
+        }
+        for (contact, [normal, friction]) in self.contacts.iter_mut().zip(before) {
+            contact.normal_impulse += normal;
+            contact.friction_impulse += friction;
+        }
+        for (row, before) in self.bilaterals.iter_mut().zip(along) {
+            row.impulse += before;
+        }
+        for (motor, hold) in self.motors.iter_mut().zip(holds) {
+            motor.hold = hold;
+        }
+    }
+
+    /// Goes on from the velocities of a solve that was a blow: contacts give back a share of its impulses, along normals
+    /// and tangents, and motors have no time to do anything.
+    pub(super) fn rebound(&mut self, share: f64) {
+        let blow: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
+        self.start_from_here();
+        for contact in &mut self.contacts {
+            contact.normal_impulse *= share;
+            contact.friction_impulse *= share;
+        }
+        self.tie();
+        self.balance();
+        self.start_from_here();
+        self.solve_anew();
+        for (contact, [normal, friction]) in self.contacts.iter_mut().zip(blow) {
+            contact.normal_impulse += (1.0 + share) * normal;
+            contact.friction_impulse += (1.0 + share) * friction;
+        }
+    }
+
+    /// Takes the present velocities as those without constraints, and lets go of what motors turn.
+    fn start_from_here(&mut self) {
+        self.free.base = self.velocities.base;
+        self.free.spins.clone_from(&self.velocities.spins);
+        for inertia in &mut self.inertias {
+            let Inertia {
+                acts,
+                along,
+                damper,
+            } = *inertia;
+            let free = acts.speed(&along, &self.velocities);
+            *inertia = Inertia::new(acts, along, damper.stiffness, free);
+        }
+        for motor in &mut self.motors {
+            motor.hold = Hold::Free;
+        }
+        for row in &mut self.bilaterals {
+            row.impulse = 0.0;
+        }
+    }
+
+    /// Solves from contacts without impulses.
+    fn solve_anew(&mut self) {
+        for contact in &mut self.contacts {
+            (contact.normal_impulse, contact.friction_impulse) = (0.0, 0.0);
+        }
+        self.solve();
+    }
+}
