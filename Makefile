@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -107,6 +107,9 @@ notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their output
 
 paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour or two, Ctrl-C loses nothing
 	$(BIN)/python -m crawler2d paper $(ARGS)
+
+paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, hours; Ctrl-C loses nothing
+	$(BIN)/python -m crawler2d paper-chart $(ARGS)
 
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README
 	$(BIN)/python docs/readme_picture.py

@@ -10,6 +10,7 @@ from typing import NoReturn
 from crawler2d.common.keywords import suggestion
 from crawler2d.errors import Crawler2dError
 from crawler2d.reports import atlas, audit, study
+from crawler2d.reports.paper import chart
 from crawler2d.reports.paper import command as paper
 
 __all__ = ["main"]
@@ -31,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a program from the command line; returns its exit status."""
     parser = _Parser(prog="crawler2d", description=__doc__)
     programs = parser.add_subparsers(dest="program", required=True, metavar="program")
-    named = {"study": study, "paper": paper, "audit": audit, "atlas": atlas}
+    named = {"study": study, "paper": paper, "paper-chart": chart, "audit": audit, "atlas": atlas}
     parsers = {}
     for name, module in named.items():
         text = (module.__doc__ or name).partition("\n")[0].rstrip(".")

@@ -25,7 +25,16 @@ if TYPE_CHECKING:
     from crawler2d.reports.paper.design import Work
     from crawler2d.sweeps.found import Found
 
-__all__ = ["BESIDE_TABLE_2", "FIELDS", "Beside", "FieldCell", "beside", "cells", "cross_fields"]
+__all__ = [
+    "BESIDE_TABLE_2",
+    "FIELDS",
+    "Beside",
+    "FieldCell",
+    "beside",
+    "cells",
+    "cross",
+    "cross_fields",
+]
 
 FIELDS: Mapping[str, RandomStepfield] = {
     "random RSE": terrains.random_stepfield(),
@@ -95,18 +104,19 @@ def cross_fields(work: Work, names: Sequence[str]) -> Iterator[tuple[Setting, Fo
     """
     for setting in SETTINGS if names else ():
         print(f"Table 2, {setting.name}: {', '.join(names)}", flush=True)
-        yield setting, _cross(setting, names, work)
+        yield setting, cross(setting, names, work, work.design.field_repeats)
 
 
-def _cross(setting: Setting, names: Collection[str], work: Work) -> Found:
+def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) -> Found:
+    """Drive some layouts over the fields in one setting; see `cross_fields`."""
     known = layouts()
     grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
     base = Scenario(
         engineer(), next(iter(grounds.values())), drive=Drive(speed=TABLE_1.max_speed, gait=Climb())
     )
     models = {name: {"robot": setting.on(known[name].on(base.robot))} for name in names}
-    how = work.how(work.design.field_repeats)
-    return work.counted(success(base, terrains=grounds, models=models, **how))
+    found = success(base, terrains=grounds, models=models, **work.how(repeats))
+    return work.counted(found)
 
 
 def cells(setting: Setting, found: Found) -> list[FieldCell]:

@@ -26,6 +26,8 @@ class Setting:
     """Where it comes from."""
     a_wheel: bool = False
     """Whether every wheel has a motor of its own; a track without wheels has one sprocket."""
+    rotor_inertia: float | None = None
+    """[kg m^2] Of the motor of one track, at its sprocket; None takes the robot's."""
 
     def on(self, robot: Robot) -> Robot:
         """Give a robot these motors."""
@@ -34,10 +36,12 @@ class Setting:
             # The core gives each of the N wheels of a side 1/N of the torque of a sprocket.
             sides = robot.wheels()["side"].tolist()
             sharing, torque = "wheel", torque * sides.count("left")
+        inertia = self.rotor_inertia
         drivetrain = replace(
             robot.drivetrain,
             max_torque=torque,
             torque_sharing=sharing,  # type: ignore[arg-type] # a plain str to mypy
+            rotor_inertia=robot.drivetrain.rotor_inertia if inertia is None else inertia,
         )
         return replace(robot, drivetrain=drivetrain)
 

@@ -1,0 +1,249 @@
+"""The paper's Table 2 over all drives as one picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crawler2d.common.extras import extra
+from crawler2d.drawings.palette import BLACK, GREEN, RED, VIOLET
+from crawler2d.presets.robots import engineer
+from crawler2d.reports.columns import percent
+from crawler2d.reports.paper.agreement import PAPER_RUNS
+from crawler2d.reports.paper.fields import BESIDE_TABLE_2, FIELDS
+from crawler2d.reports.paper.joint import TABLES, verdict
+from crawler2d.reports.paper.published import TABLE_1
+from crawler2d.reports.paper.settings import PUBLIC
+from crawler2d.sweeps.statistics import wilson
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from crawler2d.reports.paper.joint import DriveCell, Judged
+
+__all__ = ["REAL_TORQUES", "plot_drives", "real_inertias"]
+
+REAL_TORQUES = (6.0, 12.0)
+"""[N m] Of a plausible drive: the preset's torque, and twice as much."""
+
+_RUN_UP = (0.016, 0.1)
+"""[s] In which a motor's rated torque brings its bare rotor to its no-load speed: eight in ten of
+38 motors of 20 to 330 W in the catalogues of maxon and Faulhaber."""
+
+_COLORS = {"agrees": GREEN, "open": "#A5DCC9", "below": "#9CC3E6", "above": "#F4C07A"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Grid:
+    """Torques and inertias as tiles of equal size, for 0 has no logarithm."""
+
+    torques: tuple[float, ...]
+    inertias: tuple[float, ...]
+
+    def x(self, torque: float) -> float:
+        return _place(torque, self.torques)
+
+    def y(self, inertia: float) -> float:
+        return _place(inertia, self.inertias)
+
+    def tile(self, drive: DriveCell | Judged) -> tuple[float, float]:
+        return self.x(drive.torque), self.y(drive.inertia)
+
+    def prepare(self, ax: Axes, *, named: bool) -> None:
+        """Set limits and ticks; without names where a neighbour has them."""
+        across, up = len(self.torques), len(self.inertias)
+        ax.set(xlim=(-0.5, across - 0.5), ylim=(-0.5, up - 0.5))
+        ax.set_xticks(range(across), [f"{each:g}" for each in self.torques] if named else [])
+        ax.set_yticks(range(up), [])
+        ax.tick_params(length=0, labelsize=6)
+
+
+def real_inertias() -> tuple[float, float]:
+    """[kg m^2] Return the least and the greatest rotor inertia of a plausible drive.
+
+    The run-up time times the torque over the no-load speed: the declared speed of the robot, or the
+    one that was measured (Table 1).
+    """
+    outline = engineer().outline
+    radius = outline.rear_radius - outline.grouser_height
+    fast, slow = TABLE_1.declared_max_speed / radius, TABLE_1.max_speed / radius
+    return _RUN_UP[0] * REAL_TORQUES[0] / fast, _RUN_UP[1] * REAL_TORQUES[1] / slow
+
+
+def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> Figure:
+    """Draw the rates of every layout and field over torque and inertia, and which drives are left.
+
+    Parameters
+    ----------
+    rows : sequence of DriveCell
+        One or more frictions; tiles without runs stay empty.
+    verdicts : sequence of Judged
+        Of the same drives.
+
+    Returns
+    -------
+    Figure
+        Not shown and not saved.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is missing; the message names the extra to install.
+    """
+    figures = extra("matplotlib.figure", "plot")
+    grid = _Grid(
+        tuple(sorted({row.torque for row in rows})), tuple(sorted({row.inertia for row in rows}))
+    )
+    frictions = sorted({row.friction for row in rows})
+    figure: Figure = figures.Figure(figsize=(6.0 * len(frictions) + 1.0, 12.0))
+    columns, lines = 3 * len(frictions), len(BESIDE_TABLE_2)
+    whole = figure.add_gridspec(
+        2, 1, height_ratios=(lines, 1.6), hspace=0.14, left=0.06, right=0.99, top=0.90, bottom=0.09
+    )
+    above = whole[0].subgridspec(lines, columns, wspace=0.06, hspace=0.24).subplots(squeeze=False)
+    for line, model in enumerate(BESIDE_TABLE_2):
+        for column in range(columns):
+            ax, friction = above[line, column], frictions[column // len(FIELDS)]
+            field = list(FIELDS)[column % len(FIELDS)]
+            wanted = (field, model, friction)
+            own = [row for row in rows if (row.obstacle, row.model, row.friction) == wanted]
+            _draw_rates(ax, own, grid, _paper(field, model))
+            top = f"friction {friction:g}, {field}\n" if line == 0 else ""
+            ax.set_title(f"{top}{_paper_text(_paper(field, model))}", fontsize=7, loc="left", pad=3)
+            if column == 0:
+                _name_inertias(ax, grid, model)
+    below = whole[1].subgridspec(1, len(TABLES) * len(frictions), wspace=0.12)
+    for place, ax in enumerate(below.subplots(squeeze=False).flat):
+        friction, reading = frictions[place // len(TABLES)], list(TABLES)[place % len(TABLES)]
+        here = [each for each in verdicts if (each.friction, each.reading) == (friction, reading)]
+        _draw_verdicts(ax, here, grid)
+        ax.set_title(
+            f"friction {friction:g}, all nine cells, {reading}", fontsize=8, loc="left", pad=3
+        )
+        ax.set_xlabel("torque of a sprocket [N m]", fontsize=7)
+        if place == 0:
+            _name_inertias(ax, grid, "joint test")
+    _explain(figure, verdicts)
+    return figure
+
+
+def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> None:
+    grid.prepare(ax, named=False)
+    ax.set_facecolor("white")
+    for row in rows:
+        if row.count:
+            rate = row.cleared / row.count
+            side = "below" if rate < hits / PAPER_RUNS else "above"
+            color = _COLORS.get(verdict(row, hits), _COLORS[side])
+            _tile(ax, grid.tile(row), color, f"{row.cleared}/{row.count}")
+
+
+def _draw_verdicts(ax: Axes, verdicts: Sequence[Judged], grid: _Grid) -> None:
+    grid.prepare(ax, named=True)
+    for each in verdicts:
+        color = GREEN if each.is_left else "#E4E4E4"
+        chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
+        text = f"{each.differing} differ\np {chance}"
+        _tile(ax, grid.tile(each), color, text)
+    corners = zip(REAL_TORQUES, real_inertias(), strict=True)
+    (left, low), (right, high) = ((grid.x(torque), grid.y(each)) for torque, each in corners)
+    xs, ys = (left, right, right, left, left), (low, low, high, high, low)
+    ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
+    preset = engineer().drivetrain
+    ax.plot(grid.x(preset.max_torque), grid.y(preset.rotor_inertia), "o", **_POINT)
+    ax.plot(grid.x(_public_torque()), grid.y(0.0), "^", **_POINT)
+
+
+_POINT: dict[str, Any] = {
+    "markersize": 8,
+    "markerfacecolor": "none",
+    "markeredgecolor": RED,
+    "markeredgewidth": 2,
+}
+
+
+def _tile(ax: Axes, place: tuple[float, float], color: str, text: str) -> None:
+    x, y = place
+    ax.fill(
+        (x - 0.5, x + 0.5, x + 0.5, x - 0.5),
+        (y - 0.5, y - 0.5, y + 0.5, y + 0.5),
+        facecolor=color,
+        edgecolor="white",
+        linewidth=0.8,
+    )
+    ax.text(x, y, text, fontsize=6.5, ha="center", va="center", color=BLACK)
+
+
+def _explain(figure: Figure, verdicts: Sequence[Judged]) -> None:
+    count = sum(each.is_left for each in verdicts)
+    found = f"{count} of {len(verdicts)} are left" if count else "none is left"
+    figure.suptitle(
+        f"Which drive gives the paper's Table 2? Of {len(verdicts)} pairs of drive and reading,"
+        f" {found}",
+        x=0.06,
+        y=0.985,
+        ha="left",
+        fontsize=13,
+    )
+    patches, lines = extra("matplotlib.patches", "plot"), extra("matplotlib.lines", "plot")
+    handles = [
+        patches.Patch(
+            color=_COLORS["agrees"],
+            label="our runs that cleared of all: agrees with the paper's rate",
+        ),
+        patches.Patch(color=_COLORS["open"], label="open"),
+        patches.Patch(color=_COLORS["below"], label="below it"),
+        patches.Patch(color=_COLORS["above"], label="above it"),
+        lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
+        lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
+        lines.Line2D((), (), color=VIOLET, label="plausible real drive"),
+    ]
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.055, 0.97),
+        ncols=len(handles),
+        fontsize=8,
+        frameon=False,
+    )
+
+
+def _name_inertias(ax: Axes, grid: _Grid, title: str) -> None:
+    ax.set_yticks(range(len(grid.inertias)), [f"{each:g}" for each in grid.inertias])
+    ax.set_ylabel(f"{title}\nrotor [kg m$^2$]", fontsize=7)
+
+
+def _paper(field: str, model: str) -> int:
+    return next(
+        hits for table in TABLES.values() for cell, hits in table.items() if cell == (field, model)
+    )
+
+
+def _paper_text(hits: int) -> str:
+    rate, low, high = (percent(each) for each in wilson(hits, PAPER_RUNS))
+    return f"paper {rate} % ({low} to {high})"
+
+
+def _public_torque() -> float:
+    """[N m] Add up the motors of the three wheels that the model has on a side."""
+    wheels = engineer(track="public").without_flippers().wheels()["side"].tolist()
+    count: int = wheels.count("left")
+    return count * PUBLIC.max_torque
+
+
+def _place(value: float, grid: tuple[float, ...]) -> float:
+    """Return where a value lies among tiles: in the logarithm, and 0 on its own tile."""
+    positive = [each for each in grid if each > 0.0]
+    first = len(grid) - len(positive)
+    if value <= 0.0 or not positive:
+        return 0.0
+    logs = [math.log(each) for each in positive]
+    if len(logs) > 1 and value < positive[0]:
+        below = (logs[0] - math.log(value)) / (logs[1] - logs[0])
+        return max(first - below, first - 0.5)
+    return first + float(np.interp(math.log(value), logs, range(len(logs))))
