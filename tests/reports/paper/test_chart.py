@@ -1,6 +1,7 @@
 """The chart of drives: what its command writes and keeps."""
 
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from crawler2d.__main__ import main
 from crawler2d.reports.paper import chart, drives
 from crawler2d.reports.paper.drives_plot import real_inertias
 from crawler2d.reports.paper.fields import BESIDE_TABLE_2
+from crawler2d.reports.paper.joint import TABLES, DriveCell
 from crawler2d.reports.paper.settings import PRESET
 
 # Too weak to come as far as a field: that ends soon, and the paper's table excludes it.
@@ -47,10 +49,13 @@ def test_chart_tables_and_page_come_out(tmp_path: Path, capsys: pytest.CaptureFi
 def test_drives_that_are_left_are_tried_more_often(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(drives, "is_left", lambda rows: rows[0].torque == 0.1)
+    def first_reading(rows: Sequence[DriveCell]) -> set[str]:
+        return {model for _, model in TABLES["large gears"]} if rows[0].torque == 0.1 else set()
+
+    monkeypatch.setattr(drives, "layouts_left", first_reading)
     assert main(["paper-chart", "--out", str(tmp_path), *TINY, "--most", "3"]) == 0
     counts = {(row["torque"], row["count"]) for row in rows(tmp_path / "paper_drives.csv")}
-    assert counts == {("0.05", "3"), ("0.05", "2"), ("0.05", "1"), ("0.1", "3")}
+    assert counts == {*(("0.05", each) for each in "321"), *(("0.1", each) for each in "31")}
 
 
 def test_ctrl_c_ends_it_with_its_own_exit_code(

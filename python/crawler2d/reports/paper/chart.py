@@ -27,11 +27,11 @@ __all__ = ["CHART", "add_arguments", "run"]
 CHART = Drives(
     torques=(1.0, 10.0, 100.0, 1000.0),
     inertias=(0.0, 0.1),
-    frictions=(0.5, 0.9),
+    frictions=(0.5, 0.7, 0.8, 0.9),
     runs=(4, 4, 2, 1),
-    most=20,
+    most=10,
 )
-"""Coarse: small gears grind in a jam until the time is over, and take most of it."""
+"""Coarse: gears that grind in a jam until the time is over take most of it."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

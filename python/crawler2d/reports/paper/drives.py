@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from crawler2d.reports.paper.fields import BESIDE_TABLE_2, cells, cross
-from crawler2d.reports.paper.joint import DriveCell, is_left
+from crawler2d.reports.paper.joint import DriveCell, layouts_left
 from crawler2d.reports.paper.settings import Setting
 
 if TYPE_CHECKING:
@@ -63,8 +63,12 @@ def drive_cells(work: Work, drives: Drives) -> Iterator[list[DriveCell]]:
                 found[setting] = _tried(work, setting, drives.runs)
         yield [cell for each in found.values() for cell in each]
     for setting, rows in found.items():
-        if is_left(rows):
-            found[setting] = _tried(work, setting, [drives.most] * len(drives.runs))
+        if wanted := layouts_left(rows):
+            runs = [
+                max(count, drives.most) if model in wanted else count
+                for model, count in zip(BESIDE_TABLE_2, drives.runs, strict=True)
+            ]
+            found[setting] = _tried(work, setting, runs)
     yield [cell for each in found.values() for cell in each]
 
 

@@ -36,6 +36,13 @@ _RUN_UP = (0.016, 0.1)
 38 motors of 20 to 330 W in the catalogues of maxon and Faulhaber."""
 
 _COLORS = {"agrees": GREEN, "open": "#A5DCC9", "below": "#9CC3E6", "above": "#F4C07A"}
+_EXCLUDED = "#E4E4E4"
+
+_ABOVE = 0.25
+"""Of a tile: so that words leave the room to the points of drives."""
+
+_WIDE = 16.0
+"""[in] From which the legend fits in one line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +67,7 @@ class _Grid:
         ax.set(xlim=(-0.5, across - 0.5), ylim=(-0.5, up - 0.5))
         ax.set_xticks(range(across), [f"{each:g}" for each in self.torques] if named else [])
         ax.set_yticks(range(up), [])
-        ax.tick_params(length=0, labelsize=6)
+        ax.tick_params(length=0, labelsize=7)
 
 
 def real_inertias() -> tuple[float, float]:
@@ -100,10 +107,17 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> Figure
         tuple(sorted({row.torque for row in rows})), tuple(sorted({row.inertia for row in rows}))
     )
     frictions = sorted({row.friction for row in rows})
-    figure: Figure = figures.Figure(figsize=(6.0 * len(frictions) + 1.0, 12.0))
-    columns, lines = 3 * len(frictions), len(BESIDE_TABLE_2)
+    width = 5.6 * len(frictions) + 1.2
+    figure: Figure = figures.Figure(figsize=(width, 11.0))
+    columns, lines = len(FIELDS) * len(frictions), len(BESIDE_TABLE_2)
     whole = figure.add_gridspec(
-        2, 1, height_ratios=(lines, 1.6), hspace=0.14, left=0.06, right=0.99, top=0.90, bottom=0.09
+        *(2, 1),
+        height_ratios=(lines, 1.6),
+        hspace=0.13,
+        left=0.9 / width,
+        right=1.0 - 0.1 / width,
+        top=0.90,
+        bottom=0.05,
     )
     above = whole[0].subgridspec(lines, columns, wspace=0.06, hspace=0.24).subplots(squeeze=False)
     for line, model in enumerate(BESIDE_TABLE_2):
@@ -123,11 +137,14 @@ def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> Figure
         here = [each for each in verdicts if (each.friction, each.reading) == (friction, reading)]
         _draw_verdicts(ax, here, grid)
         ax.set_title(
-            f"friction {friction:g}, all nine cells, {reading}", fontsize=8, loc="left", pad=3
+            f"friction {friction:g}: all nine cells at once, {reading}",
+            fontsize=8,
+            loc="left",
+            pad=3,
         )
         ax.set_xlabel("torque of a sprocket [N m]", fontsize=7)
         if place == 0:
-            _name_inertias(ax, grid, "joint test")
+            _name_inertias(ax, grid, "all nine cells")
     _explain(figure, verdicts)
     return figure
 
@@ -146,10 +163,10 @@ def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> 
 def _draw_verdicts(ax: Axes, verdicts: Sequence[Judged], grid: _Grid) -> None:
     grid.prepare(ax, named=True)
     for each in verdicts:
-        color = GREEN if each.is_left else "#E4E4E4"
+        color = GREEN if each.is_left else _EXCLUDED
         chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
         text = f"{each.differing} differ\np {chance}"
-        _tile(ax, grid.tile(each), color, text)
+        _tile(ax, grid.tile(each), color, text, above=_ABOVE)
     corners = zip(REAL_TORQUES, real_inertias(), strict=True)
     (left, low), (right, high) = ((grid.x(torque), grid.y(each)) for torque, each in corners)
     xs, ys = (left, right, right, left, left), (low, low, high, high, low)
@@ -167,7 +184,7 @@ _POINT: dict[str, Any] = {
 }
 
 
-def _tile(ax: Axes, place: tuple[float, float], color: str, text: str) -> None:
+def _tile(ax: Axes, place: tuple[float, float], color: str, text: str, above: float = 0.0) -> None:
     x, y = place
     ax.fill(
         (x - 0.5, x + 0.5, x + 0.5, x - 0.5),
@@ -176,38 +193,40 @@ def _tile(ax: Axes, place: tuple[float, float], color: str, text: str) -> None:
         edgecolor="white",
         linewidth=0.8,
     )
-    ax.text(x, y, text, fontsize=6.5, ha="center", va="center", color=BLACK)
+    ax.text(x, y + above, text, fontsize=7.5, ha="center", va="center", color=BLACK)
 
 
 def _explain(figure: Figure, verdicts: Sequence[Judged]) -> None:
-    count = sum(each.is_left for each in verdicts)
-    found = f"{count} of {len(verdicts)} are left" if count else "none is left"
+    drives = len({(each.torque, each.inertia, each.friction) for each in verdicts})
+    left = sum(each.is_left for each in verdicts)
     figure.suptitle(
-        f"Which drive gives the paper's Table 2? Of {len(verdicts)} pairs of drive and reading,"
-        f" {found}",
-        x=0.06,
+        f"Which drive gives the paper's Table 2? {drives} were tried, with the gears read in two"
+        f" ways: {left or 'none'} left",
+        x=0.01,
         y=0.985,
         ha="left",
         fontsize=13,
     )
     patches, lines = extra("matplotlib.patches", "plot"), extra("matplotlib.lines", "plot")
-    handles = [
-        patches.Patch(
-            color=_COLORS["agrees"],
-            label="our runs that cleared of all: agrees with the paper's rate",
-        ),
-        patches.Patch(color=_COLORS["open"], label="open"),
-        patches.Patch(color=_COLORS["below"], label="below it"),
-        patches.Patch(color=_COLORS["above"], label="above it"),
+    words = {
+        "agrees": "cleared / runs: agrees with the paper",
+        "open": "open",
+        "below": "below the paper",
+        "above": "above it",
+    }
+    handles = [patches.Patch(color=_COLORS[key], label=text) for key, text in words.items()]
+    handles += [
         lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
         lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
-        lines.Line2D((), (), color=VIOLET, label="plausible real drive"),
+        patches.Patch(fill=False, edgecolor=VIOLET, linewidth=2.0, label="plausible real drive"),
+        patches.Patch(color=GREEN, label="bottom row: left by the joint test (p at least 0.05)"),
+        patches.Patch(color=_EXCLUDED, label="excluded"),
     ]
     figure.legend(
         handles=handles,
         loc="upper left",
-        bbox_to_anchor=(0.055, 0.97),
-        ncols=len(handles),
+        bbox_to_anchor=(0.005, 0.972),
+        ncols=len(handles) if figure.get_figwidth() > _WIDE else 5,
         fontsize=8,
         frameon=False,
     )
@@ -243,7 +262,7 @@ def _place(value: float, grid: tuple[float, ...]) -> float:
     if value <= 0.0 or not positive:
         return 0.0
     logs = [math.log(each) for each in positive]
-    if len(logs) > 1 and value < positive[0]:
-        below = (logs[0] - math.log(value)) / (logs[1] - logs[0])
-        return max(first - below, first - 0.5)
+    if value < positive[0]:
+        decade = math.log(10.0) if len(logs) == 1 else logs[1] - logs[0]
+        return first - min((logs[0] - math.log(value)) / decade, 0.5)
     return first + float(np.interp(math.log(value), logs, range(len(logs))))

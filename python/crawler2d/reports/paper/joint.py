@@ -26,7 +26,7 @@ from crawler2d.reports.paper.published import CWA_ROUND, LWA_ROUND, TABLE_2
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LEVEL", "TABLES", "DriveCell", "Judged", "Table", "is_left", "judged", "verdict"]
+__all__ = ["LEVEL", "TABLES", "DriveCell", "Judged", "Table", "judged", "layouts_left", "verdict"]
 
 LEVEL = 0.05
 """[-] One less the confidence of the region."""
@@ -146,9 +146,13 @@ def judged(rows: Sequence[DriveCell], table: Table, reading: str = "") -> Judged
     )
 
 
-def is_left(rows: Sequence[DriveCell]) -> bool:
-    """Whether the paper's table, read either way, leaves the drive of these cells."""
-    return any(judged(rows, table).is_left for table in TABLES.values())
+def layouts_left(rows: Sequence[DriveCell]) -> set[str]:
+    """Name the layouts of those readings of the paper's table that leave the drive of these cells.
+
+    Their runs are worth repeating; more runs of others would exclude the same.
+    """
+    left = [table for table in TABLES.values() if judged(rows, table).is_left]
+    return {model for table in left for _, model in table}
 
 
 def verdict(row: DriveCell, hits: int) -> str:
