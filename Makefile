@@ -108,7 +108,7 @@ notebooks: $(VENV)/.built ## run the notebooks of studies/ and keep their output
 paper: $(VENV)/.built ## reproduce the paper: tables, claims, figures; an hour or two, Ctrl-C loses nothing
 	$(BIN)/python -m crawler2d paper $(ARGS)
 
-paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, hours; Ctrl-C loses nothing
+paper-chart: $(VENV)/.built ## draw which motors and rotors give the paper's Table 2, a quarter of an hour; Ctrl-C loses nothing
 	$(BIN)/python -m crawler2d paper-chart $(ARGS)
 
 picture: $(VENV)/.built ## draw docs/readme.png: the example of the README

@@ -41,7 +41,7 @@ def test_chart_tables_and_page_come_out(tmp_path: Path, capsys: pytest.CaptureFi
     assert all(float(row["probability"]) < 0.05 for row in joint)
     assert (tmp_path / "paper_drives.png").stat().st_size > 10_000
     text = page.read_text()
-    assert "54 runs, of 2 drives at 1 frictions" in text
+    assert "54 runs, of 2 drives at frictions of 0.5; runs a cell: " in text
     assert "| 0.5 | large gears | 0 of 2 |" in text
     assert all(line in printed for line in text.splitlines() if line.startswith("| 0.5"))
 

@@ -15,7 +15,7 @@ from crawler2d.presets.robots import engineer
 from crawler2d.reports.columns import percent
 from crawler2d.reports.paper.agreement import PAPER_RUNS
 from crawler2d.reports.paper.fields import BESIDE_TABLE_2, FIELDS
-from crawler2d.reports.paper.joint import TABLES, verdict
+from crawler2d.reports.paper.joint import LEVEL, TABLES, verdict
 from crawler2d.reports.paper.published import TABLE_1
 from crawler2d.reports.paper.settings import PUBLIC
 from crawler2d.sweeps.statistics import wilson
@@ -163,7 +163,8 @@ def _draw_rates(ax: Axes, rows: Sequence[DriveCell], grid: _Grid, hits: int) -> 
 def _draw_verdicts(ax: Axes, verdicts: Sequence[Judged], grid: _Grid) -> None:
     grid.prepare(ax, named=True)
     for each in verdicts:
-        color = GREEN if each.is_left else _EXCLUDED
+        straight = _COLORS["open"] if each.straight >= LEVEL else _EXCLUDED
+        color = GREEN if each.is_left else straight
         chance = f"{each.probability:.2g}" if each.probability >= 1e-4 else "<1e-4"
         text = f"{each.differing} differ\np {chance}"
         _tile(ax, grid.tile(each), color, text, above=_ABOVE)
@@ -219,7 +220,8 @@ def _explain(figure: Figure, verdicts: Sequence[Judged]) -> None:
         lines.Line2D((), (), marker="o", linestyle="", label="preset", **_POINT),
         lines.Line2D((), (), marker="^", linestyle="", label="public simulation", **_POINT),
         patches.Patch(fill=False, edgecolor=VIOLET, linewidth=2.0, label="plausible real drive"),
-        patches.Patch(color=GREEN, label="bottom row: left by the joint test (p at least 0.05)"),
+        patches.Patch(color=GREEN, label="bottom row: left by all nine cells (p at least 0.05)"),
+        patches.Patch(color=_COLORS["open"], label="left without the diagonal barrier"),
         patches.Patch(color=_EXCLUDED, label="excluded"),
     ]
     figure.legend(

@@ -22,9 +22,10 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> str:
         least, most = min(counts), max(counts)
         runs.append(f"{least if least == most else f'{least} to {most}'} of {model}")
     drives = {(row.torque, row.inertia) for row in rows}
+    frictions = ", ".join(f"{each:g}" for each in sorted({row.friction for row in rows}))
     head = (
-        f"{sum(row.count for row in rows)} runs, of {len(drives)} drives at"
-        f" {len({row.friction for row in rows})} frictions; runs a cell: {', '.join(runs)}."
+        f"{sum(row.count for row in rows)} runs, of {len(drives)} drives at frictions of"
+        f" {frictions}; runs a cell: {'; '.join(runs)}."
     )
     table = []
     for friction, reading in dict.fromkeys((each.friction, each.reading) for each in verdicts):
@@ -38,12 +39,21 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> str:
                 f"{len(left)} of {len(own)}" + (f": {'; '.join(left)}" if left else ""),
                 _drive(best),
                 f"{best.probability:.2g}",
+                f"{best.straight:.2g}",
                 f"{best.differing} of {best.cells}",
                 best.farthest,
             )
         )
     columns = (
-        *("friction", "gears read as", "drives left", "nearest drive", "p", "cells that differ"),
+        *(
+            "friction",
+            "gears read as",
+            "drives left",
+            "nearest drive",
+            "p",
+            "p without the diagonal",
+            "cells that differ",
+        ),
         "cells that are farthest off",
     )
     return f"{head}\n\n{markdown_table(columns, table)}"

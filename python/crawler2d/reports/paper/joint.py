@@ -52,6 +52,8 @@ TABLES: Mapping[str, Table] = {
 
 _DRAWS = 20_000
 
+DIAGONAL = "diagonal barrier"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveCell:
@@ -83,6 +85,8 @@ class Judged:
     """[-] Of all cells, from the table under rates that are exactly the paper's."""
     probability: float
     """[-] Of a deviance at least as large, if the paper's robot had this drive."""
+    straight: float
+    """[-] The same without the diagonal barrier, on which a robot may turn: a side view cannot."""
     differing: int
     """Cells whose rates differ, as in `Agreement`."""
     cells: int
@@ -115,6 +119,30 @@ def judged(rows: Sequence[DriveCell], table: Table, reading: str = "") -> Judged
     own = {(row.obstacle, row.model): row for row in rows if row.count}
     if missing := set(table) - set(own):
         raise ValueError(f"no runs of {sorted(missing)}")
+    shares, probability = _tested(own, table)
+    straight = {cell: hits for cell, hits in table.items() if cell[0] != DIAGONAL}
+    farthest = sorted(zip(shares, table, strict=True), reverse=True)[:3]
+    first = rows[0]
+    return Judged(
+        torque=first.torque,
+        inertia=first.inertia,
+        friction=first.friction,
+        reading=reading,
+        deviance=sum(shares),
+        probability=probability,
+        straight=_tested(own, straight)[1],
+        differing=sum(verdict(own[cell], hits) == "differs" for cell, hits in table.items()),
+        cells=len(table),
+        farthest="; ".join(
+            f"{model}, {obstacle}: {own[obstacle, model].cleared} of {own[obstacle, model].count},"
+            f" the paper {table[obstacle, model]} of {PAPER_RUNS}"
+            for _, (obstacle, model) in farthest
+        ),
+    )
+
+
+def _tested(own: Mapping[tuple[str, str], DriveCell], table: Table) -> tuple[list[float], float]:
+    """Return each cell's share of the deviance, and the chance of so large a sum."""
     chances = [_chances(own[cell].cleared, own[cell].count) for cell in table]
     deviances = [2.0 * (_EXACT - np.log(each)) for each in chances]
     shares = [float(each[hits]) for each, hits in zip(deviances, table.values(), strict=True)]
@@ -124,26 +152,9 @@ def judged(rows: Sequence[DriveCell], table: Table, reading: str = "") -> Judged
         each[rng.choice(PAPER_RUNS + 1, size=_DRAWS, p=chance)]
         for each, chance in zip(deviances, chances, strict=True)
     )
-    whole = sum(shares)
     # Sums of the same terms in another order differ by rounding.
-    farther = int(np.count_nonzero(drawn >= whole - 1e-9))
-    farthest = sorted(zip(shares, table, strict=True), reverse=True)[:3]
-    first = rows[0]
-    return Judged(
-        torque=first.torque,
-        inertia=first.inertia,
-        friction=first.friction,
-        reading=reading,
-        deviance=whole,
-        probability=(farther + 1) / (_DRAWS + 1),
-        differing=sum(verdict(own[cell], hits) == "differs" for cell, hits in table.items()),
-        cells=len(table),
-        farthest="; ".join(
-            f"{model}, {obstacle}: {own[obstacle, model].cleared} of {own[obstacle, model].count},"
-            f" the paper {table[obstacle, model]} of {PAPER_RUNS}"
-            for _, (obstacle, model) in farthest
-        ),
-    )
+    farther = int(np.count_nonzero(drawn >= sum(shares) - 1e-9))
+    return shares, (farther + 1) / (_DRAWS + 1)
 
 
 def layouts_left(rows: Sequence[DriveCell]) -> set[str]:
