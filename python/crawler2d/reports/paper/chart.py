@@ -29,7 +29,7 @@ CHART = Drives(
     inertias=(0.0, 0.1),
     frictions=(0.5, 0.7, 0.8, 0.9),
     runs=(4, 4, 2, 1),
-    most=10,
+    most=20,
 )
 """Coarse: gears that grind in a jam until the time is over take most of it."""
 

@@ -31,7 +31,8 @@ def drives_text(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> str:
     for friction, reading in dict.fromkeys((each.friction, each.reading) for each in verdicts):
         own = [each for each in verdicts if (each.friction, each.reading) == (friction, reading)]
         left = [_drive(each) for each in own if each.is_left]
-        best = max(own, key=lambda each: (each.probability, -each.deviance))
+        # With few runs p is larger, as they exclude less; cells that differ come first therefore.
+        best = min(own, key=lambda each: (each.differing, -each.probability, each.deviance))
         table.append(
             (
                 f"{friction:g}",
