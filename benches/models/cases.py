@@ -29,7 +29,8 @@ _AMPLE = 20.0
 """[-] Times the torque that was read: no file limits its wheels below what makes them slip."""
 
 _FIRM = 1e4  # [N m] holds a flipper
-_FIRMEST = 1e6  # [N m] crawler2d takes no more
+_FIRMEST = 1e6  # [N m] brings the rotor below up to speed
+_ROTOR = 100.0  # [kg m^2] hundreds of times what strikes an edge
 _SEED = 23
 _SPEED, _SLOW = 0.4, 0.1  # [m/s] what an audit has for 0.41 m between the axles; no momentum
 _DURATION = 12.0 * _SPEED  # [m] twice the longest way, at the commanded speed
@@ -105,10 +106,14 @@ class Case:
     def firm(self, robot: Robot) -> Robot:
         """Let the motors of a robot hold their speeds through impacts, too, as those of engines do.
 
-        An impact lasts 20 us in crawler2d, and a motor pushes no harder in it than its torque; in
-        an engine a motor that holds a speed has a whole step for it, or gives it as a constraint.
+        A blow takes no time in crawler2d, so only a rotor carries a speed through it; in an engine
+        a motor that holds a speed has a whole step for it, or gives it as a constraint.
         """
-        return replace(robot, drivetrain=replace(robot.drivetrain, max_torque=_FIRMEST))
+        motors = replace(robot.drivetrain, max_torque=_FIRMEST, rotor_inertia=_ROTOR)
+        arms = robot.flippers
+        if arms is not None:
+            arms = replace(arms, rotor_inertia=_ROTOR)
+        return replace(robot, drivetrain=motors, flippers=arms)
 
     def ground(self, cell: Cell, robot: Robot) -> Terrain:
         """Return the obstacle of a cell, scaled to the robot as it is."""
