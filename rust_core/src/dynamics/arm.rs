@@ -67,12 +67,10 @@ impl Arm {
     /// The arm as contacts on it feel it. Beside shoes it is as light as they are; otherwise its grip would keep changing
     /// with theirs.
     pub(super) fn joint(&self, shoe_mass: Option<f64>) -> Joint {
+        let inertia = self.inertia_about_pivot() + self.rule.rotor_inertia;
         match shoe_mass {
             Some(mass) => Joint::new(f64::INFINITY, mass),
-            None => {
-                let inertia = self.inertia_about_pivot() + self.rule.rotor_inertia;
-                Joint::new(inertia, f64::INFINITY)
-            }
+            None => Joint::new(inertia, f64::INFINITY),
         }
     }
 

@@ -30,16 +30,13 @@ impl Dynamics {
             if spin.rotor == 0.0 {
                 continue;
             }
-            match problem.rings.get_mut(k) {
-                Some(ring) => {
-                    let lever = problem.motors[k].lever;
-                    let mass = spin.rotor / (lever * lever);
-                    ring.drive.rotor = Damper::new(mass * lever * free, mass);
-                }
-                None => {
-                    let rotor = Inertia::of_rotor(Acts::on_spin(k), spin.rotor, free);
-                    problem.inertias.push(rotor);
-                }
+            if let Some(ring) = problem.rings.get_mut(k) {
+                let lever = problem.motors[k].lever;
+                let mass = spin.rotor / (lever * lever);
+                ring.drive.rotor = Damper::new(mass * lever * free, mass);
+            } else {
+                let rotor = Inertia::of_rotor(Acts::on_spin(k), spin.rotor, free);
+                problem.inertias.push(rotor);
             }
         }
     }

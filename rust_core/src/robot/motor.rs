@@ -104,12 +104,9 @@ impl MotorRule {
 
     /// Its largest force forwards near a speed. Against its motion it has the force that it has at rest.
     fn limit(&self, speed: f64) -> Line {
-        let pieces = self.curve.windows(2);
-        let piece = pieces
-            .filter(|_| speed >= 0.0)
-            .find(|piece| speed < piece[1][0]);
-        let Some([[from, share], [to, next]]) = piece.and_then(|piece| piece.as_array::<2>())
-        else {
+        let mut pieces = self.curve.iter().zip(self.curve.iter().skip(1));
+        let piece = pieces.find(|(_, [to, _])| (0.0..*to).contains(&speed));
+        let Some((&[from, share], &[to, next])) = piece else {
             let share = match self.curve.last() {
                 Some([_, last]) if speed >= 0.0 => *last,
                 _ => 1.0,
@@ -142,6 +139,11 @@ mod tests {
         }
     }
 
+    /// Whether two forces [N] are the same but for rounding.
+    fn is(found: f64, expected: f64) -> bool {
+        (found - expected).abs() < 1e-12
+    }
+
     fn rule(curve: &[[f64; 2]]) -> MotorRule {
         MotorRule {
             force: 100.0,
@@ -155,7 +157,7 @@ mod tests {
     fn a_motor_without_a_curve_has_its_force_at_any_speed() {
         for speed in [-3.0, 0.0, 3.0] {
             let [most, least] = rule(&[]).limits(speed).map(|limit| limit.at(speed));
-            assert!(most == 100.0 && least == -100.0);
+            assert!(is(most, 100.0) && is(least, -100.0));
         }
     }
 
@@ -171,11 +173,11 @@ mod tests {
             (5.0, 0.0),
         ] {
             let [most, least] = rule.limits(speed).map(|limit| limit.at(speed));
-            assert!((most - expected).abs() < 1e-12, "{most} N at {speed} m/s");
+            assert!(is(most, expected), "{most} N at {speed} m/s");
             let brakes = if speed > 0.0 { -100.0 } else { -expected };
-            assert_eq!(least, brakes);
-            let mirrored = rule.limits(-speed).map(|limit| limit.at(-speed));
-            assert_eq!(mirrored, [-least, -most]);
+            assert!(is(least, brakes), "{least} N at {speed} m/s");
+            let [forwards, backwards] = rule.limits(-speed).map(|limit| limit.at(-speed));
+            assert!(is(forwards, -least) && is(backwards, -most));
         }
     }
 }

@@ -37,7 +37,7 @@ fn the_rotor_resists_a_drive_that_runs_free_by_its_mass_whatever_the_model() {
     // So much that the shoes of a chain, which do not start evenly, do not count.
     let inertia = 0.5;
     // Drives of arms run on what swings itself.
-    let rigid = models().into_iter();
+    let rigid = models();
     for (name, mut scenario) in rigid.filter(|(_, s)| s.robot.flippers.is_none()) {
         scenario.gravity = 0.0;
         scenario.terrain = slope(0.0, 0.0);
