@@ -248,7 +248,9 @@ def _under(assumed: Sequence[Assumed]) -> Iterator[str]:
         if own:
             runs = ", ".join(f"{each.obstacle} {each.seized} of {each.made}" for each in own)
             loose = ", ".join(each.obstacle for each in own if not each.holds)
-            hang = f"the verdicts on {loose} hang on that" if loose else "no verdict hangs on that"
+            hang = (
+                f"the verdicts on {loose} may hang on that" if loose else "no verdict hangs on that"
+            )
             drawn = ", ".join(
                 f"{_named(path)} {range_of(path, each)}" for path, each in own[0].drawn.items()
             )
