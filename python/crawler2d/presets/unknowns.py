@@ -21,20 +21,13 @@ from crawler2d.presets.robots.ranges import (
     RANGES,
     ROTOR,
     ROTOR_OF_ARM,
+    RUN_UP,
     Range,
 )
 from crawler2d.variation.distributions import LogUniform, uniform
 from crawler2d.variation.ranges import Ranges
 
 __all__ = ["of_blows", "of_ground", "of_robot"]
-
-# [s] In which its rated torque brings a bare rotor up to no-load speed. Gears do not change it, and
-# it differs less than the inertias of motors of one power: of 38 types by maxon and Faulhaber, 20
-# to 330 W, eight in ten lie in this range, slotted rotors low, flat ones high. The rated torque is
-# that whose copper loss heats the winding to its limit, 14 % above the makers' own in seven motors;
-# k_t, R, inertia, speed and thermal resistances are those of ekrimsk/MGDB (17337fa2). Five geared
-# joints of the KUKA youBot have 0.03 to 0.06 s.
-_RUN_UP = (0.016, 0.1)
 
 
 def of_blows(robot: Robot) -> Ranges:
@@ -136,7 +129,7 @@ def _rotors(robot: Robot) -> dict[str, Range]:
         ratios[ROTOR_OF_ARM] = arms.torque_limit / arms.rate_limit
     source = "0.016 to 0.1 s, as catalogue motors, times torque over speed"
     return {
-        path: (LogUniform(*(time * ratio for time in _RUN_UP)), source)
+        path: (LogUniform(*(time * ratio for time in RUN_UP)), source)
         for path, ratio in ratios.items()
         if ratio > 0.0
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from crawler2d.common.extras import extra
+from crawler2d.drawings.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_drive"]
 
-# Okabe and Ito's palette, which colour-blind readers can tell apart; one colour a kind of track.
-_COLORS = ("#222222", "#0072B2", "#CC79A7", "#E69F00", "#D55E00", "#009E73", "#56B4E9")
+# One colour a kind of track.
+_COLORS = (BLACK, BLUE, PURPLE, ORANGE, RED, GREEN, SKY)
 _MARKERS = ("o", "s", "P", "D", "^", "v", "X", "*", "<", ">")
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from crawler2d.common.extras import extra
 from crawler2d.drawings.palette import BLACK, GREEN, RED, VIOLET
 from crawler2d.presets.robots import engineer
+from crawler2d.presets.robots.ranges import RUN_UP
 from crawler2d.reports.columns import percent
 from crawler2d.reports.paper.agreement import PAPER_RUNS
 from crawler2d.reports.paper.fields import BESIDE_TABLE_2, FIELDS
@@ -30,10 +31,6 @@ __all__ = ["REAL_TORQUES", "plot_drives", "real_inertias"]
 
 REAL_TORQUES = (6.0, 12.0)
 """[N m] Of a plausible drive: the preset's torque, and twice as much."""
-
-_RUN_UP = (0.016, 0.1)
-"""[s] In which a motor's rated torque brings its bare rotor to its no-load speed: eight in ten of
-38 motors of 20 to 330 W in the catalogues of maxon and Faulhaber."""
 
 _COLORS = {"agrees": GREEN, "open": "#A5DCC9", "below": "#9CC3E6", "above": "#F4C07A"}
 _EXCLUDED = "#E4E4E4"
@@ -79,7 +76,7 @@ def real_inertias() -> tuple[float, float]:
     outline = engineer().outline
     radius = outline.rear_radius - outline.grouser_height
     fast, slow = TABLE_1.declared_max_speed / radius, TABLE_1.max_speed / radius
-    return _RUN_UP[0] * REAL_TORQUES[0] / fast, _RUN_UP[1] * REAL_TORQUES[1] / slow
+    return RUN_UP[0] * REAL_TORQUES[0] / fast, RUN_UP[1] * REAL_TORQUES[1] / slow
 
 
 def plot_drives(rows: Sequence[DriveCell], verdicts: Sequence[Judged]) -> Figure:
