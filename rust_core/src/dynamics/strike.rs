@@ -128,7 +128,8 @@ impl Touch {
             }
         };
         let (time, closing) = course.lands()?;
-        (closing > speed).then_some(time)
+        // The parabola round the lowest point is off at the beginning, where the gap is still open.
+        (closing > speed).then_some(time.max(0.0))
     }
 }
 

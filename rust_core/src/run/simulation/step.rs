@@ -336,7 +336,7 @@ mod tests {
             for left in [h, h + little, h + 0.7 * COLLISION_STEP, 2.0 * h] {
                 for strike in [0.0, little, 0.5 * h, h - little, h] {
                     let (piece, strikes) = cut_at_strike(strike, h, left);
-                    assert!(piece <= h, "{piece} s of {h} s");
+                    assert!(piece > 0.0 && piece <= h, "{piece} s of {h} s");
                     assert_eq!(strikes, strike <= piece, "{strike} s, {piece} s of {h} s");
                 }
             }
