@@ -29,6 +29,7 @@ mod run;
 mod scenario;
 mod solver;
 mod terrain;
+mod units;
 mod version;
 
 pub use contact::Intrusion;

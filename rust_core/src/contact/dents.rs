@@ -11,9 +11,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Contact;
 use crate::geometry::plausible;
+use crate::units::Metres;
 
 /// [m] Ground that comes to bear this close to a dent was inside it.
-const BESIDE: f64 = 0.01;
+const BESIDE: Metres = Metres(0.01);
 
 /// The dents that remain.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -106,7 +107,7 @@ impl Dents {
         last: impl Iterator<Item = &'a Contact>,
     ) -> Option<f64> {
         let apart = |c: &Contact| (c.point - contact.point).length();
-        let of_part = last.filter(|c| c.part == contact.part && apart(c) < BESIDE);
+        let of_part = last.filter(|c| c.part == contact.part && apart(c) < BESIDE.value());
         let dented = of_part.filter_map(|c| Some((apart(c), self.depth_at(c)?)));
         let nearest = dented.min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, depth)| depth)

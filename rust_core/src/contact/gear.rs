@@ -11,9 +11,10 @@ use super::lane::{Lane, On, Region, Touch};
 use super::overlap::{self, Tip};
 use super::reach::thin_out;
 use crate::geometry::{Disc, Gear, Pose, Rotation, Vector, direction, right_of};
+use crate::units::Metres;
 
 /// [m] Ground sinks into a flank by no more than this.
-const SUNK: f64 = 1e-3;
+const SUNK: Metres = Metres(1e-3);
 
 /// A gear wheel of a robot.
 pub(super) struct GearContact {
@@ -206,6 +207,6 @@ impl GearContact {
         let pitch = self.gear.angle();
         let off = (angle / pitch - (angle / pitch).round()) * pitch;
         // Ground sunk into the foot of a flank also bears on the root circle.
-        off.abs() >= self.half_base - SUNK / self.gear.root_radius
+        off.abs() >= self.half_base - SUNK.value() / self.gear.root_radius
     }
 }

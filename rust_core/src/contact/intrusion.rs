@@ -10,12 +10,13 @@ use crate::geometry::cut::{self, Chord, Piece};
 use crate::geometry::{Disc, Envelope, Pose, Vector};
 use crate::robot::{BodyKind, Mount, Part};
 use crate::terrain::{Profile, Side};
+use crate::units::Metres;
 
 /// [m] A contact this close to a piece of the ground bears on it.
-const BEARS: f64 = 5e-4;
+const BEARS: Metres = Metres(5e-4);
 
 /// [m] Of edges that are equally deep within this, the leftmost counts, whatever the rounding.
-const SAME_DEPTH: f64 = 1e-6;
+const SAME_DEPTH: Metres = Metres(1e-6);
 
 /// The taut belts round a track's bodies, in the frame of their carrier.
 #[derive(Clone, Debug)]
@@ -205,7 +206,7 @@ impl TrackEnvelope {
             }
             let point = pose.inverse_transform_point(profile.points[i]);
             let depth = self.tips.hull.depth(point);
-            if profile.edges[id as usize].angle > 0.0 && depth > edge.0 + SAME_DEPTH {
+            if profile.edges[id as usize].angle > 0.0 && depth > edge.0 + SAME_DEPTH.value() {
                 edge = (depth, id);
             }
         }
@@ -275,7 +276,7 @@ impl Intrusion {
             return false;
         }
         let (place, length) = lanes[self.lane].place_on(contact.facet, contact.point);
-        let margin = BEARS / length;
+        let margin = BEARS.value() / length;
         let near = |(start, end): &(f64, f64)| (start - margin..=end + margin).contains(&place);
         self.stretches.iter().any(near)
     }

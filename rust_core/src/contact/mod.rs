@@ -20,6 +20,7 @@ use crate::geometry::{Vector, plausible, plausible_vectors, right_of};
 use crate::robot::Model;
 use crate::terrain::Profile;
 
+use crate::units::Metres;
 pub(crate) use dents::Dents;
 pub(crate) use depth::depth;
 pub(crate) use finder::ContactFinder;
@@ -90,7 +91,7 @@ pub(crate) fn without_redundant(contacts: &mut Vec<Contact>) {
 /// Whether the middle gap is at least that of the chord between its neighbours.
 fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
     /// [m] A gap this close to the chord is on the same face.
-    const SAME_FACE: f64 = 1e-9;
+    const SAME_FACE: Metres = Metres(1e-9);
 
     let along = right_of(middle.normal);
     let (a, b) = (
@@ -98,5 +99,5 @@ fn lies_above(first: &Contact, middle: &Contact, last: &Contact) -> bool {
         (last.point - middle.point).dot(along),
     );
     let chord = (first.distance * b + last.distance * a) / (a + b);
-    a * b > 0.0 && middle.distance > chord - SAME_FACE
+    a * b > 0.0 && middle.distance > chord - SAME_FACE.value()
 }

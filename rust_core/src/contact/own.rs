@@ -91,7 +91,7 @@ impl OwnContact {
                     radius,
                 } => {
                     let (center, radius) = (pose.transform_point(*center), *radius);
-                    let (reach, first) = ((prediction, SHALLOW), contacts.len());
+                    let (reach, first) = ((prediction, SHALLOW.value()), contacts.len());
                     let far = radius + prediction;
                     let region = lane.region(center.x - far, center.x + far);
                     lane.touches_of_disc(&region, center, radius, reach, |touch| {

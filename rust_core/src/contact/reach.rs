@@ -7,9 +7,10 @@ use super::Contact;
 use super::lane::Lane;
 use crate::geometry::{Disc, Vector};
 use crate::terrain::STRAIGHT;
+use crate::units::Metres;
 
 /// [m] A contact whose normal passes this close to the centre of a disc is one of the disc.
-const ON_DISC: f64 = 1e-9;
+const ON_DISC: Metres = Metres(1e-9);
 /// So few contacts need no thinning out.
 const FEW: usize = 4;
 
@@ -29,7 +30,7 @@ pub(super) fn thin_out(
     }
     let of_disc = |c: &mut Contact| {
         let foot = c.point + c.normal * (disc.radius + 0.5 * c.distance);
-        (disc.center - foot).length() < ON_DISC
+        (disc.center - foot).length() < ON_DISC.value()
     };
     let own = contacts.extract_if(first.., of_disc).collect();
     contacts.extend(reachable(own, prediction));
@@ -47,7 +48,7 @@ fn reachable(contacts: Vec<Contact>, far: f64) -> Vec<Contact> {
         corner.is_checked = true;
         let at = corner.at;
         if let Some(contact) = deepest(&contacts, at)
-            && gap_after(&contact, at) < -STRAIGHT
+            && gap_after(&contact, at) < -STRAIGHT.value()
         {
             range.cut(&contact);
             kept.push(contact);

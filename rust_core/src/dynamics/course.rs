@@ -9,9 +9,10 @@ use super::touch::{Touch, mount};
 use crate::geometry::{Vector, left_of};
 use crate::robot::{Model, Mount};
 use crate::solver::{Contact, Direction};
+use crate::units::Metres;
 
 /// [m] Surfaces closer than this touch; a gap that a step has just closed is only rounding.
-const TOUCHING: f64 = 1e-10;
+const TOUCHING: Metres = Metres(1e-10);
 
 impl Touch {
     /// Updates the gap for the motion in a step of `h` [s], and how much faster the gap opens, and the surface slides, at
@@ -43,12 +44,12 @@ impl Touch {
 
     /// Whether it pressed in the first solve or touches now.
     pub(super) fn has_closed(&self, solved: &Contact) -> bool {
-        solved.normal_impulse > 0.0 || self.gap <= TOUCHING
+        solved.normal_impulse > 0.0 || self.gap <= TOUCHING.value()
     }
 
     /// Whether it did not touch when the step began.
     pub(super) fn was_open(&self) -> bool {
-        self.start > TOUCHING
+        self.start > TOUCHING.value()
     }
 
     /// Its part's motion.

@@ -15,14 +15,15 @@ use super::LoadedContact;
 use crate::contact::Contact;
 use crate::robot::Model;
 use crate::terrain::Profile;
+use crate::units::{Metres, Seconds};
 
 /// [m] A contact continues one that is no farther away than this.
-const SAME_PLACE: f64 = 5e-3;
+const SAME_PLACE: Metres = Metres(5e-3);
 /// Cosine between normals of one contact: it turns by less than 26 degrees from step to step.
 const SAME_NORMAL: f64 = 0.9;
 /// [s] How long a contact that has opened is remembered: the default window of a stop, over which its
 /// forces are averaged.
-const REMEMBERED: f64 = 1.0;
+const REMEMBERED: Seconds = Seconds(1.0);
 /// How many of them are remembered at most. Runs have about ten, runs with 24 gear wheels up to 240; there
 /// are more only if everything moves so fast that no contact is at the place of another.
 const MOST_LOST: usize = 256;
@@ -78,7 +79,7 @@ impl Identity {
         contacts: &mut [Contact],
         travel: f64,
     ) {
-        let near = SAME_PLACE.max(2.0 * travel);
+        let near = SAME_PLACE.value().max(2.0 * travel);
         let found = &mut self.found;
         found.given = self.given;
         found.taken.clear();
@@ -115,7 +116,7 @@ impl Identity {
         }
         let mut again = found.again.iter();
         self.lost
-            .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED);
+            .retain(|lost| again.next() != Some(&true) && lost.age < REMEMBERED.value());
         let gone = found.gone(last);
         self.lost.extend(gone.map(|l| Lost {
             contact: l.contact,
@@ -165,15 +166,16 @@ impl Identity {
             };
             [(i, lost), (i, closed)]
         });
-        let nearest = nearest(both_ends, contact, SAME_PLACE)?;
+        let nearest = nearest(both_ends, contact, SAME_PLACE.value())?;
         self.found.again[nearest] = true;
         Some(self.lost[nearest].contact.number)
     }
 
     /// Whether these can be the contacts of the last step; no two known contacts may share a number.
     pub(super) fn fits(&self, last: &[LoadedContact], model: &Model, lanes: &[Profile]) -> bool {
-        let fits =
-            |lost: &Lost| lost.contact.fits(model, lanes) && (0.0..REMEMBERED).contains(&lost.age);
+        let fits = |lost: &Lost| {
+            lost.contact.fits(model, lanes) && (0.0..REMEMBERED.value()).contains(&lost.age)
+        };
         let last = last.iter().map(|l| l.contact.number);
         let lost = self.lost.iter().map(|lost| lost.contact.number);
         let mut numbers: Vec<u64> = last.chain(lost).collect();

@@ -53,6 +53,7 @@ use crate::scenario::Solver;
 use crate::solver::{Effort, Problem};
 use crate::terrain::Profile;
 
+use crate::units::Seconds;
 pub use chains::ChainReading;
 pub(crate) use impulses::Impulses;
 pub(crate) use levers::Levers;
@@ -67,7 +68,7 @@ pub(crate) use trend::Trend;
 /// [s] Sticking contacts can pull against each other without end, which no body with any compliance would
 /// sustain. Friction that balance does not require fades with this time constant; not beside chains, whose contacts
 /// are springs: if these faded, whatever hangs on them would creep.
-const SELF_STRESS_TIME: f64 = 0.1;
+const SELF_STRESS_TIME: Seconds = Seconds(0.1);
 
 /// Solves the motion of one robot.
 pub(crate) struct Dynamics {
@@ -171,7 +172,7 @@ impl Dynamics {
     pub(crate) fn prepare(&mut self, state: &State, contacts: &[Contact], (h, travel): (f64, f64)) {
         let half = 0.5 * h;
         let fading = if self.chains.is_empty() {
-            libm::exp(-h / SELF_STRESS_TIME)
+            libm::exp(-h / SELF_STRESS_TIME.value())
         } else {
             1.0
         };

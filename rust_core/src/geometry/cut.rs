@@ -3,9 +3,10 @@
 use super::Envelope;
 use super::search::maximise;
 use super::{Vector, cross};
+use crate::units::Metres;
 
 /// [m] Shorter chords only touch the envelope.
-const TOUCHES: f64 = 1e-9;
+const TOUCHES: Metres = Metres(1e-9);
 
 /// A stretch of the polyline inside the envelope, from left to right; the solid lies on its right.
 pub(crate) struct Chord {
@@ -54,7 +55,7 @@ pub(crate) fn chords(belt: &Envelope, polyline: &[Vector]) -> Vec<Chord> {
     }
     chords.retain(|c| {
         let length: f64 = c.points.windows(2).map(|p| (p[1] - p[0]).length()).sum();
-        length > TOUCHES
+        length > TOUCHES.value()
     });
     for chord in &mut chords {
         let ends = [chord.points[0], chord.points[chord.points.len() - 1]];
@@ -91,7 +92,7 @@ pub(crate) fn pieces<'a>(belt: &Envelope, chords: &'a [Chord]) -> Vec<Piece<'a>>
 fn way_between(belt: &Envelope, from: f64, to: f64) -> f64 {
     let way = (to - from).rem_euclid(belt.length());
     // Positions in the wrong order by rounding are the same.
-    if way > belt.length() - TOUCHES {
+    if way > belt.length() - TOUCHES.value() {
         0.0
     } else {
         way

@@ -10,9 +10,10 @@ use super::hull::{Arc, SAME_TURN, arcs_round};
 use super::search::maximise;
 use super::stretch::{Form, Stretch};
 use super::{Vector, direction};
+use crate::units::Metres;
 
 /// [m] Stretches whose distances differ by less count as equally near, whatever the rounding.
-const AS_NEAR: f64 = 1e-8;
+const AS_NEAR: Metres = Metres(1e-8);
 
 /// The convex hull of discs, as arcs and straight runs.
 #[derive(Clone, Debug)]
@@ -145,7 +146,7 @@ impl Envelope {
     pub(crate) fn nearest(&self, point: Vector) -> Nearest {
         let depths = || self.stretches.iter().map(|s| s.depth(point));
         let depth = depths().flatten().fold(f64::INFINITY, f64::min);
-        let is_nearest = |d: Option<f64>| d.is_some_and(|d| d - depth < AS_NEAR);
+        let is_nearest = |d: Option<f64>| d.is_some_and(|d| d - depth < AS_NEAR.value());
         Nearest {
             depth,
             stretch: depths().position(is_nearest).unwrap_or_default(),

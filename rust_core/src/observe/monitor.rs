@@ -67,7 +67,7 @@ impl Monitor {
 
     /// [s] When it checks the progress next; a step is taken in parts that end there.
     pub(crate) fn next_look(&self) -> f64 {
-        self.seen.looks as f64 * LOOK
+        self.seen.looks as f64 * LOOK.value()
     }
 
     /// Takes a step, or a part of one: the state of the robot at its end, and during it the mean speed [m/s] along the
@@ -197,7 +197,7 @@ impl Monitor {
         let seen = &mut self.seen;
         let freed = seen
             .progress
-            .look(now.time, command != 0.0, (window, LOOK), least);
+            .look(now.time, command != 0.0, (window, LOOK.value()), least);
         if let Some(start) = freed {
             let inside = seen.intrusions.most_loaded();
             let stop = Event::stop(start, now.time, inside);

@@ -7,9 +7,10 @@ use super::{IntrusionWatch, Loads, Outcome, Shaking, Signals};
 use crate::robot::Model;
 use crate::solver::Effort;
 use crate::terrain::Profile;
+use crate::units::Seconds;
 
 /// [s] Time between two checks of the progress; far shorter than any stop window.
-pub(super) const LOOK: f64 = 0.01;
+pub(super) const LOOK: Seconds = Seconds(0.01);
 
 /// What a monitor has observed of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -57,7 +58,7 @@ impl Seen {
     /// No observations, at a time [s].
     pub(crate) fn from(time: f64) -> Self {
         Self {
-            looks: (time / LOOK).ceil() as u64,
+            looks: (time / LOOK.value()).ceil() as u64,
             last_time: time,
             progress: Progress::default(),
             signals: Signals::default(),
@@ -87,7 +88,7 @@ impl Seen {
     pub(crate) fn fits(&self, time: f64, model: &Model, lanes: &[Profile]) -> bool {
         let parts = model.parts.len();
         // Checks are counted; if the count were ahead of time, there would be none for a while.
-        let next_look = self.looks as f64 * LOOK;
+        let next_look = self.looks as f64 * LOOK.value();
         let numbers = [
             self.time_to_clear,
             self.max_penetration,
@@ -100,8 +101,8 @@ impl Seen {
             self.max_guide_penetration,
             self.max_sprocket_slip,
         ];
-        next_look <= time + 2.0 * LOOK
-            && (self.last_time - time).abs() <= 2.0 * LOOK
+        next_look <= time + 2.0 * LOOK.value()
+            && (self.last_time - time).abs() <= 2.0 * LOOK.value()
             && numbers.iter().all(|number| !number.is_nan())
             && self.goal_since.is_none_or(f64::is_finite)
             && self.progress.fits(parts, lanes)

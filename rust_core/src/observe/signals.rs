@@ -13,9 +13,10 @@ use crate::dynamics::{DriveState, LoadedContact};
 use crate::geometry::Vector;
 use crate::robot::Model;
 use crate::terrain::Profile;
+use crate::units::Metres;
 
 /// [m] Surfaces closer than this could carry a load, even if they do not.
-const TOUCHES: f64 = 1e-6;
+const TOUCHES: Metres = Metres(1e-6);
 
 /// Sums over the last complete window and the current one.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -170,7 +171,8 @@ impl Block {
             self.drives[k].force += drive.force * dt;
             self.drives[k].speed += speed * dt;
         }
-        let bears = |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES;
+        let bears =
+            |l: &&LoadedContact| l.normal_force > 0.0 || l.contact.distance < TOUCHES.value();
         for l in loaded.iter().filter(bears) {
             self.gather(&Summed::new(l, dt));
         }

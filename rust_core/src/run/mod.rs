@@ -8,6 +8,8 @@ mod metrics;
 mod needs;
 mod poses;
 mod record;
+#[cfg(test)]
+mod scale;
 mod simulate;
 mod simulation;
 mod sinkage;

@@ -186,7 +186,7 @@ pub fn outcome_of(simulation: &Simulation, cancel: &Cancel) -> Result<Outcome, E
 fn replay(scenario: &Checked, at: f64, cancel: &Cancel) -> Result<Simulation, Error> {
     let mut simulation = Simulation::new(scenario);
     let end = scenario.scenario().duration.max(at);
-    while simulation.time() < at - SAME_TIME {
+    while simulation.time() < at - SAME_TIME.value() {
         simulation.step_until(end)?;
         cancel.check()?;
     }

@@ -5,11 +5,12 @@
 use super::Simulation;
 use crate::contact::depth;
 use crate::scenario::{Doubt, Engine};
+use crate::units::{Metres, Seconds};
 
 /// [s] Time between two looks at how deep the robot is: what has sunk in does not come out at once.
-const LOOK: f64 = 0.05;
+const LOOK: Seconds = Seconds(0.05);
 /// [m] How deep something may get in a step that the search for contacts did not see: 0.5 mm by its middle.
-const UNSEEN: f64 = 1e-3;
+const UNSEEN: Metres = Metres(1e-3);
 /// Effective mass at the end of a rod, in units of its mass.
 const AT_END: f64 = 0.25;
 
@@ -34,14 +35,14 @@ impl Sinkage {
             deepest: 0.0,
             fastest: 0.0,
             reach: simulation.model().reach(),
-            looks: (simulation.time() / LOOK) as u64,
+            looks: (simulation.time() / LOOK.value()) as u64,
         }
     }
 
     /// Takes the state after a step.
     pub(super) fn step(&mut self, simulation: &Simulation) {
         self.fastest = self.fastest.max(speed(simulation, self.reach));
-        if simulation.time() >= self.looks as f64 * LOOK {
+        if simulation.time() >= self.looks as f64 * LOOK.value() {
             self.looks += 1;
             self.deepest = self.deepest.max(deepest(simulation));
         }
@@ -90,5 +91,5 @@ fn explained(simulation: &Simulation, speed: f64) -> f64 {
     let of_shoes = model.chains.iter().map(|chain| AT_END * chain.shoe_mass);
     let own = of_shoes.fold(mass, f64::min);
     let load = simulation.weight() + model.motors as f64 * model.motor.force;
-    load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN
+    load / (own * omega * omega) + speed / omega * (mass / own).sqrt() + UNSEEN.value()
 }

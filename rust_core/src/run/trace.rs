@@ -8,6 +8,7 @@ use crate::dynamics::State;
 use crate::error::LimitError;
 use crate::limits::memory::{Budget, Rows, reserve};
 use crate::observe::Loads;
+use crate::units::MetresPerSecond;
 
 /// Samples of the state; every column has one entry per sample (two for x, y pairs).
 #[derive(Clone, Debug, Default)]
@@ -126,7 +127,7 @@ struct Sums {
 }
 
 /// [m/s] Below this, the track counts as standing and has no slip.
-const STANDS: f64 = 1e-3;
+const STANDS: MetresPerSecond = MetresPerSecond(1e-3);
 
 impl Sums {
     /// Adds a part of the last step, `dt` [s] long.
@@ -194,7 +195,7 @@ impl<'a> Recorder<'a> {
         simulation: &Simulation,
     ) -> Result<(Trace, ContactTable), LimitError> {
         let end = simulation.time();
-        let is_taken = |last: &f64| end - last < SAME_TIME;
+        let is_taken = |last: &f64| end - last < SAME_TIME.value();
         if !self.trace.time.last().is_some_and(is_taken) {
             self.sample(simulation, end)?;
         }
@@ -233,7 +234,7 @@ impl<'a> Recorder<'a> {
         t.track_speed.push(reading.track_speed);
         t.track_position.push(reading.track_position);
         let forward = reading.forward_speed();
-        let slip = if reading.track_speed.abs() < STANDS {
+        let slip = if reading.track_speed.abs() < STANDS.value() {
             0.0
         } else {
             1.0 - forward / reading.track_speed

@@ -42,7 +42,7 @@ impl Problem {
             if self.switch_motors() {
                 self.act_with_motors();
             } else {
-                if off < AGREEMENT {
+                if off < AGREEMENT.value() {
                     return true;
                 }
                 last = self.settle_after(before, off);

@@ -156,7 +156,7 @@ impl Problem {
             } else {
                 let mut next = None;
                 self.conditions(f64::INFINITY, |switch, value| {
-                    if value < -PAST && next.is_none() {
+                    if value < -PAST.value() && next.is_none() {
                         next = Some(switch);
                     }
                 });

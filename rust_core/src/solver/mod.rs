@@ -46,12 +46,13 @@ pub(crate) use ring::{Drive, Grasp, Hinge, Ring};
 pub(crate) use twist::Twist;
 pub(crate) use velocities::{Acts, Link, Moves, Velocities};
 
+use crate::units::MetresPerSecond;
 use condition::Condition;
 use system::System;
 
 /// [m/s] A solve ends when no constraint changes a velocity by more than this: over a step of 1 ms that
 /// corresponds to a force of 1e-5 of the weight, far below anything that decides an outcome.
-const AGREEMENT: f64 = 1e-7;
+const AGREEMENT: MetresPerSecond = MetresPerSecond(1e-7);
 /// Rounds of a search at most, unless told otherwise; most need none.
 const ITERATIONS: u32 = 8;
 
@@ -145,7 +146,7 @@ impl Problem {
             }
         }
         // Contacts that share a load may pass it round, and agree all the same.
-        self.lower() && self.follow_velocities() < AGREEMENT
+        self.lower() && self.follow_velocities() < AGREEMENT.value()
     }
 
     /// Finds them from those of the last solve, if corrected guesses lead there.

@@ -9,6 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::damper::Damper;
+use crate::units::MetresPerSecond;
 
 /// The state of a motor in a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,7 +27,7 @@ pub(crate) enum Hold {
 /// Relative tolerance of the limit; a smaller excess is rounding.
 pub(super) const AT_LIMIT: f64 = 1e-12;
 /// [m/s] A motor at its limit holds again once it is past its speed by this.
-pub(super) const PAST: f64 = 1e-9;
+pub(super) const PAST: MetresPerSecond = MetresPerSecond(1e-9);
 
 /// What a motor moves over the base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +98,7 @@ impl Motor {
             // A smaller excess is rounding.
             let slack = match (self.hold, self.correction) {
                 (Hold::Holds, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
-                _ => PAST,
+                _ => PAST.value(),
             };
             if value < -slack {
                 next = hold;

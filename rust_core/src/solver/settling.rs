@@ -6,15 +6,16 @@
 //! The equations: docs/physics.md, "Settling".
 
 use super::{AGREEMENT, Contact, Problem, Twist};
+use crate::units::MetresPerSecond;
 
 /// Solutions with the same states at most.
 const CLOSING: u32 = 8;
 /// Changes that are taken at once at most.
 const FARTHEST: f64 = 1e6;
 /// [m/s] By how much the base may still move where a search ends close to a jam, ...
-const CLOSE: f64 = 1e-6;
+const CLOSE: MetresPerSecond = MetresPerSecond(1e-6);
 /// ... and by how much it moves at most if it stands.
-const STANDS: f64 = 1e-10;
+const STANDS: MetresPerSecond = MetresPerSecond(1e-10);
 
 /// How many times the last change the rest of a series is, from an error before it and the one now; nothing if there was
 /// none before, or if it does not fall.
@@ -85,7 +86,9 @@ impl Problem {
             }
             let moved = self.moved();
             let rest = rest_of_series(before, moved).map(|times| times * moved);
-            if off < AGREEMENT && (moved < STANDS || rest.is_some_and(|rest| rest < CLOSE)) {
+            if off < AGREEMENT.value()
+                && (moved < STANDS.value() || rest.is_some_and(|rest| rest < CLOSE.value()))
+            {
                 return true;
             }
             last = self.settle_after(before, moved);
@@ -97,7 +100,7 @@ impl Problem {
     /// Whether the states fit the velocities, but for what makes no difference to these.
     fn fits(&self) -> bool {
         let mut bearing = self.contacts.iter().filter(|c| c.bears);
-        bearing.all(|c| c.misfit(c.speeds(&self.velocities)) < AGREEMENT)
+        bearing.all(|c| c.misfit(c.speeds(&self.velocities)) < AGREEMENT.value())
     }
 
     /// [m/s] How far the last solution has moved the base.

@@ -49,7 +49,7 @@ impl Problem {
                 self.act_with_motors();
                 self.set_out();
             } else {
-                if off < AGREEMENT {
+                if off < AGREEMENT.value() {
                     return true;
                 }
                 last = self.settle_after(before, off);

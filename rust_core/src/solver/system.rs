@@ -17,6 +17,8 @@ const RIGHT: usize = UNKNOWNS;
 pub(super) struct System {
     /// Rows of the base and of what is hinged to it.
     rows: [[f64; UNKNOWNS + 1]; UNKNOWNS],
+    /// [1/kg, 1/kg, 1/(kg m^2), ...] Weights of the rows: those of forces and of moments have no unit in common.
+    weights: [f64; UNKNOWNS],
     joints: usize,
     spins: Vec<Spin>,
 }
@@ -38,6 +40,7 @@ impl System {
     pub(super) fn new(spins: usize, joints: usize) -> Self {
         Self {
             rows: [[0.0; UNKNOWNS + 1]; UNKNOWNS],
+            weights: [1.0; UNKNOWNS],
             joints,
             spins: vec![Spin::default(); spins],
         }
@@ -46,6 +49,8 @@ impl System {
     /// Starts from a base on which nothing acts.
     pub(super) fn start(&mut self, mass: f64, inertia: f64, velocity: Vector, moment: f64) {
         self.rows = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
+        let (of_force, of_moment) = (1.0 / mass, 1.0 / inertia);
+        self.weights = [of_force, of_force, of_moment, of_moment, of_moment];
         let momentum = [mass * velocity.x, mass * velocity.y, moment];
         for (i, mass) in [mass, mass, inertia].into_iter().enumerate() {
             self.rows[i][i] = mass;
@@ -147,7 +152,7 @@ impl System {
                 self.rows[i][RIGHT] -= share * spin.moment;
             }
         }
-        let known = eliminate::<COUNT>(&mut self.rows)?;
+        let known = eliminate::<COUNT>(&mut self.rows, self.weights)?;
         into.base = Twist {
             velocity: Vector::new(known[0], known[1]),
             turn: known[2],
@@ -161,11 +166,17 @@ impl System {
     }
 }
 
-/// Gaussian elimination with pivoting; none if the system is singular.
-fn eliminate<const COUNT: usize>(a: &mut [[f64; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f64; COUNT]> {
+/// Gaussian elimination with pivoting; none if the system is singular. The squares of pivots are compared by the weights
+/// of their rows, so that a copy of a robot on another scale has the same pivots.
+fn eliminate<const COUNT: usize>(
+    a: &mut [[f64; UNKNOWNS + 1]; UNKNOWNS],
+    mut weights: [f64; UNKNOWNS],
+) -> Option<[f64; COUNT]> {
     for i in 0..COUNT {
-        let pivot = (i..COUNT).max_by(|p, q| a[*p][i].abs().total_cmp(&a[*q][i].abs()))?;
+        let size = |row: usize| a[row][i] * a[row][i] * weights[row];
+        let pivot = (i..COUNT).max_by(|p, q| size(*p).total_cmp(&size(*q)))?;
         a.swap(i, pivot);
+        weights.swap(i, pivot);
         if a[i][i] == 0.0 || !a[i][i].is_finite() {
             return None;
         }

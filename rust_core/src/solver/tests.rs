@@ -115,9 +115,9 @@ fn of_redundant_supports_the_nearest_forces_to_the_guess_are_taken() {
     let found: Vec<f64> = problem.contacts.iter().map(|c| c.normal_impulse).collect();
     let weight = 2.0 * GRAVITY * TIME;
     let sum: f64 = found.iter().sum();
-    assert_relative_eq!(sum, weight, epsilon = 2.0 * AGREEMENT);
+    assert_relative_eq!(sum, weight, epsilon = 2.0 * AGREEMENT.value());
     let moment: f64 = places.iter().zip(&found).map(|(x, n)| x * n).sum();
-    assert!(moment.abs() < 0.1 * AGREEMENT);
+    assert!(moment.abs() < 0.1 * AGREEMENT.value());
     // So changes are a line over x.
     let change = |i: usize| found[i] - guesses[i];
     let slope = (change(4) - change(0)) / (places[4] - places[0]);

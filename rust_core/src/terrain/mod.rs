@@ -106,7 +106,7 @@ impl Ground {
     fn skylines(lanes: &[Skyline; 3], radius: f64, friction: f64) -> Result<Self, ScenarioError> {
         let end = lanes[2].end();
         let profile = |skyline: &Skyline| {
-            let points = skyline.points(-RUN_OUT, end + RUN_OUT);
+            let points = skyline.points(-RUN_OUT.value(), end + RUN_OUT.value());
             Profile::new("terrain", &points, radius, friction, true)
         };
         if lanes[0] == lanes[1] {
@@ -141,7 +141,7 @@ impl Ground {
     fn of(lanes: Vec<Profile>, tracks: usize, goal: f64) -> Self {
         let first = |profile: &Profile| {
             let edges = &profile.edges;
-            let ahead = edges.iter().find(|edge| edge.x >= -COLLINEAR);
+            let ahead = edges.iter().find(|edge| edge.x >= -COLLINEAR.value());
             ahead.or(edges.first()).map(|edge| edge.x)
         };
         let first_edge = lanes.iter().filter_map(first).reduce(f64::min);

@@ -1,9 +1,10 @@
 //! Corners of the parametric terrains.
 
 use crate::scenario::Terrain;
+use crate::units::Metres;
 
 /// [m] Length of level ground before and behind a parametric obstacle.
-pub(super) const RUN_OUT: f64 = 100.0;
+pub(super) const RUN_OUT: Metres = Metres(100.0);
 
 /// A described terrain, as corners.
 pub(super) struct Obstacle {
@@ -90,7 +91,7 @@ pub(super) fn of(terrain: &Terrain) -> Obstacle {
 
 fn level(length: f64, friction: f64) -> Obstacle {
     Obstacle {
-        points: vec![[-RUN_OUT, 0.0], [length + RUN_OUT, 0.0]],
+        points: vec![[-RUN_OUT.value(), 0.0], [length + RUN_OUT.value(), 0.0]],
         goal: length,
         edge_radius: 0.0,
         friction,
@@ -106,9 +107,9 @@ fn block(height: f64, length: f64, edge_radius: f64, friction: f64) -> Obstacle 
 /// The corners, with level ground before the first and behind the last.
 fn between_levels(corners: &[[f64; 2]], edge_radius: f64, friction: f64) -> Obstacle {
     let ([x0, y0], [x1, y1]) = (corners[0], corners[corners.len() - 1]);
-    let mut points = vec![[x0 - RUN_OUT, y0]];
+    let mut points = vec![[x0 - RUN_OUT.value(), y0]];
     points.extend(corners);
-    points.push([x1 + RUN_OUT, y1]);
+    points.push([x1 + RUN_OUT.value(), y1]);
     Obstacle {
         points,
         goal: x1,

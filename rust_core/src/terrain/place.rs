@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::Profile;
 use crate::geometry::Vector;
+use crate::units::Metres;
 
 /// [m] A contact this close to a vertex touches the edge, not the face beside it.
-const AT_VERTEX: f64 = 1e-7;
+const AT_VERTEX: Metres = Metres(1e-7);
 
 impl Profile {
     /// Position along the profile of a point on a facet, as the index of the facet plus a share of it, and the
@@ -33,9 +34,9 @@ impl Profile {
     pub(crate) fn edge_at(&self, facet: usize, point: Vector) -> i32 {
         let (left, right) = (self.edge_of_point[facet], self.edge_of_point[facet + 1]);
         let on_arc = left == right && left >= 0;
-        if on_arc || (point - self.points[facet]).length() < AT_VERTEX {
+        if on_arc || (point - self.points[facet]).length() < AT_VERTEX.value() {
             left
-        } else if (point - self.points[facet + 1]).length() < AT_VERTEX {
+        } else if (point - self.points[facet + 1]).length() < AT_VERTEX.value() {
             right
         } else {
             -1

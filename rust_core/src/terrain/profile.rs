@@ -137,7 +137,11 @@ impl Profile {
     /// Walks along the corners and replaces each convex one by an arc of this radius.
     fn round(&mut self, path: &str, corners: &[Vector], radius: f64) -> Result<(), ScenarioError> {
         // The facets of a smaller arc would have no length.
-        let radius = if radius < COLLINEAR { 0.0 } else { radius };
+        let radius = if radius < COLLINEAR.value() {
+            0.0
+        } else {
+            radius
+        };
         if radius > 0.0 {
             check_facets(path, corners, radius)?;
         }
@@ -146,7 +150,8 @@ impl Profile {
         for i in 1..corners.len() - 1 {
             let (before, corner, behind) = (corners[i - 1], corners[i], corners[i + 1]);
             let (d1, angle) = turn(before, corner, behind);
-            if angle.abs() * (corner - before).length().min((behind - corner).length()) < COLLINEAR
+            if angle.abs() * (corner - before).length().min((behind - corner).length())
+                < COLLINEAR.value()
             {
                 spare = 0.0;
                 self.push(corner, -1);
@@ -176,7 +181,7 @@ impl Profile {
                 ));
             }
             // What an arc leaves of a face has no direction if it is no longer than this.
-            let is_joined = spare + tangent > 0.0 && to_last - tangent < COLLINEAR;
+            let is_joined = spare + tangent > 0.0 && to_last - tangent < COLLINEAR.value();
             spare = tangent;
             let outward = left_of(d1);
             let start = corner - d1 * tangent;
@@ -187,7 +192,7 @@ impl Profile {
                 if !rounded {
                     return corner;
                 }
-                if k == facets as usize && to_next - tangent < COLLINEAR {
+                if k == facets as usize && to_next - tangent < COLLINEAR.value() {
                     return behind;
                 }
                 let (s, c) = libm::sincos(-angle * k as f64 / facets);

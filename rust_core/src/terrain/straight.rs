@@ -3,20 +3,22 @@
 //! What is left out changes no contact by more than the contacts of a robot at rest sink in.
 
 use crate::geometry::{Vector, cross, left_of};
+use crate::units::Metres;
 
 /// [m] Points closer than this to the line through their neighbours do not make an edge.
-pub(super) const COLLINEAR: f64 = 1e-9;
+pub(super) const COLLINEAR: Metres = Metres(1e-9);
 /// [m] Ground within this of a straight line is straight: less than the 0.3 um that a robot at rest sinks in.
-pub(crate) const STRAIGHT: f64 = 0.25e-6;
+pub(crate) const STRAIGHT: Metres = Metres(0.25e-6);
 /// [m] Ground in pieces shorter than this is finely divided; described ground has larger ones.
-pub(crate) const FINE: f64 = 1e-3;
+pub(crate) const FINE: Metres = Metres(1e-3);
 
 /// The points at which a polyline bends, both ends included; `is_arc` says which belong to a rounded edge.
 pub(super) fn bends(points: &[Vector], is_arc: impl Fn(usize) -> bool) -> Vec<u32> {
     let last = points.len() - 1;
     // An arc goes on in the direction of the piece beside it.
-    let is_fine =
-        |i: usize| (points[i + 1] - points[i]).length() < FINE && !is_arc(i) && !is_arc(i + 1);
+    let is_fine = |i: usize| {
+        (points[i + 1] - points[i]).length() < FINE.value() && !is_arc(i) && !is_arc(i + 1)
+    };
     let mut bends = vec![0];
     let (mut begin, mut lines) = (points[0], Lines::default());
     for i in 1..last {
@@ -39,10 +41,10 @@ impl Lines {
     /// Leaves the lines that pass close to a point.
     fn pass(&mut self, point: Vector) {
         let far = point.length();
-        if far <= STRAIGHT {
+        if far <= STRAIGHT.value() {
             return;
         }
-        let (way, sine) = (point / far, STRAIGHT / far);
+        let (way, sine) = (point / far, STRAIGHT.value() / far);
         let (along, across) = (way * (1.0 - sine * sine).sqrt(), left_of(way) * sine);
         let [mut right, mut left] = [along - across, along + across];
         if let Some([known_right, known_left]) = self.0 {
@@ -72,7 +74,7 @@ pub(super) fn without_collinear(points: &[Vector]) -> Vec<Vector> {
         let (back, chord) = (here - last, next - last);
         let off = (back.x * chord.y - back.y * chord.x).abs() / chord.length();
         let between = back.dot(chord) >= 0.0 && back.dot(chord) <= chord.length_squared();
-        if off > COLLINEAR || !between {
+        if off > COLLINEAR.value() || !between {
             kept.push(here);
         }
     }
@@ -110,7 +112,7 @@ mod tests {
                 for point in &points[ends[0] as usize..ends[1] as usize] {
                     let share = (*point - a).dot(b - a) / (b - a).length_squared();
                     let off = (*point - a - (b - a) * share).length();
-                    assert!((0.0..1.0).contains(&share) && off < STRAIGHT * (1.0 + 1e-6));
+                    assert!((0.0..1.0).contains(&share) && off < STRAIGHT.value() * (1.0 + 1e-6));
                 }
             }
             (given, left) = (given + points.len(), left + bends.len());

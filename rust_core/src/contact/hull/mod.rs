@@ -17,9 +17,10 @@ use super::overlap::{self, NEARLY, Tip};
 use super::reach::thin_out;
 use crate::geometry::{Disc, Envelope, Pose, Vector, direction};
 use crate::robot::{Part, Shape};
+use crate::units::Metres;
 
 /// [m] Ground deeper inside than this did not get there by sinking in.
-pub(super) const SHALLOW: f64 = 1e-3;
+pub(super) const SHALLOW: Metres = Metres(1e-3);
 
 /// A part that is the hull of discs or of points.
 pub(super) struct HullContact {
@@ -95,11 +96,11 @@ impl HullContact {
         }
         let first = contacts.len();
         // A part that is fast enough to be found from far away may be this deep in the middle of a step.
-        let reach = (prediction, SHALLOW.max(prediction));
+        let reach = (prediction, SHALLOW.value().max(prediction));
         for arc in &self.arcs {
             lane.touches_of_disc(&region, center(arc), arc.disc.radius, reach, |touch| {
                 // Behind a face is ground, but beyond thin ground it is open again.
-                let is_real = touch.distance >= -SHALLOW
+                let is_real = touch.distance >= -SHALLOW.value()
                     || lane.holds(center(arc) - touch.normal * arc.disc.radius);
                 let on_face = is_real && matches!(touch.on, On::Face(_));
                 let yields =
@@ -167,7 +168,8 @@ impl HullContact {
         let (outward, is_run) = self.outward_at(place, inside);
         let normal = -(pose.rotation * outward);
         // Deep inside, every corner bears on the hull by itself.
-        if depth > SHALLOW || corner.faces(normal) || (is_run && corner.faces_side(normal)) {
+        if depth > SHALLOW.value() || corner.faces(normal) || (is_run && corner.faces_side(normal))
+        {
             return Some(corner.touch(i, normal, -depth));
         }
         let (depth, normal) = self.way_out(corner, place, pose)?;
@@ -191,7 +193,7 @@ impl HullContact {
             .normals
             .map(below_face)
             .into_iter()
-            .fold(SHALLOW, f64::min);
+            .fold(SHALLOW.value(), f64::min);
         let met = self
             .arcs
             .iter()

@@ -289,7 +289,8 @@ impl Index {
     /// Whether the pieces of a region are many and small.
     pub(super) fn is_fine(&self, region: &Region) -> bool {
         let Range { start, end } = region.0;
-        let is_fine = || self.begins[end - 1] - self.begins[start] < FINE * (end - start) as f64;
+        let is_fine =
+            || self.begins[end - 1] - self.begins[start] < FINE.value() * (end - start) as f64;
         region.is_long() && is_fine()
     }
 

@@ -19,6 +19,7 @@ use roof::{Chord, SAME_FACE};
 use crate::geometry::{Vector, cross, left_of};
 use crate::terrain::{Profile, facet_along};
 
+use crate::units::Metres;
 pub(super) use corner::Corner;
 pub(super) use index::{Region, Stretch};
 use touch::Face;
@@ -27,7 +28,7 @@ pub(super) use touch::{On, ROUNDING, Touch};
 /// Corners at either end of finely divided ground that are searched for one that bears.
 const NEAR_END: usize = 16;
 /// [m] A contact this close to the end of a face touches the edge there.
-const AT_CORNER: f64 = 1e-7;
+const AT_CORNER: Metres = Metres(1e-7);
 
 /// Faces and corners from left to right; face i lies between corners i and i + 1.
 pub(crate) struct Lane {
@@ -187,9 +188,9 @@ impl Lane {
         if is_past {
             return None;
         }
-        let edge = if along < AT_CORNER {
+        let edge = if along < AT_CORNER.value() {
             face.edges[0]
-        } else if face.length - along < AT_CORNER {
+        } else if face.length - along < AT_CORNER.value() {
             face.edges[1]
         } else {
             -1
@@ -342,7 +343,7 @@ impl Lane {
             };
             let highest = self.index.highest(
                 &region,
-                SAME_FACE,
+                SAME_FACE.value(),
                 |stretch| chord.rise_of(&stretch.roof),
                 |i| chord.rise(&self.corners[i]),
             );

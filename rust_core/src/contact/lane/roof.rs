@@ -5,10 +5,11 @@
 
 use super::{Corner, Touch};
 use crate::geometry::{Vector, left_of};
+use crate::units::Metres;
 
 /// [m] Ground that rises above a chord by less than this bears no more than the ends of the chord: it is a
 /// thousandth of the deepest overlap that should ever occur.
-pub(super) const SAME_FACE: f64 = 1e-6;
+pub(super) const SAME_FACE: Metres = Metres(1e-6);
 
 /// Both ends of a line above all corners of a stretch of ground, roughly parallel to the stretch.
 pub(super) type Roof = [Vector; 2];
@@ -55,7 +56,7 @@ impl Chord {
     /// Whether a point lies between the ends of the chord and no higher than it.
     fn hides(&self, point: Vector) -> bool {
         let [a, b] = self.ends;
-        a.x <= point.x && point.x <= b.x && (point - a).dot(self.up) < SAME_FACE
+        a.x <= point.x && point.x <= b.x && (point - a).dot(self.up) < SAME_FACE.value()
     }
 
     /// [m] How far a corner rises above the line.

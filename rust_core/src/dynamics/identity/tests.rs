@@ -219,7 +219,7 @@ fn numbers_that_no_step_gave_do_not_fit() {
         ("of no time", |identity, _| identity.lost[0].age = f64::NAN),
         ("of the future", |identity, _| identity.lost[0].age = -STEP),
         ("of long ago", |identity, _| {
-            identity.lost[0].age = REMEMBERED;
+            identity.lost[0].age = REMEMBERED.value();
         }),
         ("of nobody", |identity, _| {
             identity.lost[0].contact.part = 999;

@@ -7,14 +7,15 @@ use super::Simulation;
 use crate::contact::{Contact, Dents};
 use crate::dynamics::DriveState;
 use crate::geometry::{Vector, cross};
+use crate::units::Metres;
 
 /// [m] Contacts farther away than this play no part in one round.
-const REACH: f64 = 0.02;
+const REACH: Metres = Metres(0.02);
 /// [m] Farthest motion in one round: gaps are linear in the pose to first order.
-const FARTHEST: f64 = 5e-3;
+const FARTHEST: Metres = Metres(5e-3);
 /// [m] Ground that overlaps by less is not inside, and a smaller motion is none.
-const INSIDE: f64 = 1e-6;
-const NOTHING: f64 = 1e-8;
+const INSIDE: Metres = Metres(1e-6);
+const NOTHING: Metres = Metres(1e-8);
 const ROUNDS: usize = 200;
 
 /// A displacement of the centre of mass [m], and a turn about it times half the robot's length [m].
@@ -58,12 +59,12 @@ impl Simulation {
     /// Straight up from its own floor, as far as it takes to be clear.
     fn raised_clear(&mut self) -> Option<Way> {
         /// [m] First distance; it doubles until it is farther than any robot is high.
-        const FIRST: f64 = 0.01;
+        const FIRST: Metres = Metres(0.01);
         const DOUBLINGS: i32 = 10;
 
         let (sine, cosine) = libm::sincos(self.state.angle);
         let ways = (0..DOUBLINGS).map(|i| {
-            let rise = FIRST * f64::from(1 << i);
+            let rise = FIRST.value() * f64::from(1 << i);
             [-sine * rise, cosine * rise, 0.0]
         });
         ways.into_iter()
@@ -88,13 +89,13 @@ impl Simulation {
                 .collect();
             let aim = nearest_beyond(&walls);
             let step: Way = std::array::from_fn(|i| aim[i] - way[i]);
-            let share = (FARTHEST / length(step)).min(1.0);
+            let share = (FARTHEST.value() / length(step)).min(1.0);
             way = std::array::from_fn(|i| way[i] + share * step[i]);
-            if length(step) < NOTHING {
+            if length(step) < NOTHING.value() {
                 let contacts = self.contacts_at(way);
                 return contacts
                     .iter()
-                    .all(|contact| contact.distance > -INSIDE)
+                    .all(|contact| contact.distance > -INSIDE.value())
                     .then_some(way);
             }
         }
@@ -107,7 +108,8 @@ impl Simulation {
         self.displace(way);
         let (mut contacts, running) = (Vec::new(), self.running());
         let pose = self.state.pose(self.dynamics.model());
-        self.contact.find(pose, &running, REACH, &mut contacts);
+        self.contact
+            .find(pose, &running, REACH.value(), &mut contacts);
         self.state = before;
         contacts
     }
@@ -143,7 +145,7 @@ fn nearest_beyond(walls: &[(Way, f64)]) -> Way {
             most = most.max(more.abs());
             point = std::array::from_fn(|i| point[i] + more * along[i]);
         }
-        if most < 1e-3 * NOTHING {
+        if most < 1e-3 * NOTHING.value() {
             break;
         }
     }

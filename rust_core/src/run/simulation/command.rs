@@ -43,7 +43,7 @@ impl Simulation {
         let limits = &self.scenario.robot.drivetrain;
         let ramp = drive::ramp_time(self.set_point, self.command, limits);
         // A remainder that is only rounding is no ramp.
-        let ramp = if ramp > SAME_TIME {
+        let ramp = if ramp > SAME_TIME.value() {
             ramp
         } else {
             f64::INFINITY

@@ -1,13 +1,14 @@
 //! The length of the next step: a given one, or one whose local error is what was asked for.
 
+use crate::units::Seconds;
 use serde::{Deserialize, Serialize};
 
 /// [s] Longest step: the accuracy of rates gains nothing from a limit, but what is looked at between two steps does.
-const LONGEST: f64 = 0.016;
+const LONGEST: Seconds = Seconds(0.016);
 /// [s] Shortest step that is tried for the sake of accuracy.
-const SHORTEST: f64 = 2e-5;
+const SHORTEST: Seconds = Seconds(2e-5);
 /// [s] Length of the first step.
-const FIRST: f64 = 1e-3;
+const FIRST: Seconds = Seconds(1e-3);
 /// [rad] Farthest that anything may turn in a step: it would pass over corners without contact.
 pub(crate) const FARTHEST_TURN: f64 = 0.7;
 /// Exponents of the controller, on the last error and on the one before (Gustafsson 1991), and the order of the
@@ -25,7 +26,7 @@ const TOO_MUCH: f64 = 1.5;
 /// Smallest error in units of the accuracy that the controller remembers.
 const LEAST: f64 = 1e-3;
 /// [s] Times closer than this are the same.
-pub(in crate::run) const SAME_TIME: f64 = 1e-9;
+pub(in crate::run) const SAME_TIME: Seconds = Seconds(1e-9);
 
 /// How long steps are.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +42,7 @@ impl Rule {
     pub(super) fn accurate(accuracy: f64, rate: f64) -> Self {
         Self::Accuracy {
             accuracy,
-            longest: LONGEST.min(FARTHEST_TURN / rate),
+            longest: LONGEST.value().min(FARTHEST_TURN / rate),
         }
     }
 }
@@ -58,7 +59,7 @@ pub(super) struct Pace {
 impl Default for Pace {
     fn default() -> Self {
         Self {
-            wanted: FIRST,
+            wanted: FIRST.value(),
             last: 1.0,
         }
     }
@@ -69,13 +70,13 @@ impl Pace {
     pub(super) fn next(&self, rule: Rule, time: f64, limit: f64) -> f64 {
         let (limit, wanted) = match rule {
             Rule::Fixed(step) => {
-                let next = ((time + SAME_TIME) / step).floor() + 1.0;
+                let next = ((time + SAME_TIME.value()) / step).floor() + 1.0;
                 (limit.min(next * step), step)
             }
             Rule::Accuracy { longest, .. } => (limit, self.wanted.min(longest)),
         };
         let left = limit - time;
-        if left <= wanted + SAME_TIME {
+        if left <= wanted + SAME_TIME.value() {
             left
         } else {
             // Leaves no short step for the end.
@@ -91,24 +92,24 @@ impl Pace {
         let ratio = (error / accuracy).max(LEAST);
         let too_much = ratio > TOO_MUCH;
         let share = AIM / ratio;
-        if too_much && h > SHORTEST {
+        if too_much && h > SHORTEST.value() {
             let factor = if ratio.is_finite() {
                 libm::pow(share, 1.0 / ORDER).clamp(SHRINKAGE, 0.7)
             } else {
                 SHRINKAGE
             };
-            self.wanted = (h * factor).max(SHORTEST);
+            self.wanted = (h * factor).max(SHORTEST.value());
             return Err(self.wanted);
         }
         let factor = libm::pow(share, PROPORTIONAL / ORDER) * libm::pow(self.last, MEMORY / ORDER);
-        let next = (h * factor.clamp(SHRINKAGE, GROWTH)).max(SHORTEST);
+        let next = (h * factor.clamp(SHRINKAGE, GROWTH)).max(SHORTEST.value());
         // A step that was cut short says nothing against a longer one.
         self.wanted = if factor >= 1.0 {
             next.max(self.wanted)
         } else {
             next
         };
-        self.wanted = self.wanted.min(LONGEST);
+        self.wanted = self.wanted.min(LONGEST.value());
         self.last = ratio;
         Ok(())
     }
@@ -124,13 +125,13 @@ impl Pace {
 
     /// Whether steps can have led to it.
     pub(super) fn fits(&self) -> bool {
-        (0.0..=LONGEST).contains(&self.wanted) && self.last.is_finite() && self.last > 0.0
+        (0.0..=LONGEST.value()).contains(&self.wanted) && self.last.is_finite() && self.last > 0.0
     }
 }
 
 /// [s] The time after a step that is to end at `limit` if it comes near it.
 pub(super) fn arrive(time: f64, limit: f64) -> f64 {
-    if (limit - time).abs() < SAME_TIME {
+    if (limit - time).abs() < SAME_TIME.value() {
         limit
     } else {
         time

@@ -6,18 +6,19 @@ use crate::dynamics::{SetPoint, Trend};
 use crate::error::{Error, SimulationError};
 use crate::geometry::Vector;
 use crate::solver::Effort;
+use crate::units::{Metres, MetresPerSecond, Seconds};
 
 /// [m/s] A gap that closes faster is a collision; slower ones are contacts that open and close. Jammed small
 /// gear wheels rattle at some mm/s: with 10 mm/s they would shake themselves free too often.
-const COLLISION_SPEED: f64 = 0.001;
+const COLLISION_SPEED: MetresPerSecond = MetresPerSecond(0.001);
 /// [s] What closes up to so long after the first strike is of the same blow: the step ends then.
-const SAME_BLOW: f64 = 1e-5;
+const SAME_BLOW: Seconds = Seconds(1e-5);
 /// [s] How long before a strike the step before it ends.
-const LEAD: f64 = 1e-5;
+const LEAD: Seconds = Seconds(1e-5);
 /// [s] Length of the step with a strike, if it has its time before.
-const COLLISION_STEP: f64 = LEAD + SAME_BLOW;
+const COLLISION_STEP: Seconds = Seconds(LEAD.0 + SAME_BLOW.0);
 /// [m] Depth up to which new contacts are found; half of what counts as sinking in.
-const UNSEEN: f64 = 5e-4;
+const UNSEEN: Metres = Metres(5e-4);
 /// How fast parts may gain speed within a step, in units of gravity, as far as the search for contacts looks ahead.
 const GAIN: f64 = 2.0;
 /// A step that is cut short by more than this share looks for its contacts again.
@@ -65,7 +66,7 @@ impl Simulation {
     pub fn step_until(&mut self, limit: f64) -> Result<(), Error> {
         self.decide();
         let limit = limit.min(self.next_change());
-        if limit - self.time < SAME_TIME {
+        if limit - self.time < SAME_TIME.value() {
             // Only rounding is left.
             self.time = limit;
             return Ok(());
@@ -138,7 +139,7 @@ impl Simulation {
         let mut h = h;
         let strikes = loop {
             let travel = self.find_contacts(h);
-            if h > 2.0 * COLLISION_STEP && self.dynamics.has_lost(0.5 * travel) {
+            if h > 2.0 * COLLISION_STEP.value() && self.dynamics.has_lost(0.5 * travel) {
                 h *= 0.5;
                 continue;
             }
@@ -170,7 +171,10 @@ impl Simulation {
 
     /// [s] How much of the next `h` to take at once, and whether something strikes the ground in it.
     fn piece(&self, h: f64, left: f64) -> (f64, bool) {
-        let (fast, trend) = ((h, COLLISION_SPEED), Trend::since(&self.earlier, self.free));
+        let (fast, trend) = (
+            (h, COLLISION_SPEED.value()),
+            Trend::since(&self.earlier, self.free),
+        );
         let strike = self.dynamics.next_strike(&self.state, fast, trend);
         if strike > h {
             (h, false)
@@ -183,7 +187,7 @@ impl Simulation {
     /// robot than the next one looks, which is in the middle of the next step.
     fn known(&self) -> f64 {
         let speed = self.dynamics.fastest(&self.state, self.reach);
-        let room = 2.0 * (self.seen_ahead + UNSEEN);
+        let room = 2.0 * (self.seen_ahead + UNSEEN.value());
         2.0 * room / (speed + (speed * speed + 4.0 * self.gain() * room).sqrt())
     }
 
@@ -242,13 +246,15 @@ impl Simulation {
 /// ground at this time [s], and whether it does so in that piece.
 fn cut_at_strike(strike: f64, h: f64, left: f64) -> (f64, bool) {
     // Leaves enough for the collision.
-    let before = (strike - LEAD).min(left - COLLISION_STEP);
-    if before > COLLISION_STEP {
+    let before = (strike - LEAD.value()).min(left - COLLISION_STEP.value());
+    if before > COLLISION_STEP.value() {
         return (before, strike <= before);
     }
-    let after = (strike + SAME_BLOW).min(h.max(COLLISION_STEP)).min(left);
+    let after = (strike + SAME_BLOW.value())
+        .min(h.max(COLLISION_STEP.value()))
+        .min(left);
     // Leaves no short step for the end.
-    let piece = if left <= h && left - after < LEAD {
+    let piece = if left <= h && left - after < LEAD.value() {
         left
     } else {
         after
@@ -325,15 +331,23 @@ mod tests {
         simulation.before.copy(&simulation.state);
         let tried = simulation.attempt(STEP, f64::INFINITY);
         let off = tried.h - left;
-        assert!(off.abs() < COLLISION_STEP, "{} s, {left} s", tried.h);
+        assert!(
+            off.abs() < COLLISION_STEP.value(),
+            "{} s, {left} s",
+            tried.h
+        );
     }
 
     /// One that were longer could be found too long again and again.
     #[test]
     fn no_piece_is_longer_than_the_step_that_was_asked_for() {
-        let little = 0.3 * COLLISION_STEP;
-        for h in [STEP, 20.0 * COLLISION_STEP, 2.0 * COLLISION_STEP] {
-            for left in [h, h + little, h + 0.7 * COLLISION_STEP, 2.0 * h] {
+        let little = 0.3 * COLLISION_STEP.value();
+        for h in [
+            STEP,
+            20.0 * COLLISION_STEP.value(),
+            2.0 * COLLISION_STEP.value(),
+        ] {
+            for left in [h, h + little, h + 0.7 * COLLISION_STEP.value(), 2.0 * h] {
                 for strike in [0.0, little, 0.5 * h, h - little, h] {
                     let (piece, strikes) = cut_at_strike(strike, h, left);
                     assert!(piece > 0.0 && piece <= h, "{piece} s of {h} s");

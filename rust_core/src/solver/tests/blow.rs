@@ -23,7 +23,7 @@ fn a_ball_that_falls_goes_up_with_its_share_of_the_speed() {
         assert_relative_eq!(
             ball.velocities.base.velocity.y,
             2.0 * share,
-            epsilon = AGREEMENT
+            epsilon = AGREEMENT.value()
         );
         let impulse = ball.contacts[0].normal_impulse;
         assert_relative_eq!(impulse, 2.0 * 2.0 * (1.0 + share), max_relative = 1e-6);

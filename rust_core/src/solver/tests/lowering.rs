@@ -46,9 +46,9 @@ fn lowering_finds_what_a_right_guess_finds() {
     }
     let velocities = &problem.velocities;
     let off = velocities.base.velocity - before.base.velocity;
-    assert!(off.length() < AGREEMENT);
+    assert!(off.length() < AGREEMENT.value());
     let off = velocities.spins[0] - before.spins[0];
-    assert!(0.05 * off.abs() < AGREEMENT);
+    assert!(0.05 * off.abs() < AGREEMENT.value());
 }
 
 #[test]

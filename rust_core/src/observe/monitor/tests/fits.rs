@@ -105,7 +105,7 @@ fn the_last_step_was_within_two_looks_on_either_side_of_time() {
         seen.last_time = last_time;
         place.fits(&seen, 0.0)
     };
-    let most = 2.0 * LOOK;
+    let most = 2.0 * LOOK.value();
     for side in [1.0, -1.0] {
         assert!(fits(side * most));
         assert!(!fits(side * most.next_up()));

@@ -48,7 +48,7 @@ fn no_pose_of_a_grid_is_nearer_and_clear() {
         let before = buried.state.clone();
         let clear = on_a_post(height, way).clear_of_the_ground();
         let mut clear = clear.expect("there is one");
-        assert!(overlap(&mut clear, [0.0; 3]) < INSIDE);
+        assert!(overlap(&mut clear, [0.0; 3]) < INSIDE.value());
         let moved = clear.state.center - before.center;
         let turned = (clear.state.angle - before.angle) * clear.half_length();
         let found = length([moved.x, moved.y, turned]);
@@ -63,7 +63,10 @@ fn no_pose_of_a_grid_is_nearer_and_clear() {
                     if length(there) < found - step {
                         nearer += 1;
                         let inside = overlap(&mut buried, there);
-                        assert!(inside > INSIDE, "{height} {way:?}: {there:?}, {found} m");
+                        assert!(
+                            inside > INSIDE.value(),
+                            "{height} {way:?}: {there:?}, {found} m"
+                        );
                     }
                 }
             }
