@@ -15,67 +15,46 @@ pub(crate) struct Seconds(pub f64);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MetresPerSecond(pub f64);
 
-#[cfg(not(test))]
-mod values {
-    use super::{Metres, MetresPerSecond, Seconds};
-
-    impl Metres {
-        pub(crate) const fn value(self) -> f64 {
-            self.0
-        }
-    }
-
-    impl Seconds {
-        pub(crate) const fn value(self) -> f64 {
-            self.0
-        }
-    }
-
-    impl MetresPerSecond {
-        pub(crate) const fn value(self) -> f64 {
-            self.0
-        }
+impl Metres {
+    pub(crate) fn value(self) -> f64 {
+        self.0 * units()[0]
     }
 }
 
+impl Seconds {
+    pub(crate) fn value(self) -> f64 {
+        self.0 * units()[1]
+    }
+}
+
+impl MetresPerSecond {
+    pub(crate) fn value(self) -> f64 {
+        let [length, time] = units();
+        self.0 * (length / time)
+    }
+}
+
+/// Units of length [m] and time [s]: 1, but for a test.
+#[cfg(not(test))]
+const fn units() -> [f64; 2] {
+    [1.0; 2]
+}
+
 #[cfg(test)]
-pub(crate) use scaled::with_units;
+thread_local! {
+    static UNITS: std::cell::Cell<[f64; 2]> = const { std::cell::Cell::new([1.0; 2]) };
+}
 
 #[cfg(test)]
-mod scaled {
-    use std::cell::Cell;
+fn units() -> [f64; 2] {
+    UNITS.get()
+}
 
-    use super::{Metres, MetresPerSecond, Seconds};
-
-    thread_local! {
-        /// Lengths and times of the method, in units of their own.
-        static UNITS: Cell<[f64; 2]> = const { Cell::new([1.0; 2]) };
-    }
-
-    impl Metres {
-        pub(crate) fn value(self) -> f64 {
-            self.0 * UNITS.get()[0]
-        }
-    }
-
-    impl Seconds {
-        pub(crate) fn value(self) -> f64 {
-            self.0 * UNITS.get()[1]
-        }
-    }
-
-    impl MetresPerSecond {
-        pub(crate) fn value(self) -> f64 {
-            let [length, time] = UNITS.get();
-            self.0 * (length / time)
-        }
-    }
-
-    /// Does something with all lengths and times of the method multiplied.
-    pub(crate) fn with_units<T>(units: [f64; 2], work: impl FnOnce() -> T) -> T {
-        UNITS.set(units);
-        let done = work();
-        UNITS.set([1.0; 2]);
-        done
-    }
+/// Does something with all lengths and times of the method multiplied.
+#[cfg(test)]
+pub(crate) fn with_units<T>(units: [f64; 2], work: impl FnOnce() -> T) -> T {
+    UNITS.set(units);
+    let done = work();
+    UNITS.set([1.0; 2]);
+    done
 }
