@@ -12,7 +12,7 @@ PICTURE = Path(__file__).with_name("readme.png")
 
 def draw() -> Figure:
     """Draw the robot of the example on wheels and on a belt, side by side and to one scale."""
-    robot = c2d.robots.engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     obstacle = c2d.terrains.step(0.075)
     wheels = robot.with_track(c2d.LineOfWheels(4, wheel_radius=0.0608))
     figure = Figure(figsize=(10.0, 3.7), layout="constrained")

@@ -55,7 +55,7 @@ class Kind:
             arms = replace(arms, ends=self.ends)
         robot = c2d.robots.engineer(center_of_mass=center_of_mass, flippers=arms, track=self.track)
         drivetrain = replace(robot.drivetrain, max_torque=max_torque, torque_sharing=self.sharing)
-        return replace(robot, drivetrain=drivetrain)
+        return replace(robot, drivetrain=drivetrain).without_rotors()
 
 
 def _lines() -> Iterator[Kind]:

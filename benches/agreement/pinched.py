@@ -52,10 +52,11 @@ def pinched(starts: int, path: Path = PINCHED) -> None:
 
 
 def _scenario(height: float, speed: float, approach: float) -> Scenario:
-    robot = c2d.robots.engineer(flippers=None).with_track(c2d.CircumferentialWheels(24))
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     edge = c2d.terrains.knife_edge(height, thickness=0.01, friction=0.9)
     start = c2d.Start(approach=approach)
-    return Scenario(robot, edge, drive=c2d.Drive(speed=speed), start=start)
+    small_wheels = robot.with_track(c2d.CircumferentialWheels(24))
+    return Scenario(small_wheels, edge, drive=c2d.Drive(speed=speed), start=start)
 
 
 def pinched_table(path: Path = PINCHED) -> str:

@@ -26,7 +26,7 @@ _THICKNESS = {"barrier": 0.1, "knife edge": 0.01}  # [m] likewise
 
 def study(repeats: int, path: Path = STUDY) -> None:
     """Make the runs of every obstacle, and keep what came of each cell."""
-    robot = c2d.robots.engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     found = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     for obstacle, heights in list(FULL.heights.items())[len(found) :]:
         base = _on(robot, obstacle, heights[0])
@@ -46,7 +46,7 @@ def read_cells(path: Path = STUDY) -> list[dict[str, Any]]:
 
 def at_height(model: str, obstacle: str, height: float) -> Scenario:
     """Give the scenario of a cell, before its draws."""
-    robot = c2d.robots.engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     track = _tracks(robot.outline.axle_distance)[model]
     return _on(robot.with_track(track), obstacle, height)
 
@@ -63,7 +63,7 @@ def _ground(obstacle: str, height: float) -> Any:
 
 def _tracks(axle_distance: float) -> dict[str, Track]:
     """List the models that rapier holds on one motor for all wheels, as the study has them."""
-    robot = c2d.robots.engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     in_rapier = c2d.Scenario(
         robot, c2d.terrains.step(0.05), solver=c2d.Solver(engine="rapier")
     ).replace

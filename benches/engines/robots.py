@@ -73,7 +73,7 @@ def robot_of(robot: str, model: str, drive: str) -> Robot:
 
 
 def motorized(made: Robot, drive: str) -> Robot:
-    """Return a robot with motors by their name in `DRIVES`."""
+    """Return a robot with motors by their name in `DRIVES`, without rotors: rapier holds none."""
     torque, sharing = DRIVES[drive]
     if drive == "100 N m a wheel":
         # The sprocket's torque acts at the belt, each wheel's at its own radius.
@@ -88,4 +88,4 @@ def motorized(made: Robot, drive: str) -> Robot:
             torque_sharing=sharing,
             max_acceleration=_ACCELERATION,
         ),
-    )
+    ).without_rotors()

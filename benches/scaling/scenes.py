@@ -173,4 +173,5 @@ def _over(track: Track, panel: str) -> Scenario:
 
 
 def _on(track: Track, terrain: Lane, duration: float = _SHORT) -> Scenario:
-    return Scenario(c2d.robots.engineer(flippers=None, track=track), terrain, duration=duration)
+    robot = c2d.robots.engineer(flippers=None, track=track).without_rotors()
+    return Scenario(robot, terrain, duration=duration)

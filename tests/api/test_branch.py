@@ -80,7 +80,7 @@ def test_a_seized_robot_stays_seized_and_gets_away_on_a_belt(seized: c2d.Run) ->
 def test_a_belt_with_grousers_has_the_grip_that_a_smooth_one_lacks() -> None:
     """Gears slip before a step, as does a smooth belt; grousers take hold in half of 48 starts."""
     gears = c2d.LineOfWheels(4, wheel=c2d.GearWheel())
-    robot = c2d.robots.engineer(flippers=None, track=gears)
+    robot = ROBOT.with_track(gears)
     terrain = c2d.terrains.step(0.105, friction=0.7)
     starts = [c2d.Start(track_phase=phase * 1e-3) for phase in range(0, 48, 3)]
     runs = [c2d.simulate(robot, terrain, start=start) for start in starts]

@@ -9,7 +9,7 @@ import pytest
 import crawler2d as c2d
 from tests.shared import refusal
 
-ENGINEER = c2d.robots.engineer().without_flippers()
+ENGINEER = c2d.robots.engineer().without_flippers().without_rotors()
 
 
 def driven(**fields: Any) -> c2d.Robot:

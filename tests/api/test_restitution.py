@@ -6,7 +6,7 @@ import crawler2d as c2d
 
 
 def scenario(restitution: float = 0.0) -> c2d.Scenario:
-    robot = c2d.robots.engineer(flippers=None)
+    robot = c2d.robots.engineer(flippers=None).without_rotors()
     edge = c2d.terrains.knife_edge(0.06, thickness=0.01, friction=0.9)
     small_wheels = robot.with_track(c2d.CircumferentialWheels(24))
     return c2d.Scenario(

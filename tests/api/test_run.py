@@ -136,7 +136,7 @@ def test_an_array_cannot_be_written_to(run: c2d.Run, name: str) -> None:
 
 def arrays_given_out() -> dict[str, np.ndarray[Any, Any]]:
     """Every array of a run that ends in a stop, and of a simulation's state."""
-    robot = c2d.robots.engineer(track=c2d.LineOfWheels(4))
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(4)).without_rotors()
     run = c2d.simulate(robot, c2d.terrains.step(0.10), start=c2d.Start(approach=0.02))
     sim = c2d.Simulation(run.scenario)
     state, inside = sim.state(), sim.intrusions()

@@ -7,8 +7,10 @@ from typing import Any
 import crawler2d as c2d
 from tests.reading.carts import collision, pair, urdf
 
-SEIZING = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
-"""Four wheels that touch."""
+SEIZING = c2d.robots.engineer(
+    flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608)
+).without_rotors()
+"""Four wheels that touch; as in the file below, their motors have no rotors."""
 
 STEP: Any = {"step of 75 mm": c2d.terrains.step(0.075)}
 """Where it seizes."""

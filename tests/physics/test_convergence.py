@@ -49,6 +49,7 @@ def ensemble(track: Track, friction: float, height: float, solver: c2d.Solver) -
     """Runs with the same draws of approach, phase, speed and friction for every solver."""
     has_arms = (track, friction, height) in ON_ARMS
     robot = c2d.robots.engineer(flippers="built" if has_arms else None, track=track)
+    robot = robot.without_rotors()  # with which rates lie elsewhere
     gait = c2d.Climb() if has_arms else None
     scenarios = []
     for repeat in range(RUNS):

@@ -39,7 +39,7 @@ def scenarios(track: Any, repeats: int) -> list[Scenario]:
             terrain = c2d.terrains.barrier(height, 0.1, friction=friction)
         drawn.append(
             Scenario(
-                c2d.robots.engineer(flippers=None, track=track),
+                c2d.robots.engineer(flippers=None, track=track).without_rotors(),
                 terrain,
                 drive=c2d.Drive(speed=0.4 * (0.98 + 0.04 * u[2])),
                 start=c2d.Start(approach=0.05 + 0.1 * u[0], track_phase=0.048 * u[1]),

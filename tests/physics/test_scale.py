@@ -31,7 +31,7 @@ POWERS = {  # of length, mass and time
     "N s/m": (0, 1, -1),
     "kg m^2": (2, 1, 0),
 }
-BARE = c2d.robots.engineer(flippers=None)
+BARE = c2d.robots.engineer(flippers=None).without_rotors()
 GEARS = c2d.LineOfWheels(4, wheel_radius=0.0608, wheel=c2d.GearWheel(grouser_count=12))
 TRACKS: dict[str, Track] = {
     "belt": c2d.BeltTrack(),

@@ -280,10 +280,11 @@ def audit(
 
     Examples
     --------
-    Four wheels that touch, on one step:
+    Four wheels that touch, on one step, with motors as a simulator has them:
 
     >>> import crawler2d as c2d
     >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4, wheel_radius=0.0608))
+    >>> robot = robot.without_rotors()
     >>> step = {"step of 75 mm": c2d.terrains.step(0.075)}
     >>> found = audit(robot, step, unknown={}, repeats=20, progress=False)
     >>> found.seizes, found.verdicts[0].where, found.verdicts[0].there

@@ -291,6 +291,31 @@ class Robot(Parameters):
             return self
         return replace(_plus_arms(self, self.flippers, -1.0), flippers=None)
 
+    def without_rotors(self) -> Robot:
+        """Leave off the rotors of all motors: the drives of a simulator that has none.
+
+        The engine rapier takes only such robots, and what was published of simulated robots was
+        mostly found with such drives. With its rotors a robot gets over more edges.
+
+        Returns
+        -------
+        Robot
+            A copy with a `rotor_inertia` of 0 in drivetrain and flippers.
+
+        Examples
+        --------
+        >>> import crawler2d as c2d
+        >>> robot = c2d.robots.engineer()
+        >>> robot.drivetrain.rotor_inertia, robot.without_rotors().drivetrain.rotor_inertia
+        (0.017, 0.0)
+        """
+        arms = self.flippers
+        return replace(
+            self,
+            drivetrain=replace(self.drivetrain, rotor_inertia=0.0),
+            flippers=None if arms is None else replace(arms, rotor_inertia=0.0),
+        )
+
     def wheels(self) -> Table:
         """List every wheel of the track model, on both sides and on the flippers.
 

@@ -77,7 +77,7 @@ def chain_steps(
     list of ChainStep
         One for each of `accuracies`.
     """
-    robot = engineer(flippers=None, track=SegmentalTrack(shoe_count=22))
+    robot = engineer(flippers=None, track=SegmentalTrack(shoe_count=22)).without_rotors()
     drive = Drive(speed=0.4)
     base = Scenario(robot, terrains.step(heights[0], friction=_FRICTION), drive=drive)
     table = sweep(

@@ -53,17 +53,21 @@ class HighestStep:
 
 
 def flipper_robots() -> dict[str, Robot]:
-    """List the robots: without flippers, with front flippers, driven backwards, with both."""
+    """List the robots: without flippers, with front flippers, driven backwards, with both.
+
+    They have no rotors, as in the published tables.
+    """
     built = engineer()
     arms = built.flippers
     if arms is None:
         raise AssertionError("the preset has flippers")
-    return {
+    robots = {
         "no flippers": engineer(flippers=None),
         "in front": built,
         "behind": engineer(flippers=replace(arms, ends="rear")),
         "both ends": engineer(flippers=replace(arms, ends="both")),
     }
+    return {name: robot.without_rotors() for name, robot in robots.items()}
 
 
 def highest_steps(

@@ -62,7 +62,7 @@ def public_wheel_model(threads: int | None = None) -> dict[tuple[float, bool], R
     dict of (float, bool) to Run
         Runs with history, by the height of the post [m] and whether the robot has a belly.
     """
-    robot = engineer(flippers=None, track="public")
+    robot = engineer(flippers=None, track="public").without_rotors()
     robots = {True: robot, False: replace(robot, belly=None)}
     places = [(height, belly) for belly in robots for height in _HEIGHTS]
     scenarios = [

@@ -67,7 +67,7 @@ QUICK = Design(
 
 
 def robots_of_the_study() -> dict[str, Robot]:
-    """List the robots: the preset, and variants that test its estimates.
+    """List the robots: the preset without rotors, and variants that test its estimates.
 
     The centre of mass moves up with a raised arm, and forward with an arm or flippers stretched
     out. The belly hangs lower, or is removed. The motors are twice as strong: a gear wheel that
@@ -75,7 +75,7 @@ def robots_of_the_study() -> dict[str, Robot]:
     """
     base = engineer(flippers=None)
     strong = replace(base.drivetrain, max_torque=2.0 * base.drivetrain.max_torque)
-    return {
+    robots = {
         "preset": base,
         "mass 20 mm up": engineer(flippers=None, center_of_mass=(0.0, 0.04)),
         "mass 30 mm forward": engineer(flippers=None, center_of_mass=(0.03, 0.02)),
@@ -83,6 +83,7 @@ def robots_of_the_study() -> dict[str, Robot]:
         "no belly": replace(base, belly=None),
         "torque doubled": replace(base, drivetrain=strong),
     }
+    return {name: robot.without_rotors() for name, robot in robots.items()}
 
 
 def _obstacles(height: float) -> dict[str, Terrain]:
@@ -94,7 +95,8 @@ def _obstacles(height: float) -> dict[str, Terrain]:
 
 
 def _base() -> Scenario:
-    return Scenario(engineer(flippers=None), _obstacles(0.1)["step"], drive=Drive(speed=0.4))
+    robot = engineer(flippers=None).without_rotors()
+    return Scenario(robot, _obstacles(0.1)["step"], drive=Drive(speed=0.4))
 
 
 def _models() -> dict[str, StudyModel]:

@@ -97,9 +97,10 @@ def mass_sticks(work: Work) -> Claim:
     """Drive lines of round wheels over step fields with twice the mass, and motors to match."""
     known, names = layouts(), ("line of 3", "line of 5")
     motors = replace(PRESET, max_torque=2.0 * PRESET.max_torque)
+    built = engineer().without_rotors()
     robots = {}
     for name in names:
-        light = motors.on(known[name].on(engineer()))
+        light = motors.on(known[name].on(built))
         robots[name] = light
         robots[f"{name}, twice the mass"] = _heavier(light, 1.0)
         robots[f"{name}, twice mass and torque"] = _heavier(light, 2.0)
@@ -127,8 +128,8 @@ def lines_are_flat(work: Work) -> tuple[Claim, Claim]:
     names = ("line of 3", "line of 5", "line of 9")
     more, flat = [], []
     for setting in (PRESET, STRONG):
-        known = layouts()
-        models = {name: {"robot": setting.on(known[name].on(engineer()))} for name in names}
+        known, robot = layouts(), engineer().without_rotors()
+        models = {name: {"robot": setting.on(known[name].on(robot))} for name in names}
         found = _over_fields(work, models, setting.friction)
         counts = [_count(found, name, _FIELD) for name in names]
         motors = f"{setting.max_torque:g} N m"
@@ -202,7 +203,7 @@ def _crossed(
     work: Work, setting: Setting, grounds: Mapping[str, Any], names: Sequence[str]
 ) -> Found:
     """Drive layouts without flippers over some grounds."""
-    known, bare = layouts(), engineer(flippers=None)
+    known, bare = layouts(), engineer(flippers=None).without_rotors()
     models = {name: {"robot": setting.on(known[name].on(bare))} for name in names}
     return _driven(work, grounds, models, work.design.claim_repeats)
 
@@ -217,7 +218,7 @@ def _driven(
     work: Work, grounds: Mapping[str, Any], models: Mapping[str, Any], repeats: int
 ) -> Found:
     drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
-    base = Scenario(engineer(), next(iter(grounds.values())), drive=drive)
+    base = Scenario(engineer().without_rotors(), next(iter(grounds.values())), drive=drive)
     return work.counted(success(base, terrains=grounds, models=models, **work.how(repeats)))
 
 

@@ -182,7 +182,7 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
                 holds=turned.swing < half.swing,
             ),
         ]
-    known, bare = layouts(), engineer(flippers=None)
+    known, bare = layouts(), engineer(flippers=None).without_rotors()
     models = {
         name: {"robot": known[name].on(bare)}
         for name in (*_PAIRS, *_PAIRS.values(), "belt with grousers")
@@ -219,7 +219,7 @@ def shaking_of_gears(work: Work, shaken: Sequence[Shaking]) -> tuple[Claim, Clai
 
 def odometry_of_gears(work: Work) -> Claim:
     """Measure how far the odometry of gears is off, with the radius that the paper takes."""
-    known, bare = layouts(), engineer(flippers=None)
+    known, bare = layouts(), engineer(flippers=None).without_rotors()
     models = {name: {"robot": known[name].on(bare)} for pair in _PAIRS.items() for name in pair}
     base = Scenario(bare, terrains.flat(), drive=Drive(speed=TABLE_1.max_speed))
     how, repeats = work.sampling, work.design.driving_repeats
@@ -242,7 +242,7 @@ def odometry_of_gears(work: Work) -> Claim:
 
 
 def _factors(work: Work, names: Iterable[str], fields: Mapping[str, Any]) -> dict[str, float]:
-    known, bare = layouts(), engineer(flippers=None)
+    known, bare = layouts(), engineer(flippers=None).without_rotors()
     drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
     base = Scenario(bare, terrains.flat(), drive=drive).replace(fields)
     models = {name: {"robot": known[name].on(bare)} for name in names}

@@ -18,7 +18,7 @@ from crawler2d.reports.paper.agreement import PAPER_RUNS
 from crawler2d.reports.paper.fields import BESIDE_TABLE_2, FIELDS
 from crawler2d.reports.paper.joint import LEVEL, TABLES, verdict
 from crawler2d.reports.paper.published import TABLE_1
-from crawler2d.reports.paper.settings import PUBLIC
+from crawler2d.reports.paper.settings import PRESET, PUBLIC
 from crawler2d.sweeps.statistics import wilson
 
 if TYPE_CHECKING:
@@ -169,8 +169,7 @@ def _draw_verdicts(ax: Axes, verdicts: Sequence[Judged], grid: _Grid) -> None:
     (left, low), (right, high) = ((grid.x(torque), grid.y(each)) for torque, each in corners)
     xs, ys = (left, right, right, left, left), (low, low, high, high, low)
     ax.plot(xs, ys, color=VIOLET, linewidth=2.0)
-    preset = engineer().drivetrain
-    ax.plot(grid.x(preset.max_torque), grid.y(preset.rotor_inertia), "o", **_POINT)
+    ax.plot(grid.x(PRESET.max_torque), grid.y(0.0), "o", **_POINT)
     ax.plot(grid.x(_public_torque()), grid.y(0.0), "^", **_POINT)
 
 

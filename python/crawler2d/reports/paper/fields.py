@@ -111,9 +111,8 @@ def cross(setting: Setting, names: Collection[str], work: Work, repeats: int) ->
     """Drive some layouts over the fields in one setting; see `cross_fields`."""
     known = layouts()
     grounds = {name: replace(field, friction=setting.friction) for name, field in FIELDS.items()}
-    base = Scenario(
-        engineer(), next(iter(grounds.values())), drive=Drive(speed=TABLE_1.max_speed, gait=Climb())
-    )
+    drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
+    base = Scenario(engineer().without_rotors(), next(iter(grounds.values())), drive=drive)
     models = {name: {"robot": setting.on(known[name].on(base.robot))} for name in names}
     found = success(base, terrains=grounds, models=models, **work.how(repeats))
     return work.counted(found)

@@ -201,7 +201,7 @@ def steepest_slopes(work: Work) -> list[Slope]:
     for friction in (PRESET.friction, 1.0):
         print(f"Table 1, slopes, friction {friction:g}", flush=True)
         base = Scenario(
-            engineer(flippers=None),
+            engineer(flippers=None).without_rotors(),
             terrains.ramp(declared, friction=friction),
             drive=Drive(speed=TABLE_1.max_speed),
         )
@@ -263,9 +263,9 @@ def computing(work: Work) -> list[Computing]:
 
 def _scenario(setting: Setting, ground: Any) -> Scenario:
     drive = Drive(speed=TABLE_1.max_speed, gait=Climb())
-    return Scenario(setting.on(engineer()), ground, drive=drive)
+    return Scenario(setting.on(engineer().without_rotors()), ground, drive=drive)
 
 
 def _models(setting: Setting) -> Mapping[str, Mapping[str, Any]]:
-    known, robot = layouts(), engineer()
+    known, robot = layouts(), engineer().without_rotors()
     return {name: {"robot": setting.on(known[name].on(robot))} for name in BESIDE_TABLE_3.values()}

@@ -83,7 +83,7 @@ class Shaking:
 
 def phases(work: Work) -> list[Phase]:
     """Compare the starting angles of all gears with those of the formula."""
-    robot = engineer()
+    robot = engineer().without_rotors()
     runs = _runs([robot.with_track(track) for track in PHASED.values()], work)
     return [
         Phase(
@@ -155,7 +155,7 @@ def shaking(work: Work) -> list[Shaking]:
     tracks = [
         LineOfWheels(count, wheel=GearWheel(phase_fraction=fraction)) for count, fraction in SHAKEN
     ]
-    robot = engineer(flippers=None)
+    robot = engineer(flippers=None).without_rotors()
     runs = _runs([robot.with_track(track) for track in tracks], work)
     found = []
     for (count, fraction), run in zip(SHAKEN, runs, strict=True):

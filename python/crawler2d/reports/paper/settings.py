@@ -50,8 +50,8 @@ PRESET = Setting(
     name="preset",
     max_torque=6.0,
     friction=0.9,
-    reason="the preset as it is; both figures are estimates (6 N m holds 1.6 times the 45 degrees"
-    " of Table 1)",
+    reason="the preset without rotors; both figures are estimates (6 N m holds 1.6 times the 45"
+    " degrees of Table 1)",
 )
 STRONG = Setting(
     name="strong motors",
