@@ -22,10 +22,11 @@ def on_flat(robot: c2d.Robot, **drive: Any) -> c2d.Run:
 
 
 def test_flippers_turn_at_their_rate_and_stay() -> None:
+    """30 N m take 0.04 s to bring a rotor of 1.2 kg m^2 to 1 rad/s; the arm itself is light."""
     run = on_flat(ENGINEER, gait=c2d.Hold(0.8, ((1.0, 0.2),)))
     angle = run.flipper_angles[:, 0]
     assert angle[run.time < 1.0] == pytest.approx(0.8)
-    turning = (run.time > 1.01) & (run.time < 1.59)
+    turning = (run.time > 1.05) & (run.time < 1.59)
     assert np.diff(angle[turning]) == pytest.approx(-0.01 * ARMS.rate_limit, rel=1e-6)
     assert angle[run.time > 1.7] == pytest.approx(0.2)
 

@@ -45,27 +45,38 @@ def test_the_gazebo_vehicle_is_put_together_from_its_file() -> None:
 
 
 def test_public_wheel_models_let_in_what_a_belt_passes() -> None:
-    """In one line each: what people run into who replace tracks by wheels."""
+    """What people run into who replace tracks by wheels in a simulator: it has no rotors."""
     blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
-    assert (
-        c2d.simulate(c2d.robots.engineer(flippers=None, track="public"), blade).mechanism
-        is not None
-    )
-    assert c2d.simulate(c2d.robots.engineer(flippers=None), blade).outcome == "cleared"
+    wheels = c2d.robots.engineer(flippers=None, track="public").without_rotors()
+    belt = c2d.robots.engineer(flippers=None).without_rotors()
+    assert c2d.simulate(wheels, blade).mechanism is not None
+    assert c2d.simulate(belt, blade).outcome == "cleared"
 
 
-def test_public_absolem_seizes_between_the_wheels_of_its_flippers() -> None:
-    """At the friction of its wheels, where a belt gets over; at 140 mm the wheels do, too."""
+def test_the_engineers_rotors_carry_its_public_wheels_over_that_edge() -> None:
+    blade = c2d.terrains.knife_edge(0.05, thickness=0.02)
+    wheels = c2d.robots.engineer(flippers=None, track="public")
+    assert c2d.simulate(wheels, blade).outcome == "cleared"
+
+
+@pytest.mark.parametrize(
+    ("with_rotors", "seizing", "clear"), [(True, (80, 100, 120), 130), (False, (70, 100, 130), 140)]
+)
+def test_public_absolem_seizes_between_the_wheels_of_its_flippers(
+    with_rotors: bool, seizing: tuple[int, ...], clear: int
+) -> None:
+    """At the friction of its wheels, where a belt gets over; higher up the wheels do, too."""
     drive = c2d.Drive(gait=c2d.Climb())
+    robots = [c2d.robots.absolem(track=track) for track in ("public", None)]
     scenarios = [
-        Scenario(c2d.robots.absolem(track=track), terrain, drive=drive)
-        for height in (0.07, 0.10, 0.13, 0.14)
+        Scenario(robot if with_rotors else robot.without_rotors(), terrain, drive=drive)
+        for height in (1e-3 * millimetres for millimetres in (*seizing, clear))
         for terrain in (
             c2d.terrains.step(height, friction=0.5),
             c2d.terrains.knife_edge(height, friction=0.5),
             c2d.terrains.barrier(height, 0.1, friction=0.5),
         )
-        for track in ("public", None)
+        for robot in robots
     ]
     runs = c2d.simulate_many(scenarios, record="summary", progress=False)
     assert {str(run.outcome) for run in runs[1::2]} == {"cleared"}
@@ -108,6 +119,22 @@ def test_a_robot_that_was_published_twice_has_the_figures_of_the_source_asked_fo
     assert bare[1].center_of_mass == pytest.approx(bare[0].center_of_mass)
     radii = [robot.moment_of_inertia / robot.mass for robot in bare]  # squared, of gyration
     assert radii[1] == pytest.approx(radii[0])
+
+
+def test_a_robot_without_rotors_is_the_same_otherwise() -> None:
+    robot = c2d.robots.absolem()
+    assert robot.flippers is not None
+    bare = robot.without_rotors()
+    assert bare.flippers is not None
+    assert bare.drivetrain.rotor_inertia == bare.flippers.rotor_inertia == 0.0
+    assert bare.drivetrain == dataclasses.replace(robot.drivetrain, rotor_inertia=0.0)
+    assert bare == dataclasses.replace(
+        robot,
+        drivetrain=bare.drivetrain,
+        flippers=dataclasses.replace(robot.flippers, rotor_inertia=0.0),
+    )
+    assert bare.without_rotors() == bare
+    assert robot.without_flippers().without_rotors() == bare.without_flippers()
 
 
 @pytest.mark.parametrize("preset", [c2d.robots.absolem, c2d.robots.marv])

@@ -175,6 +175,22 @@ def test_rotors_that_a_robot_does_not_state_follow_from_its_torque_and_speed() -
         c2d.unknowns.of_robot(replace(own, drivetrain=replace(own.drivetrain, max_speed=0.0)))
 
 
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_presets_rotors_are_in_the_middle_of_their_ranges(name: str) -> None:
+    """Geometrically, to two digits: half of the last one is at most 5 %."""
+    robot = PRESETS[name]()
+    assert robot.flippers is not None
+    ranges = c2d.unknowns.of_robot(robot)
+    own = {
+        "robot.drivetrain.rotor_inertia": robot.drivetrain.rotor_inertia,
+        "robot.flippers.rotor_inertia": robot.flippers.rotor_inertia,
+    }
+    assert {path for path, inertia in own.items() if inertia > 0.0} == set(ranges) & set(own)
+    for path in set(ranges) & set(own):
+        (middle,) = ranges[path].values(np.array([0.5]), 0.0)
+        assert own[path] == pytest.approx(middle, rel=0.05)
+
+
 def test_joined_ranges_keep_their_sources() -> None:
     both = c2d.variability.of_start() | {"start.approach": c2d.uniform(0.0, 0.1)}
     assert isinstance(both, Ranges)

@@ -259,7 +259,7 @@ class Run(Record):
         >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
         >>> run = c2d.simulate(robot, c2d.terrains.step(0.10))
         >>> [trial.name for trial in run.trials() if trial.freed]
-        ['closed track', 'belt']
+        ['closed track', 'belt', 'friction x 2']
         """
         time = branching.branch_time(self, "stop")
         made = trials_at(self, time, trial_names("all"))
@@ -427,8 +427,9 @@ class Run(Record):
         Raises
         ------
         ScenarioError
-            If rapier does not hold the scenario, see `Solver`; the path is that of the field. If
-            the run has no result, or is a branch.
+            If rapier does not hold the scenario, see `Solver`; the path is that of the field. It
+            holds no rotors, which `Robot.without_rotors` leaves off. If the run has no result, or
+            is a branch.
         SimulationDiverged
             If the state became non-finite in the other engine.
 
@@ -436,7 +437,7 @@ class Run(Record):
         --------
         >>> import crawler2d as c2d
         >>> robot = c2d.robots.engineer(flippers=None, track=c2d.LineOfWheels(4))
-        >>> run = c2d.simulate(robot, c2d.terrains.step(0.1))
+        >>> run = c2d.simulate(robot.without_rotors(), c2d.terrains.step(0.1))
         >>> check = run.cross_check()
         >>> check.same_outcome, all(balance.holds for balance in check.balances)
         (True, True)

@@ -120,7 +120,8 @@ def acceleration(
 
     Examples
     --------
-    The Engineer's acceleration is what its drivetrain is told, until that exceeds the friction:
+    The Engineer's acceleration is what its drivetrain is told, until that exceeds what its motors
+    have beside what their own rotors take:
 
     >>> import crawler2d as c2d
     >>> base = c2d.Scenario(c2d.robots.engineer(flippers=None), c2d.terrains.flat())
@@ -129,7 +130,7 @@ def acceleration(
     >>> found["acceleration"].sel(model="as built").round(3).item()
     0.2
     >>> found["limit"].values.tolist()
-    ['command', 'friction']
+    ['command', 'torque']
     """
     return limited(_ACCELERATION, scenario, Asked(models, speed, repeats), how)
 

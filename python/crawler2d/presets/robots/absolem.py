@@ -70,6 +70,11 @@ def absolem(
     max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
     max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
     mass, grousers
+    rotors              0.17 kg m^2 a track                   estimate: rated torque squared over
+                                                              power (ROUGH) times 0.04 s, in which a
+                                                              motor runs up
+                        0.42 kg m^2 a flipper                 estimate: midway from that to torque
+                                                              over rate (SubT) times the same
     "rough"             40 kg with flippers                   ROUGH
                         30 N m a sprocket, 30 N m a flipper   ROUGH: rated, of motors of 210 W
                         moment of inertia in proportion,      estimate: what the robot has more is
@@ -82,7 +87,8 @@ def absolem(
     absolem.sdf is model.sdf of submitted_models/ctu_cras_norlab_absolem_sensor_config_1 in
     osrf/subt, before its wheels were replaced by tracks (b626b6de^); absolem_specifications.md is
     specifications.md there. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
-    (084cbea5), which the tests do not read.
+    (084cbea5), which the tests do not read. Rotors are the same with both sources: they are of the
+    motors that ROUGH describes.
 
     Its foremost wheel sits 15 mm inboard of the others (absolem.sdf:1287), across the track; in
     side view the line is even. Its flippers pivot 0.95 mm above the axles (absolem.sdf:922), here
@@ -107,10 +113,11 @@ def absolem(
     'cleared'
 
     At this friction the wheels seize like this on steps, knife edges of 10 mm and barriers of 100
-    mm, all 70 to 130 mm high, in all of 210 runs; with the belt, all 210 runs clear. At 140 mm the
-    wheels clear, too. The belt never gets into such a pose, and does not escape when placed in one
-    (0 of 21). Without flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm,
-    friction 0.6 to 1.0.
+    mm, all 80 to 120 mm high, in all of 150 runs; those of 70, 130 and 140 mm all 90 runs clear.
+    Without rotors they seize from 70 to 130 mm, in all of 210 runs. With the belt all 240 runs of
+    70 to 140 mm clear; it never gets into such a pose, and does not escape when placed in one (0 of
+    15). Without flippers, the wheels seized in none of 550 runs on steps of 60 to 120 mm, friction
+    0.6 to 1.0.
     """
     rough = is_rough(source)
     built = Flippers(
@@ -122,6 +129,7 @@ def absolem(
         angle=0.8,
         rate_limit=0.785398,
         torque_limit=30.0 if rough else 20.0,
+        rotor_inertia=0.42,
     )
     links = 35.6983
     chassis = 40.0 - 4.0 * built.mass if rough else links
@@ -135,7 +143,7 @@ def absolem(
         moment_of_inertia=1.5354 * (chassis / links),
         belly=((rear, bottom), (front, bottom), (front, top), (rear, top)),
         gauge=0.397,
-        drivetrain=replace(robot.drivetrain, max_acceleration=1.4),
+        drivetrain=replace(robot.drivetrain, max_acceleration=1.4, rotor_inertia=0.17),
     )
     if rough:
         robot = replace(robot, drivetrain=replace(robot.drivetrain, max_torque=30.0))

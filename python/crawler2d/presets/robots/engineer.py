@@ -85,6 +85,11 @@ def engineer(
                                                               Table 3)
     max. torque         6 N m a sprocket                      estimate: 1.6 times what holds the 45
                                                               degrees of the robot (paper, Table 1)
+    rotors              0.017 kg m^2 a track                  estimate: torque over speed times 0.04
+                                                              s, in which a motor runs up; speed
+                                                              midway from 0.4 to 1.39 m/s
+                        1.2 kg m^2 a flipper                  estimate: the same of its torque and
+                                                              rate
     public wheels       radius 0.08 m, 0.186 m ahead of the   eng.xacro:15, 144, 149, 154
                         middle, on it and behind it
                         0.056 m at the flipper's tip          eng.xacro:16, 160
@@ -112,6 +117,7 @@ def engineer(
         angle=0.8,
         rate_limit=1.0,
         torque_limit=30.0,
+        rotor_inertia=1.2,
     )
     mass = 21.2 - (0.0 if flippers is None else 2.0 * built.mass)
     length, height = 0.482, 0.130
@@ -139,6 +145,7 @@ def engineer(
             max_acceleration=0.2,
             max_deceleration=4.0,
             max_torque=6.0,
+            rotor_inertia=0.017,
         ),
     )
     wheels = HybridWheels(((-0.186, 0.0, 0.08), (0.0, 0.0, 0.08), (0.186, 0.0, 0.08)))

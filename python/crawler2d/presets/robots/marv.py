@@ -73,6 +73,9 @@ def marv(
     max. deceleration   4 m/s^2                               estimate: that of `Robot.simple`
     max. torque, track  for the mass with flippers            estimates: those of `Robot.simple`
     mass, grousers
+    rotors              0.25 kg m^2 a side, 6.5 a flipper     estimates: rated torque squared over
+                                                              power (ROUGH) times 0.04 s, in which a
+                                                              motor runs up; two motors a side
     "rough"             70 kg with flippers                   ROUGH
                         50 N m a side, 180 N m a flipper      ROUGH: rated, of motors of 200 W;
                                                               25 N m for each of the four tracks
@@ -86,7 +89,8 @@ def marv(
     before its wheels were replaced by tracks (b626b6de^); the tests do not read common.yaml, where
     the line is rover_maxTrackAcceleration. Its quarter circles of 44 mm become four chords here, at
     most 1 mm inside. ROUGH is the table of platforms in README.md of ctu-vras/rough-dataset
-    (084cbea5), which the tests do not read either.
+    (084cbea5), which the tests do not read either. Rotors are the same with both sources: they are
+    of the motors that ROUGH describes.
 
     There is no track between the roots, so no ground is inside one there. The package gives the
     robot's mass as 61 kg; the sum over all links is 60.36 kg.
@@ -106,6 +110,7 @@ def marv(
         angle=0.5,
         rate_limit=1.0,
         torque_limit=180.0 if rough else 120.0,
+        rotor_inertia=6.5,
         track=GrouserBeltTrack(),
     )
     roots = LineOfWheels(2, as_track=False)
@@ -121,7 +126,7 @@ def marv(
         moment_of_inertia=1.7532 * (chassis / links),
         belly=(*bow, (0.3, 0.1921), (-0.3, 0.1921), *((-x, y) for x, y in reversed(bow))),
         gauge=0.496,
-        drivetrain=replace(robot.drivetrain, max_acceleration=3.0),
+        drivetrain=replace(robot.drivetrain, max_acceleration=3.0, rotor_inertia=0.25),
         track=roots,
     )
     if rough:
