@@ -66,7 +66,7 @@ def test_what_a_file_cannot_hold_of_rotors_is_in_its_comment() -> None:
 
 
 def test_without_rotors_files_are_as_before() -> None:
-    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3))
+    robot = c2d.robots.engineer(track=c2d.LineOfWheels(3)).without_rotors()
     assert "armature" not in robot.to_mjcf()
     assert left_out(robot.to_sdf()) == []
 
@@ -100,7 +100,7 @@ def test_the_gain_of_a_controller_comes_back_from_mjcf(robot: c2d.Robot, tmp_pat
 
 
 def test_motors_that_no_file_holds_are_in_its_comment() -> None:
-    robot = ON_WHEELS["all round"]
+    robot = ON_WHEELS["all round"].without_rotors()
     line = with_motors(robot, controller=c2d.PI(gain=4.0, integral=1.0), no_load_speed=2.0)
     assert left_out(line.to_mjcf()) == [
         "drivetrain.no_load_speed",
