@@ -2,16 +2,24 @@
 //!
 //! The equations: docs/physics.md, "Impacts".
 
+use super::damper::Damper;
+use super::motor::Motor;
 use super::{Contact, Hold, Inertia, Problem};
 
 impl Problem {
-    /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing. Contacts that
-    /// bear leave nothing that approaches, and give back a share of the blow. Its impulses are added to those of the solve.
+    /// Goes on from the velocities of a solve by a blow, in which no time passes: no weight acts, and motors do nothing, but gears
+    /// that lock themselves hold. Contacts that bear leave nothing that approaches, and give back a share of the blow. Its
+    /// impulses are added to those of the solve.
     pub(crate) fn blow(&mut self, restitution: f64) {
         let before: Vec<[f64; 2]> = self.contacts.iter().map(Contact::impulses).collect();
         let along: Vec<f64> = self.bilaterals.iter().map(|row| row.impulse).collect();
-        let holds: Vec<Hold> = self.motors.iter().map(|motor| motor.hold).collect();
+        let motors = self.motors.clone();
+        let speeds: Vec<f64> = motors.iter().map(|motor| self.motor_speed(motor)).collect();
+        for (motor, speed) in self.motors.iter_mut().zip(speeds) {
+            motor.have_no_time(speed);
+        }
         self.start_from_here();
+        self.lock();
         self.solve_anew();
         if restitution > 0.0 {
             self.rebound(restitution);
@@ -23,9 +31,7 @@ impl Problem {
         for (row, before) in self.bilaterals.iter_mut().zip(along) {
             row.impulse += before;
         }
-        for (motor, hold) in self.motors.iter_mut().zip(holds) {
-            motor.hold = hold;
-        }
+        self.motors = motors;
     }
 
     /// Goes on from the velocities of a solve that was a blow: contacts give back a share of its impulses, along normals
@@ -40,6 +46,7 @@ impl Problem {
         self.tie();
         self.balance();
         self.start_from_here();
+        self.lock();
         self.solve_anew();
         for (contact, [normal, friction]) in self.contacts.iter_mut().zip(blow) {
             contact.normal_impulse += (1.0 + share) * normal;
@@ -68,11 +75,26 @@ impl Problem {
         }
     }
 
+    /// Has the gears hold that lock themselves.
+    fn lock(&mut self) {
+        for motor in self.motors.iter_mut().filter(|motor| motor.locks) {
+            motor.hold = Hold::Holds;
+        }
+    }
+
     /// Solves from contacts without impulses.
     fn solve_anew(&mut self) {
         for contact in &mut self.contacts {
             (contact.normal_impulse, contact.friction_impulse) = (0.0, 0.0);
         }
         self.solve();
+    }
+}
+
+impl Motor {
+    /// Gives nothing where no time passes. Its gear, if that locks itself, lets what turned with a speed [m/s] turn on more
+    /// slowly, and neither faster nor back.
+    fn have_no_time(&mut self, speed: f64) {
+        (self.target, self.limits, self.correction) = (speed, [Damper::default(); 2], None);
     }
 }

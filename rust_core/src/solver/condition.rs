@@ -38,11 +38,12 @@ impl Switch {
 
 impl Motor {
     /// Calls `found` with the conditions of its state at a speed [m/s]: the state that follows, and the value, from its
-    /// impulse [N s] and from how much too fast it is.
+    /// impulse [N s] and, at a limit of that, from how much faster it is than its target, and than at rest.
     pub(super) fn conditions(
         &self,
         speed: f64,
-        [impulse, ahead]: [f64; 2],
+        impulse: f64,
+        [ahead, on]: [f64; 2],
         mut found: impl FnMut(Hold, f64),
     ) {
         let [most, least] = self.limits.map(|limit| limit.at(speed));
@@ -50,12 +51,28 @@ impl Motor {
         match self.hold {
             Hold::Holds => {
                 let impulse = wanted.unwrap_or(impulse);
-                found(Hold::Pushes, most - impulse);
-                found(Hold::Brakes, impulse - least);
+                if !self.locks || self.target > 0.0 {
+                    found(Hold::Pushes, most - impulse);
+                }
+                if !self.locks || self.target < 0.0 {
+                    found(Hold::Brakes, impulse - least);
+                }
             }
-            Hold::Pushes => found(Hold::Holds, wanted.map_or(-ahead, |wanted| wanted - most)),
-            Hold::Brakes => found(Hold::Holds, wanted.map_or(ahead, |wanted| least - wanted)),
-            Hold::Free => {}
+            Hold::Pushes => {
+                found(Hold::Holds, wanted.map_or(-ahead, |wanted| wanted - most));
+                if self.locks {
+                    found(Hold::Locked, on);
+                }
+            }
+            Hold::Brakes => {
+                found(Hold::Holds, wanted.map_or(ahead, |wanted| least - wanted));
+                if self.locks {
+                    found(Hold::Locked, -on);
+                }
+            }
+            Hold::Locked if self.target > 0.0 => found(Hold::Pushes, impulse - most),
+            Hold::Locked if self.target < 0.0 => found(Hold::Brakes, least - impulse),
+            Hold::Locked | Hold::Free => {}
         }
     }
 }

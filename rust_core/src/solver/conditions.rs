@@ -17,15 +17,18 @@ impl Problem {
             });
         }
         for (k, motor) in self.motors.iter().enumerate() {
-            let mut ahead = self.ahead(motor);
-            let speed = ahead + motor.target;
+            let ahead = self.ahead(motor);
+            let speed = ahead + motor.held_speed();
+            let mut over = [ahead, speed];
             let mut impulse = self.motor_impulse(motor);
             // The motor of a ring holds softly, so its impulse tells when it may hold again.
             if let (Driven::Ring(ring), None) = (motor.on, motor.correction) {
-                impulse = self.rings[ring].drive.damper().at(ahead);
-                ahead = motor.given().map_or(0.0, |given| given.at(speed)) - impulse;
+                let held = over.map(|over| self.rings[ring].drive.damper().at(over));
+                let given = motor.given().map_or(0.0, |given| given.at(speed));
+                impulse = held[0];
+                over = held.map(|held| given - held);
             }
-            motor.conditions(speed, [impulse, ahead], |hold, value| {
+            motor.conditions(speed, impulse, over, |hold, value| {
                 found(Switch::Motor(k, hold), value);
             });
         }

@@ -72,7 +72,7 @@ impl Problem {
                 let (ahead, ring) = (self.ahead(motor), &self.rings[k]);
                 let given = ring
                     .given(motor)
-                    .map(|given| given.at(ahead + motor.target));
+                    .map(|given| given.at(ahead + motor.held_speed()));
                 off = off.max(self.rings[k].drive.follow(ahead, given));
             }
         }

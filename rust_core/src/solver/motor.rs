@@ -20,6 +20,8 @@ pub(crate) enum Hold {
     Pushes,
     /// At its limit, backwards.
     Brakes,
+    /// Its gear, which locks itself, holds it at rest against a load that it cannot move.
+    Locked,
     /// There is no motor.
     Free,
 }
@@ -49,6 +51,9 @@ pub(crate) struct Motor {
     pub limits: [Damper; 2],
     /// Its impulse at a speed between these, if it corrects its speed; if not, it holds that.
     pub correction: Option<Damper>,
+    /// Its gear locks itself: no load turns it back, or on faster than its target, which is then without limit what holds
+    /// that.
+    pub locks: bool,
     pub hold: Hold,
 }
 
@@ -61,19 +66,52 @@ impl Motor {
             target: 0.0,
             limits: [Damper::default(); 2],
             correction: None,
+            locks: false,
             hold: if is_there { Hold::Holds } else { Hold::Free },
+        }
+    }
+
+    /// The same behind a gear that locks itself: that holds it at rest whether the motor has an impulse to give or not.
+    pub(crate) fn behind_lock(self) -> Self {
+        Self {
+            locks: true,
+            hold: Hold::Holds,
+            ..self
         }
     }
 
     /// Holds the target with at most this impulse either way [N s].
     pub(crate) fn aim(&mut self, target: f64, most: f64) {
-        self.target = target;
         self.limits = [most, -most].map(Damper::constant);
+        self.turn_to(target);
+    }
+
+    /// Holds another target.
+    pub(crate) fn turn_to(&mut self, target: f64) {
+        self.target = target;
+        // Behind a lock a motor gives its limit only the way that it turns.
+        let turns = match self.hold {
+            Hold::Pushes => target > 0.0,
+            Hold::Brakes => target < 0.0,
+            _ => true,
+        };
+        if self.locks && !turns {
+            self.hold = Hold::Holds;
+        }
+    }
+
+    /// [m/s] The speed that it holds, if it does.
+    pub(super) fn held_speed(&self) -> f64 {
+        if self.hold == Hold::Locked {
+            0.0
+        } else {
+            self.target
+        }
     }
 
     /// [rad/s] How much faster than the base it turns what it holds, if it does.
     pub(super) fn held_rate(&self) -> Option<f64> {
-        self.given().is_none().then(|| self.target / self.lever)
+        (self.given().is_none()).then(|| self.held_speed() / self.lever)
     }
 
     /// Its impulse at a speed; none if that is what holds the speed.
@@ -82,8 +120,18 @@ impl Motor {
             Hold::Holds => self.correction,
             Hold::Pushes => Some(self.limits[0]),
             Hold::Brakes => Some(self.limits[1]),
+            Hold::Locked => None,
             Hold::Free => Some(Damper::default()),
         }
+    }
+
+    /// [N s] The part of its impulse that the motor itself can have given, without what its gear has held.
+    pub(crate) fn without_lock(&self, impulse: f64) -> f64 {
+        if !self.locks || self.given().is_some() {
+            return impulse;
+        }
+        let [most, least] = self.limits.map(|limit| limit.at(self.held_speed()));
+        impulse.clamp(least, most)
     }
 
     /// Whether its impulse depends on its speed.
@@ -91,13 +139,14 @@ impl Motor {
         self.given().is_some_and(|given| given.stiffness != 0.0)
     }
 
-    /// Its state after a solve in which it gave this impulse [N s], and was so much too fast [m/s].
+    /// Its state after a solve in which it gave this impulse [N s], and was so much faster [m/s] than what it holds.
     pub(super) fn next(&self, impulse: f64, ahead: f64) -> Hold {
         let mut next = self.hold;
-        self.conditions(ahead + self.target, [impulse, ahead], |hold, value| {
+        let speed = ahead + self.held_speed();
+        self.conditions(speed, impulse, [ahead, speed], |hold, value| {
             // A smaller excess is rounding.
             let slack = match (self.hold, self.correction) {
-                (Hold::Holds, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
+                (Hold::Holds | Hold::Locked, _) | (_, Some(_)) => AT_LIMIT * impulse.abs(),
                 _ => PAST.value(),
             };
             if value < -slack {

@@ -19,15 +19,19 @@ impl Problem {
         switched
     }
 
-    /// [m/s] How much faster than its target a motor is.
+    /// [m/s] How much faster a motor is than the speed that it holds, if it does.
     pub(super) fn ahead(&self, motor: &Motor) -> f64 {
+        self.motor_speed(motor) - motor.held_speed()
+    }
+
+    /// [m/s] The speed of a motor.
+    pub(super) fn motor_speed(&self, motor: &Motor) -> f64 {
         let over_base = |rate: f64| motor.lever * (rate - self.velocities.base.turn);
-        let speed = match motor.on {
+        match motor.on {
             Driven::Spin(k) => over_base(self.velocities.spins[k]),
             Driven::Joint(k) => over_base(self.velocities.joints[k]),
             Driven::Ring(k) => self.rings[k].drive_speed(&self.velocities),
-        };
-        speed - motor.target
+        }
     }
 
     /// [N s] The impulses of all motors.
@@ -41,7 +45,7 @@ impl Problem {
             return self.rings[k].drive.impulse;
         }
         if let Some(given) = motor.given() {
-            return given.at(self.ahead(motor) + motor.target);
+            return given.at(self.ahead(motor) + motor.held_speed());
         }
         // It has made the change of momentum that the contacts have not.
         let made = match motor.on {

@@ -100,7 +100,7 @@ impl Ring {
     /// constraints [rad/s].
     pub(super) fn assemble(&mut self, motor: &Motor, spin: Option<[f64; 2]>) {
         self.system.start(self.slide);
-        let holds = self.drive.damper().shifted(motor.target);
+        let holds = self.drive.damper().shifted(motor.held_speed());
         let damper = self.given(motor).unwrap_or(holds).plus(self.drive.rotor);
         if let (Some([inertia, rate]), Some(lever)) = (spin, self.drive.lever) {
             self.system.add_spin(inertia, rate);

@@ -97,6 +97,41 @@ fn a_blow_meets_inertia_and_no_motor() {
     }
 }
 
+/// What a motor turns behind a gear that locks itself is struck ahead and back. It turns on more slowly or stands, and never
+/// turns back nor faster, and motor and target are as they were.
+#[test]
+fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
+    let (radius, speed, inertia) = (0.1, 0.5, 0.01);
+    // The speed at which the body comes: the blow slows the drive down, would turn it back, and would turn it faster.
+    for (comes, expected) in [(-0.1, 0.1), (-3.0, 0.0), (2.0, 0.5)] {
+        let base = Base {
+            mass: 2.0,
+            inertia: 0.1,
+        };
+        let mut problem = Problem::new(base, vec![Spin::new(inertia, 0.0)], Vec::new(), Vec::new());
+        problem.mass_on_springs = Some(2.0);
+        problem.free.spins[0] = speed / radius;
+        problem.free.base.velocity.x = comes;
+        let mut motor = Motor::new(Driven::Spin(0), radius, true).behind_lock();
+        motor.aim(speed, 1.0);
+        problem.motors.push(motor);
+        let side = if comes > 0.0 { -1.0 } else { 1.0 };
+        let mut flank = contact(Vector::ZERO, Vector::X * side, 0.0);
+        flank.acts = Acts::on_spin(0);
+        flank.normal.spin_lever = -radius * side;
+        flank.bears = false;
+        problem.contacts.push(flank);
+        problem.solve();
+        problem.contacts[0].bears = true;
+        problem.blow(0.0);
+        let found = radius * (problem.velocities.spins[0] - problem.velocities.base.turn);
+        println!("{comes} m/s: {found} of {expected}");
+        assert_relative_eq!(found, expected, epsilon = 1e-6);
+        assert_eq!(problem.motors[0].hold, Hold::Holds);
+        assert_relative_eq!(problem.motors[0].target, speed);
+    }
+}
+
 /// In Poisson's hypothesis with friction given back as well, no blow can gain energy.
 #[test]
 fn no_blow_gives_back_more_energy_than_it_took() {
@@ -126,6 +161,44 @@ fn no_blow_gives_back_more_energy_than_it_took() {
         for c in &problem.contacts {
             let most = c.friction * c.normal_impulse;
             assert!(c.normal_impulse >= 0.0 && c.friction_impulse.abs() <= most * (1.0 + 1e-9));
+        }
+    }
+    assert!(solved > 3900, "{solved} of 4000");
+}
+
+/// The same where gears lock themselves: what turned turns on more slowly at most.
+#[test]
+fn no_blow_on_drives_behind_locks_gains_energy() {
+    let (mut draw, mut solved) = (Draw(12), 0);
+    for case in 0..4000 {
+        let mut problem = random::drawn(&mut draw);
+        for contact in &mut problem.contacts {
+            (contact.bias, contact.compliance) = (0.0, 0.0);
+        }
+        for motor in &mut problem.motors {
+            *motor = motor.behind_lock();
+        }
+        problem.velocities = problem.free.clone();
+        let before = energy(&problem);
+        let speeds = |p: &Problem| -> Vec<f64> {
+            let of = p.motors.iter().map(|motor| p.motor_speed(motor));
+            of.collect()
+        };
+        let had = speeds(&problem);
+        let share = draw.between(0.0, 1.0);
+        problem.blow(share);
+        if problem.effort.unresolved > 0 {
+            continue;
+        }
+        solved += 1;
+        let after = energy(&problem);
+        assert!(
+            after < before * (1.0 + 1e-5),
+            "case {case}: {after} J of {before} J, share {share}"
+        );
+        for (had, has) in had.iter().zip(speeds(&problem)) {
+            let within = had.min(0.0) - 1e-6..=had.max(0.0) + 1e-6;
+            assert!(within.contains(&has), "case {case}: {has} m/s of {had}");
         }
     }
     assert!(solved > 3900, "{solved} of 4000");
