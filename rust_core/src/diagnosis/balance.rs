@@ -2,7 +2,7 @@
 //!
 //! Only the pose counts, the places where the ground bears, and which surfaces slide on it. The forces are found anew:
 //! sliding contacts have friction at its limit against their slip, sticking ones any within it, motors any force within
-//! theirs, and the ground only pushes.
+//! theirs, gears that lock themselves any at rest, and the ground only pushes.
 
 use super::scene::Scene;
 use crate::geometry::Vector;

@@ -1,4 +1,4 @@
-//! Arms in the statics of a stop: each is held at its pivot by a motor with a torque limit.
+//! Arms in the statics of a stop: each is held at its pivot by a motor with a torque limit, or by a gear that locks itself.
 
 use super::scene::Scene;
 use super::statics::Hinge;
@@ -14,7 +14,11 @@ impl Scene<'_> {
             let spoke = pose.rotation * (mounted.pose.translation - arm.pivot);
             Hinge {
                 weight: spoke.x * arm.mass / self.model.mass,
-                torque: arm.torque_limit / (self.model.mass * self.gravity),
+                torque: if arm.self_locking {
+                    f64::INFINITY
+                } else {
+                    arm.torque_limit / (self.model.mass * self.gravity)
+                },
             }
         })
         .collect()

@@ -200,15 +200,32 @@ impl Scene<'_> {
             let slides = if slides(b) { b.slip.signum() } else { 0.0 };
             self.support(pose, &b.contact, slides)
         });
-        let torque = self.model.motor.force / weight;
+        let of_drive = |k: usize| {
+            self.bounds(stance.drives.get(k))
+                .map(|bound| bound / weight)
+        };
         Some(Statics::new(
             self.model,
             stance.angle,
             supports.collect(),
             self.hinges(pose),
-            torque,
+            (0..self.model.drives).map(of_drive).collect(),
             self.half_length,
         ))
+    }
+
+    /// [N] Least and most force of a motor whose drive moves like this, if that was seen. A gear that locks itself bears any load
+    /// at rest, and holds back what moves without limit.
+    fn bounds(&self, drive: Option<&DriveMean>) -> [f64; 2] {
+        let motor = &self.model.motor;
+        if !motor.self_locking {
+            return [-motor.force, motor.force];
+        }
+        match drive.map(|drive| drive.speed) {
+            Some(speed) if self.is_moving(speed) && speed > 0.0 => [f64::NEG_INFINITY, motor.force],
+            Some(speed) if self.is_moving(speed) => [-motor.force, f64::INFINITY],
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
+        }
     }
 
     /// A contact as a support; `slides` is the sign of its slip, 0 while it sticks.

@@ -21,8 +21,8 @@ pub(super) struct Statics {
     supports: Vec<Support>,
     /// For each drive: whether its motor acts on the ground.
     motors: Vec<bool>,
-    /// Largest force of a motor, in weights.
-    torque: f64,
+    /// Least and most force of the motor of each drive, in weights.
+    bounds: Vec<[f64; 2]>,
     /// [m] Lever arm that converts moments to forces.
     lever: f64,
     radius: f64,
@@ -64,18 +64,19 @@ impl Support {
 pub(super) struct Hinge {
     /// [m] Holding moment against the arms' weight about it, counter-clockwise, over the robot's weight.
     pub weight: f64,
-    /// [m] Largest torque of their motors, over the robot's weight.
+    /// [m] Largest torque of their motors, over the robot's weight; infinite behind a gear that locks itself.
     pub torque: f64,
 }
 
 impl Statics {
-    /// `torque` is the largest force of a motor in weights; `lever` [m] converts moments to forces.
+    /// `bounds` are the least and the most force of the motor of each drive in weights; `lever` [m] converts moments to
+    /// forces.
     pub(super) fn new(
         model: &Model,
         angle: f64,
         supports: Vec<Support>,
         hinges: Vec<Hinge>,
-        torque: f64,
+        bounds: Vec<[f64; 2]>,
         lever: f64,
     ) -> Self {
         let bears = |k: usize| {
@@ -89,7 +90,7 @@ impl Statics {
         Self {
             motors: motors.collect(),
             supports,
-            torque,
+            bounds,
             lever,
             radius: model.drive_radius,
             push,
@@ -191,7 +192,12 @@ impl Statics {
             let mut effect = self.nothing();
             effect[2] = self.radius / self.lever;
             effect[3 + k] = -1.0;
-            forces.push(Force::within(effect, self.torque));
+            let [least, most] = self.bounds[k];
+            forces.push(Force {
+                effect,
+                least,
+                most,
+            });
         }
         for (k, hinge) in self.hinges.iter().enumerate() {
             let mut effect = self.nothing();

@@ -40,10 +40,21 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
             Driven::Spin(k)
         };
         // The surface runs forwards while its drive spins clockwise.
-        Motor::new(on, -model.drive_radius, has_motor)
+        let motor = Motor::new(on, -model.drive_radius, has_motor);
+        if k < model.motors && model.motor.self_locking {
+            motor.behind_lock()
+        } else {
+            motor
+        }
     };
-    let of_arm =
-        |(k, arm): (usize, &Arm)| Motor::new(Driven::Joint(k), 1.0, arm.rule.torque_limit > 0.0);
+    let of_arm = |(k, arm): (usize, &Arm)| {
+        let motor = Motor::new(Driven::Joint(k), 1.0, arm.rule.torque_limit > 0.0);
+        if arm.rule.self_locking {
+            motor.behind_lock()
+        } else {
+            motor
+        }
+    };
     let of_arms = arms.iter().enumerate().map(of_arm);
     problem.motors = (0..model.drives).map(of_drive).chain(of_arms).collect();
     if model.pushes_chassis {

@@ -101,7 +101,10 @@ impl Dynamics {
         }));
         let motors = &mut self.problem.motors[self.model.drives..];
         for (motor, arm) in motors.iter_mut().zip(&self.flippers) {
-            motor.aim(arm.rate, arm.rule.torque_limit * time);
+            // Without a motor a gear that locks itself holds the arm as it is.
+            let turns = arm.rule.torque_limit > 0.0 || !arm.rule.self_locking;
+            let rate = if turns { arm.rate } else { 0.0 };
+            motor.aim(rate, arm.rule.torque_limit * time);
         }
     }
 

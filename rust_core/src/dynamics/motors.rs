@@ -14,7 +14,8 @@ use crate::solver::{Damper, Hold};
 impl Dynamics {
     /// Has the motors drive to the middle of a step, `half` [s] from its beginning.
     pub(super) fn drive_to_middle(&mut self, state: &State, set_point: SetPoint, half: f64) {
-        let (target, rule) = (set_point.middle, &self.model.motor);
+        let rule = &self.model.motor;
+        let target = rule.target(set_point.middle);
         let motors = &mut self.problem.motors[..self.model.drives];
         if !rule.depends_on_speed() {
             for motor in motors {
@@ -35,8 +36,8 @@ impl Dynamics {
                     .times(0.5 * half)
                     .plus(Damper::constant(0.5 * half * now))
             };
-            motor.target = target;
             motor.limits = [over(forces.limits[0], most), over(forces.limits[1], least)];
+            motor.turn_to(target);
             motor.correction = rule.correction.map(|rule| {
                 let now = rule.gain * forces.error + state.drives[k].integral;
                 let later = rule.force(target, forces.error, state.drives[k].integral, half);
@@ -48,7 +49,8 @@ impl Dynamics {
 
     /// Has them drive to its end, `h` [s] from its beginning, once its middle is known.
     pub(super) fn drive_to_end(&mut self, state: &State, set_point: SetPoint, h: f64) {
-        let (target, rule) = (set_point.end, &self.model.motor);
+        let rule = &self.model.motor;
+        let target = rule.target(set_point.end);
         if !rule.depends_on_speed() {
             for motor in &mut self.problem.motors[..self.model.drives] {
                 motor.aim(target, rule.force * h);
@@ -59,13 +61,14 @@ impl Dynamics {
         let motors = &mut self.problem.motors[..self.model.drives];
         for ((k, motor), so_far) in motors.iter_mut().enumerate().zip(so_far) {
             let forces = self.forces[k];
+            let so_far = motor.without_lock(so_far);
             let over = |force: Damper| {
                 force
                     .times(h / 3.0)
                     .plus(Damper::constant(4.0 / 3.0 * so_far))
             };
-            motor.target = target;
             motor.limits = forces.limits.map(over);
+            motor.turn_to(target);
             let integral = state.drives[k].integral;
             motor.correction = (rule.correction)
                 .map(|rule| over(rule.force(target, forces.error, integral, h).into()));

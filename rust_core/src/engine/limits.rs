@@ -52,6 +52,9 @@ fn check_motors(drivetrain: &Drivetrain) -> Result<(), ScenarioError> {
     if drivetrain.controller.is_some() {
         return refused("controller", &"pi", "null");
     }
+    if drivetrain.self_locking {
+        return refused("self_locking", &true, "false");
+    }
     Ok(())
 }
 

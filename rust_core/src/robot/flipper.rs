@@ -24,6 +24,8 @@ pub struct Flipper {
     pub torque_limit: f64,
     /// [kg m^2] Moment of inertia of its motors' rotors, as far as they turn over the chassis.
     pub rotor_inertia: f64,
+    /// Its gear locks itself.
+    pub self_locking: bool,
     /// [rad] Angle at time 0, upwards > 0.
     pub start_angle: f64,
     /// The end of the robot that it is on.
@@ -63,6 +65,7 @@ impl Flipper {
                 rate_limit: flippers.rate_limit,
                 torque_limit: 2.0 * flippers.torque_limit,
                 rotor_inertia: 2.0 * flippers.rotor_inertia,
+                self_locking: flippers.self_locking,
                 start_angle: flippers.angle,
                 end,
             }

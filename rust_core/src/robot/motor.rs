@@ -15,6 +15,8 @@ pub struct MotorRule {
     pub(crate) curve: Vec<[f64; 2]>,
     /// How it corrects its speed; `None` if it holds that.
     pub(crate) correction: Option<Correction>,
+    /// Its gear locks itself: the load turns it neither back nor faster than it turns by itself.
+    pub(crate) self_locking: bool,
 }
 
 /// Force of a motor against an error of its speed, and against the sum of those errors.
@@ -72,6 +74,7 @@ impl MotorRule {
                 gain: pi.gain * at_belt,
                 integral: pi.integral * at_belt,
             }),
+            self_locking: drivetrain.self_locking,
         }
     }
 
@@ -86,7 +89,23 @@ impl MotorRule {
                 gain: share(correction.gain),
                 integral: share(correction.integral),
             }),
+            self_locking: self.self_locking,
         }
+    }
+
+    /// [m/s] The speed of the surface that it holds where that is commanded: behind a gear that locks itself none at which it
+    /// has no force left.
+    pub(crate) fn target(&self, commanded: f64) -> f64 {
+        if !self.self_locking {
+            return commanded;
+        }
+        let fastest = if self.force > 0.0 {
+            let spent = self.curve.iter().find(|[_, share]| *share <= 0.0);
+            spent.map_or(f64::INFINITY, |[speed, _]| *speed)
+        } else {
+            0.0
+        };
+        commanded.clamp(-fastest, fastest)
     }
 
     /// Its largest forces near a speed [m/s] of the surface, forwards and backwards.
@@ -150,6 +169,27 @@ mod tests {
             rotor_mass: 0.0,
             curve: curve.to_vec(),
             correction: None,
+            self_locking: false,
+        }
+    }
+
+    #[test]
+    fn behind_a_lock_it_turns_no_faster_than_by_itself() {
+        let locks = |curve: &[[f64; 2]], force: f64| MotorRule {
+            force,
+            self_locking: true,
+            ..rule(curve)
+        };
+        let falls = [[0.0, 1.0], [1.0, 0.8], [2.0, 0.0], [3.0, 0.0]];
+        for (rule, commanded, expected) in [
+            (locks(&[], 100.0), 9.0, 9.0),
+            (locks(&[], 0.0), 9.0, 0.0),
+            (locks(&falls, 100.0), 9.0, 2.0),
+            (locks(&falls, 100.0), -9.0, -2.0),
+            (locks(&falls, 100.0), 1.5, 1.5),
+            (rule(&falls), 9.0, 9.0),
+        ] {
+            assert!(is(rule.target(commanded), expected));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::fields::{Fields, ROTOR, Range, TORQUE, is_zero};
+use super::fields::{Fields, ROTOR, Range, TORQUE, is_false, is_zero};
 use super::{ScenarioError, TrackOutline};
 
 const FASTEST: Range = Range::above(0.0, 100.0, "m/s");
@@ -36,6 +36,9 @@ pub struct Drivetrain {
     /// How a motor corrects its speed; `None` if it holds that as long as its torque suffices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub controller: Option<Pi>,
+    /// The gear locks itself: the load turns no motor back, nor faster than that turns by itself.
+    #[serde(skip_serializing_if = "is_false")]
+    pub self_locking: bool,
 }
 
 /// A controller of the speed of a sprocket, whose torque is in proportion to the error, and to the error's sum.
@@ -93,7 +96,12 @@ impl Drivetrain {
             } else {
                 None
             },
+            self_locking: f.flag_or_false("self_locking")?,
         };
+        if drivetrain.self_locking && drivetrain.controller.is_some() {
+            let rule = "must be false with a controller: the load never reaches the motor, so there is no error to correct";
+            return Err(f.error("self_locking", true, rule));
+        }
         if let (Some(_), Some(speed)) = (&drivetrain.torque_curve, drivetrain.no_load_speed) {
             let rule =
                 "must not be given together with torque_curve, which says where the torque ends";

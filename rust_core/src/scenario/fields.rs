@@ -100,6 +100,12 @@ pub(super) fn is_zero(number: &f64) -> bool {
     number.to_bits() == 0
 }
 
+/// Whether a flag is left out of texts: see [`Fields::flag_or_false`].
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
+pub(super) fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
 /// A JSON object being read: every known field is read once; the others are errors.
 pub(crate) struct Fields<'a> {
     path: String,
@@ -222,6 +228,15 @@ impl<'a> Fields<'a> {
         let value = self.value(name)?;
         let flag = value.as_bool();
         flag.ok_or_else(|| self.error(name, value, "must be true or false"))
+    }
+
+    /// A flag that texts leave out if it is false, as those do that are older than the field.
+    pub(crate) fn flag_or_false(&mut self, name: &'static str) -> Result<bool, ScenarioError> {
+        if self.has(name) {
+            self.flag(name)
+        } else {
+            Ok(false)
+        }
     }
 
     pub(crate) fn text(&mut self, name: &'static str) -> Result<&'a str, ScenarioError> {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ScenarioError;
-use super::fields::{Fields, MASS, ROTOR, Range, SIZE, TORQUE, is_zero};
+use super::fields::{Fields, MASS, ROTOR, Range, SIZE, TORQUE, is_false, is_zero};
 use super::outline::TrackOutline;
 use super::track::Track;
 
@@ -33,6 +33,9 @@ pub struct Flippers {
     /// gear's ratio.
     #[serde(skip_serializing_if = "is_zero")]
     pub rotor_inertia: f64,
+    /// The gear locks itself: no load turns an arm back.
+    #[serde(skip_serializing_if = "is_false")]
+    pub self_locking: bool,
     /// How their tracks are modelled; `None` takes the robot's model.
     pub track: Option<Track>,
 }
@@ -85,6 +88,7 @@ impl Flippers {
             rate_limit: f.number("rate_limit", Range::above(0.0, 100.0, "rad/s"))?,
             torque_limit: f.number("torque_limit", TORQUE)?,
             rotor_inertia: f.number_or_zero("rotor_inertia", ROTOR)?,
+            self_locking: f.flag_or_false("self_locking")?,
             track: if f.value("track")?.is_null() {
                 None
             } else {

@@ -91,6 +91,11 @@ impl Robot {
             ));
         }
         self.check_rotor("drivetrain", self.drivetrain.rotor_inertia)?;
+        if self.drivetrain.self_locking && matches!(self.track.open(), Track::Force(_)) {
+            let rule = "must be false on a force track: a force that pushes the chassis has no gear to lock";
+            let path = "robot.drivetrain.self_locking";
+            return Err(ScenarioError::new(path, true, rule));
+        }
         Ok(())
     }
 

@@ -50,6 +50,7 @@ pub(crate) fn with_flippers(ends: Ends, track: Track) -> Scenario {
         rate_limit: 1.0,
         torque_limit: 30.0,
         rotor_inertia: 0.0,
+        self_locking: false,
         track: None,
     });
     scenario

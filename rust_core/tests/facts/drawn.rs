@@ -105,6 +105,7 @@ fn drawn_flippers(draw: &mut Draw, robot: &Robot) -> Flippers {
         // From a hundredth of what lifts the robot to ten times that.
         torque_limit: libm::exp(draw.between(-4.0, 2.0)) * robot.mass * G * outline.axle_distance(),
         rotor_inertia: 0.0,
+        self_locking: false,
         track: own.then(|| match (draw.unit() * kinds) as u32 {
             0 => line_of(2 + (draw.unit() * 5.0) as u32, Wheel::Round),
             1 => belt(),

@@ -28,6 +28,7 @@ mod ghosts;
 mod grouser_belt;
 mod judged;
 mod lanes;
+mod locking;
 mod motors;
 mod rapier;
 mod rapier_oracles;

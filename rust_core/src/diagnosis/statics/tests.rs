@@ -23,7 +23,7 @@ fn block(supports: Vec<Support>) -> Statics {
     Statics {
         supports,
         motors: vec![false],
-        torque: 0.0,
+        bounds: vec![[0.0, 0.0]],
         lever: 1.0,
         radius: 1.0,
         push: None,
@@ -75,18 +75,27 @@ fn of_two_wheels_on_a_slope_one_may_stand_while_the_other_turns() {
         (on.drive, on.tangent.spin_lever, on.slides) = (Some(drive), 1.0, slides);
         on
     };
-    let imbalance = |slides: [f64; 2], torque: f64| {
+    let within = |slides: [f64; 2], bounds: [[f64; 2]; 2]| {
         let held = Statics {
             motors: vec![true; 2],
-            torque,
+            bounds: bounds.to_vec(),
             ..block(vec![wheel(0, -1.0, slides[0]), wheel(1, 1.0, slides[1])])
         };
         held.imbalance().unwrap()
     };
+    let imbalance = |slides: [f64; 2], torque: f64| within(slides, [[-torque, torque]; 2]);
     // The one that turns pushes uphill with the friction of half the weight, and its motor holds as much.
     let needed = 0.5 * 0.5 * cosine;
     assert!(imbalance([0.0, -1.0], 1.01 * needed) < 1e-8);
     assert!(imbalance([0.0, -1.0], 0.8 * needed) > 0.01);
+    // A gear that locks itself holds the one that stands, but drives no other.
+    let (weak, any) = (0.8 * needed, [f64::NEG_INFINITY, f64::INFINITY]);
+    let turns = |most: f64| within([0.0, -1.0], [any, [f64::NEG_INFINITY, most]]);
+    assert!(turns(1.01 * needed) < 1e-8);
+    assert!(turns(weak) > 0.01);
+    assert!(within([0.0, 0.0], [[-weak, weak]; 2]) < 1e-8);
+    assert!(within([0.0, 0.0], [[-0.1 * needed, 0.1 * needed]; 2]) > 0.01);
+    assert!(within([0.0, 0.0], [any; 2]) < 1e-8);
     // If both turned, they would push it up the slope.
     assert!(imbalance([-1.0, -1.0], 1.01 * needed) > 0.05);
 }

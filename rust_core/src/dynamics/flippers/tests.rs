@@ -22,6 +22,7 @@ fn scenario(torque_limit: f64) -> Scenario {
         rate_limit: 2.0,
         torque_limit,
         rotor_inertia: 0.0,
+        self_locking: false,
         track: None,
     });
     scenario

@@ -42,6 +42,7 @@ mod tests {
         no_load_speed: None,
         torque_curve: None,
         controller: None,
+        self_locking: false,
     };
 
     #[test]

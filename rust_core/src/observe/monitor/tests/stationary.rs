@@ -156,6 +156,7 @@ fn what_may_still_change_by_itself_does_not_stay() {
         rate_limit: 1.0,
         torque_limit: 30.0,
         rotor_inertia: 0.0,
+        self_locking: false,
         track: None,
     };
     let with_arms = |s: &mut Scenario| s.robot.flippers = Some(arms.clone());

@@ -27,6 +27,7 @@ fn on_wheels() -> Simulation {
         rate_limit: 1.0,
         torque_limit: 30.0,
         rotor_inertia: 0.0,
+        self_locking: false,
         track: None,
     });
     scenario.terrain = Terrain::Barrier {
