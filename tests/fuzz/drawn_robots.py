@@ -212,6 +212,7 @@ def drawn_flippers(
         rotor_inertia=draw.size_or_zero(1e-12, 1e3, (0.01 * mass, 0.1 * mass))
         if draw.random() < 0.3
         else 0.0,
+        self_locking=draw.random() < 0.2,
         track=own,
     )
 
@@ -245,6 +246,8 @@ def drawn_drivetrain(
     if draw.random() < 0.15:
         gain = draw.size(1e-12, 1e9, (0.1 * torque * radius, 100.0 * torque * radius))
         motors["controller"] = c2d.PI(gain, draw.size_or_zero(1e-12, 1e9, (gain, 30.0 * gain)))
+    elif draw.random() < 0.15:
+        motors["self_locking"] = True
     return c2d.Drivetrain(
         max_speed=draw.size(TINY, 100.0, (0.2, 2.0)),
         max_acceleration=draw.size(TINY, 1e6, (0.05, 20.0)),

@@ -1,5 +1,6 @@
 """What carries tracks, to the second judge: the chassis and its arms over some samples of a run."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ class Arm:
     """-1: upwards is clockwise."""
     mass: float
     torque: float
-    """[N m] That its motors have at most."""
+    """[N m] That its motors have at most, or gears hold that lock themselves."""
 
 
 def arms_of(robot: c2d.Robot) -> list[Arm]:
@@ -43,7 +44,7 @@ def arms_of(robot: c2d.Robot) -> list[Arm]:
             middle=np.array([0.5 * sign * flippers.length, 0.0]),
             sign=sign,
             mass=2.0 * flippers.mass,
-            torque=2.0 * flippers.torque_limit,
+            torque=math.inf if flippers.self_locking else 2.0 * flippers.torque_limit,
         )
         for sign in ends
     ]

@@ -77,6 +77,17 @@ class Judge(Stop):
         full = abs(self.drive_forces) >= self.criteria.torque_limit * self.limit
         return np.asarray(full & (abs(self.drive_speeds[: self.motors]) < self.slow))
 
+    def within(self, speed: float) -> tuple[float, float]:
+        """[-] Forces that a motor at a speed can have, in weights.
+
+        A gear that locks itself holds any load at rest, and any that pulls what moves on.
+        """
+        most = self.limit / self.weight
+        if not self.locks:
+            return -most, most
+        back, ahead = speed <= -self.slow, speed >= self.slow
+        return (-most if back else -math.inf), (most if ahead else math.inf)
+
     def stalled_share(self) -> float:
         """[-] Of the motors that bear on the ground, or on the chassis."""
         loaded = {c.drive for c in self.contacts if c.normal_force > 0.0}
@@ -142,10 +153,8 @@ class Judge(Stop):
     def opinion(self) -> Opinion:
         # All motors may be anywhere within their limits: the certificate asks whether the pose may
         # be an equilibrium, not what holds it.
-        most = self.limit / self.weight
-        found = self.balance().imbalance(
-            self.contacts, [c.pin for c in self.contacts], [(-most, most)] * self.motors
-        )
+        motors = [self.within(speed) for speed in self.drive_speeds[: self.motors]]
+        found = self.balance().imbalance(self.contacts, [c.pin for c in self.contacts], motors)
         cycle, belly, stalled = self.to_and_fro(), self.belly_share(), self.stalled_share()
         stationary = cycle <= self.criteria.stationary_distance
         symptom = "slipping"

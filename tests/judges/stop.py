@@ -47,6 +47,7 @@ class Stop:
         self.is_force = self.track.kind == "force"
         self.bodies, self.motors = len(self.robot.bodies), self.robot.motors
         self.drives, self.limit = self.robot.drives, self.robot.limit
+        self.locks = s.robot.drivetrain.self_locking
         self._means()
         self._pieces()
         self._contacts()

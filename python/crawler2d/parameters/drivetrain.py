@@ -84,6 +84,13 @@ class Drivetrain(Parameters):
     controller : PI, optional
         How motors correct the speed of their sprocket. None: they hold the commanded speed as long
         as their torque suffices.
+    self_locking : bool
+        Whether the gear locks itself, as a worm does. The load then turns no motor back, and none
+        faster than the commanded speed or, where the torque ends before that, its speed without
+        load. At rest the gear holds with any torque, also where the motor is too weak or off. What
+        drives is limited by `max_torque` as ever. A gear that does not lock is taken to turn back
+        without loss, while `max_torque` is what is left after losses. Neither with a `controller`
+        nor on a `ForceTrack`.
 
     Examples
     --------
@@ -99,6 +106,21 @@ class Drivetrain(Parameters):
     ...     print(c2d.simulate(driven, edge, drive=c2d.Drive(speed=0.4)).outcome)
     seized
     cleared
+
+    Switched off on a slope, a robot rolls back, and with worm gears it stands:
+
+    >>> slope = c2d.terrains.from_points([(-20.0, -5.0), (20.0, 5.0)], goal=3.0)
+    >>> start = c2d.Start(angle=0.245)
+    >>> for locks in (False, True):
+    ...     off = replace(robot.drivetrain, max_torque=0.0, self_locking=locks)
+    ...     scenario = c2d.Scenario(replace(robot, drivetrain=off), slope, start=start)
+    ...     simulation = c2d.Simulation(scenario)
+    ...     simulation.advance(0.5)
+    ...     before = simulation.state().position[0]
+    ...     simulation.advance(1.0)
+    ...     print(round(before - simulation.state().position[0], 1))
+    2.1
+    0.0
     """
 
     place: ClassVar[str] = "robot.drivetrain"
@@ -108,6 +130,7 @@ class Drivetrain(Parameters):
         "no_load_speed",
         "torque_curve",
         "controller",
+        "self_locking",
     )
 
     max_speed: float
@@ -119,3 +142,4 @@ class Drivetrain(Parameters):
     no_load_speed: float | None = None
     torque_curve: tuple[tuple[float, float], ...] | None = None
     controller: PI | None = None
+    self_locking: bool = False

@@ -44,10 +44,15 @@ class Flippers(Parameters):
     rate_limit : float
         [rad/s] Largest turning rate relative to the chassis.
     torque_limit : float
-        [N m] Largest torque of the motor of one arm; under more load the arm gives way.
+        [N m] Largest torque of the motor of one arm; under more load the arm gives way, unless its
+        gear locks itself.
     rotor_inertia : float
         [kg m^2] Of the motor of one arm as the pivot feels it: the rotor's own times the square of
         the gear's ratio. It turns with the arm over the chassis.
+    self_locking : bool
+        Whether the gear locks itself, as a worm does: then no load turns an arm back, or on faster
+        than its motor turns it, whatever the torque limit; that limits what turns the arm. A gear
+        that does not lock is taken to turn back without loss.
     track : Track, optional
         How their tracks are modelled: any model but a chain of shoes. The placements of
         `HybridWheels` are measured from midway between the arm's axles. None takes the model of the
@@ -70,10 +75,26 @@ class Flippers(Parameters):
     >>> run = c2d.simulate(robot, c2d.terrains.step(0.2), drive=c2d.Drive(gait=c2d.Climb()))
     >>> str(run.outcome)
     'cleared'
+
+    Worm gears hold a robot on arms whose motors are too weak to lift it:
+
+    >>> from dataclasses import replace
+    >>> for locks in (False, True):
+    ...     weak = replace(arms, angle=-0.4, torque_limit=1.0, self_locking=locks)
+    ...     scenario = c2d.Scenario(
+    ...         c2d.robots.engineer(flippers=weak),
+    ...         c2d.terrains.flat(),
+    ...         drive=c2d.Drive(speed=0.0, gait=c2d.Hold(-0.4)),
+    ...     )
+    ...     simulation = c2d.Simulation(scenario)
+    ...     simulation.advance(2.0)
+    ...     print(round(simulation.state().flipper_angles[0], 2))
+    -0.08
+    -0.4
     """
 
     place: ClassVar[str] = "robot.flippers"
-    unsaid: ClassVar[tuple[str, ...]] = ("rotor_inertia",)
+    unsaid: ClassVar[tuple[str, ...]] = ("rotor_inertia", "self_locking")
 
     length: float
     root_radius: float
@@ -84,4 +105,5 @@ class Flippers(Parameters):
     rate_limit: float = 1.0
     torque_limit: float
     rotor_inertia: float = 0.0
+    self_locking: bool = False
     track: Track | None = None

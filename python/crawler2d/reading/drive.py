@@ -88,7 +88,7 @@ def drivetrain_of(
         for joint, own in side
     )
     tell_lost(told, joints, lost, torque, engine=engine)
-    for name in ("no_load_speed", "torque_curve"):
+    for name in ("no_load_speed", "torque_curve", "self_locking"):
         note(f"robot.drivetrain.{name}", f"{tree.at}: none")
     # At the sprocket a wheel's rotor counts by the square of the ratio of their rates.
     rotors = [[joint.armature * (radius / own) ** 2 for joint, own in side] for side in sides]

@@ -93,6 +93,7 @@ def flippers_of(
     runners = [runner for pair in pairs for each in pair.pairs for runner in each.both]
     of_all = [shape.size_at for runner in runners for shape in runner.surfaces]
     told.note("robot.flippers.track", lines(of_all, "sizes"))
+    told.note("robot.flippers.self_locking", f"{told.at}: none")
     rate, torque = _limits(ends, mass=mass, note=told.note)
     motors = [(arm.joint, share) for end in ends for arm, share in _arms(end)]
     turning = [joint for joint, _ in motors]

@@ -166,7 +166,9 @@ def _left_out(robot: dict[str, Any], tree: Tree, form: Format) -> list[str]:
         "drivetrain.torque_curve": False,
         "drivetrain.controller": has_motors,
         "drivetrain.controller.integral": False,
+        "drivetrain.self_locking": False,
         "flippers.rotor_inertia": form.has_rotors,
+        "flippers.self_locking": False,
     }
     given = {f"drivetrain.{name}": value for name, value in drivetrain.items()}
     given |= {f"flippers.{name}": value for name, value in flippers.items()}
