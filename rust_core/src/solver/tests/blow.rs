@@ -125,7 +125,6 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
         problem.contacts[0].bears = true;
         problem.blow(0.0);
         let found = radius * (problem.velocities.spins[0] - problem.velocities.base.turn);
-        println!("{comes} m/s: {found} of {expected}");
         assert_relative_eq!(found, expected, epsilon = 1e-6);
         assert_eq!(problem.motors[0].hold, Hold::Holds);
         assert_relative_eq!(problem.motors[0].target, speed);
