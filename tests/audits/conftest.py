@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import crawler2d as c2d
+from crawler2d.audits import audit as audit_module
 from tests.audits.seizing import QUIET, SEIZING, STEP, seizing_file
 
 
@@ -21,3 +22,9 @@ def of_file(tmp_path_factory: pytest.TempPathFactory) -> c2d.Audit:
     path.write_text(seizing_file(), encoding="utf-8")
     steps = {**STEP, "step of 30 mm": c2d.terrains.step(0.03)}
     return c2d.audit(path, steps, samples=12, repeats=1, repair=False, seed=3, **QUIET)
+
+
+@pytest.fixture
+def one_obstacle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The standard obstacles are one step: for what is the same on every obstacle."""
+    monkeypatch.setattr(audit_module, "standard_obstacles", lambda *_: STEP)

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import crawler2d as c2d
-from crawler2d.audits import audit as audit_module
 from crawler2d.audits import words
 from crawler2d.audits.beside import belt_of
 from crawler2d.audits.candidates import candidates_of, wheel_count
@@ -283,8 +282,8 @@ def test_terrains_of_a_users_own_keep_their_friction() -> None:
     assert "robot.center_of_mass[0]" in found.unknown
 
 
-def test_the_floor_of_the_standard_obstacles_is_not_known(monkeypatch: Any) -> None:
-    monkeypatch.setattr(audit_module, "standard_obstacles", lambda *_: STEP)
+@pytest.mark.usefixtures("one_obstacle")
+def test_the_floor_of_the_standard_obstacles_is_not_known() -> None:
     found = c2d.audit(SEIZING, samples=2, repeats=1, repair=False, **QUIET)
     assert "terrain.friction" in found.unknown
 
@@ -507,7 +506,8 @@ def test_reading_an_audited_file_is_quiet() -> None:
 @pytest.mark.parametrize("how", [{"engine": "isaac"}, {"ground_friction": 0.4}])
 def test_a_reading_is_audited_as_it_was_read(how: Any) -> None:
     path = FILES / "cart.urdf"
-    few: Any = {"samples": 2, "repeats": 1, "repair": False, **QUIET}
+    # Robots and grounds are what differs, and they do so from the start.
+    few: Any = {"samples": 2, "repeats": 1, "duration": 0.5, "repair": False, **QUIET}
     reading = quietly(path, **how)
     of_file, of_reading = c2d.audit(path, **few, **how), c2d.audit(reading, **few)
     assert of_reading.reading is reading
@@ -520,7 +520,8 @@ def test_a_reading_is_not_read_again(tmp_path: Path) -> None:
     """Neither for its friction on other floors: its file may be gone."""
     reading = read(tmp_path, urdf(WHEELS))
     (tmp_path / "cart.urdf").unlink()
-    assert c2d.audit(reading, samples=1, repeats=1, repair=False, **QUIET).reading is reading
+    few: Any = {"samples": 1, "repeats": 1, "duration": 0.1, "repair": False, **QUIET}
+    assert c2d.audit(reading, **few).reading is reading
     with pytest.raises(c2d.ScenarioError, match="engine must be left out: no file is read"):
         c2d.audit(reading, engine="gz")
 

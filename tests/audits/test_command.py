@@ -34,6 +34,7 @@ def run(capsys: Any, *arguments: str) -> tuple[int, str, str]:
     return status, printed.out, printed.err
 
 
+@pytest.mark.usefixtures("one_obstacle")
 def test_the_command_prints_the_short_form(capsys: Any) -> None:
     few = ("--samples", "2", "--repeats", "1", "--no-repairs", "--no-html")
     status, out, _ = run(capsys, str(FILES / "cart.urdf"), *few)
@@ -42,6 +43,7 @@ def test_the_command_prints_the_short_form(capsys: Any) -> None:
     assert "Verdicts: at most 2 robots on floors, 1 run each" in out
 
 
+@pytest.mark.usefixtures("one_obstacle")
 def test_the_command_writes_json(capsys: Any) -> None:
     status, out, _ = run(
         capsys, str(FILES / "cart.urdf"), "--quick", "--samples", "1", "--json", "--no-html"
@@ -177,6 +179,7 @@ def expanding(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
+@pytest.mark.usefixtures("one_obstacle")
 def test_the_command_on_a_page_makes_the_same_audit_again(expanding: Path, capsys: Any) -> None:
     how: Any = {"trusted": True, "engine": "isaac", "tolerance": 0.01}
     few: Any = {"samples": 1, "repeats": 1, "repair": False, "progress": False}
@@ -189,6 +192,7 @@ def test_the_command_on_a_page_makes_the_same_audit_again(expanding: Path, capsy
     assert json.loads(out) == json.loads(json.dumps(plain_of(once)))
 
 
+@pytest.mark.usefixtures("one_obstacle")
 def test_the_lines_of_xacro_are_those_of_a_file_beside_the_page(
     expanding: Path, capsys: Any
 ) -> None:

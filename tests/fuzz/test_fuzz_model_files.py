@@ -151,7 +151,7 @@ def _nothing_waits() -> Iterator[None]:
 def test_a_mutated_model_file_is_read_or_refused(
     tmp_path: Path, originals: dict[str, bytes]
 ) -> None:
-    check(go_through(tmp_path, cases("MODELS", 200), originals))
+    check(go_through(tmp_path, cases("MODELS", 100), originals))
 
 
 @pytest.mark.soak
