@@ -47,11 +47,19 @@ class StandingChild:
         self.megabytes = 0.0
         """The largest memory of any fork, with what the imports take."""
 
-    def __enter__(self) -> Self:
+    def start(self) -> None:
+        """Start it, and let it import."""
         command = [sys.executable, "-m", __name__, self.program]
         self.process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, text=True
         )
+
+    def stop(self) -> None:
+        """End it."""
+        self.process.communicate(timeout=PATIENCE)  # closes its input, which ends it
+
+    def __enter__(self) -> Self:
+        self.start()
         self.patch = pytest.MonkeyPatch()
         self.patch.setattr("crawler2d.reading.child.subprocess.run", self.run)
         return self
@@ -63,7 +71,7 @@ class StandingChild:
         trace: TracebackType | None,
     ) -> None:
         self.patch.undo()
-        self.process.communicate(timeout=PATIENCE)  # closes its input, which ends it
+        self.stop()
 
     def run(
         self, command: list[str], *, input: bytes, cwd: Path, **_: Any
@@ -72,7 +80,8 @@ class StandingChild:
         assert command[-1] == self.program
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        print(json.dumps([input.decode(), str(cwd)]), file=self.process.stdin, flush=True)
+        question = [input.decode(), str(cwd), dict(os.environ)]
+        print(json.dumps(question), file=self.process.stdin, flush=True)
         told = json.loads(self.process.stdout.readline())
         self.asked += 1
         self.seconds = told["seconds"]
@@ -81,12 +90,42 @@ class StandingChild:
         return subprocess.CompletedProcess(command, told["status"], out, err)
 
 
+class StandingChildren:
+    """One for each program of the reader, started when it is first asked."""
+
+    def __init__(self) -> None:
+        self.children: dict[str, StandingChild] = {}
+        self.start = subprocess.run
+
+    def run(self, command: list[str], **how: Any) -> subprocess.CompletedProcess[Any]:
+        """Take the place of `subprocess.run`, which starts whatever else is asked for."""
+        program = command[-1]
+        if command[:-1] != [sys.executable, "-P", "-m"] or not program.endswith("_child"):
+            return self.start(command, **how)
+        if program not in self.children:
+            self.children[program] = StandingChild(program)
+            self.children[program].start()
+        try:
+            return self.children[program].run(command, **how)
+        except BaseException:
+            # Its answer would be taken for that to the next question.
+            child = self.children.pop(program)
+            child.process.kill()
+            child.stop()
+            raise
+
+    def stop(self) -> None:
+        """End all."""
+        for child in self.children.values():
+            child.stop()
+
+
 def _stand(program: str) -> None:
     """Answer the questions on standard input, each in a fork."""
     prepare = importlib.import_module(program).prepare
     prepare()
     for line in sys.stdin:
-        question, folder = json.loads(line)
+        question, folder, environment = json.loads(line)
         with contextlib.ExitStack() as stack:
             files = [stack.enter_context(tempfile.TemporaryFile()) for _ in range(3)]
             files[0].write(question.encode())
@@ -95,7 +134,7 @@ def _stand(program: str) -> None:
             if not fork:
                 for number, file in enumerate(files):
                     os.dup2(file.fileno(), number)
-                _answer(prepare, folder)
+                _answer(prepare, folder, environment)
             _, status, used = os.wait4(fork, 0)
             for file in files[1:]:
                 file.seek(0)
@@ -110,12 +149,15 @@ def _stand(program: str) -> None:
         print(json.dumps(told), flush=True)
 
 
-def _answer(prepare: Any, folder: str) -> None:
+def _answer(prepare: Any, folder: str, environment: dict[str, str]) -> None:
     """Do what the child does when it is started; never return."""
     signal.alarm(PATIENCE)
     status = 1
     try:
         os.chdir(folder)
+        os.environ.clear()
+        os.environ.update(environment)
+        tempfile.tempdir = None  # which the environment says
         sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w"), open(2, "w")  # noqa: SIM115
         serve(prepare)
         status = 0

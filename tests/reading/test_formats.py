@@ -21,6 +21,8 @@ from tests.reading.carts import (
     wheel,
 )
 
+pytestmark = pytest.mark.usefixtures("standing_children")
+
 SDF = quietly(FILES / "cart.sdf")
 
 
