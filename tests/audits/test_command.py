@@ -265,8 +265,11 @@ def test_a_misspelled_option_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("what", ["missing", "folder", "empty"])
-def test_a_file_that_is_none_is_refused_in_one_line(capsys: Any, tmp_path: Path, what: str) -> None:
-    path = tmp_path / f"{what}.sdf"
+def test_a_file_that_is_none_is_refused_in_one_line(
+    capsys: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
+    monkeypatch.chdir(tmp_path)  # a long path is not told to its end
+    path = Path(f"{what}.sdf")
     if what == "folder":
         path.mkdir()
     elif what == "empty":
