@@ -59,7 +59,7 @@ fn what_cannot_bounce_is_refused() {
 /// Twenty small gear wheels astride a sharp ridge: whether they get off it hangs on what blows give back.
 #[test]
 fn small_gear_wheels_get_off_a_ridge_if_blows_give_something_back() {
-    if std::env::var_os("CRAWLER2D_SOAK").is_none() {
+    if !is_soak() {
         return;
     }
     let [plastic, half] =

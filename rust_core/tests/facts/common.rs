@@ -10,6 +10,11 @@ use crawler2d_core::{
 /// [m/s^2] The gravity of every scenario here.
 pub(crate) const G: f64 = 9.81;
 
+/// Whether there is time for many more cases: `make soak` says so.
+pub(crate) fn is_soak() -> bool {
+    std::env::var_os("CRAWLER2D_SOAK").is_some()
+}
+
 /// The Engineer with a belt before a step, as the Python presets write it.
 pub(crate) fn engineer() -> Scenario {
     let text = include_str!("../../../tests/scenarios/engineer_belt_step.json");

@@ -105,7 +105,7 @@ fn unpowered_robots_never_gain_energy() {
 /// With `CRAWLER2D_SOAK` two thousand robots of each of two seeds.
 #[test]
 fn drawn_robots_gain_no_more_than_their_motors_give() {
-    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
+    if is_soak() {
         for seed in [97, 1234] {
             drawn_robots_gain_no_more(seed, 2000);
         }

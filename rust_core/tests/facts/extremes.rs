@@ -22,8 +22,9 @@ fn no_fall_is_so_fast_that_the_ground_is_missed() {
     let one_body = tracks
         .into_iter()
         .map(|(name, track)| (name, engineer_on(track)));
-    for (name, mut scenario) in one_body.chain(articulated()) {
-        for height in [0.2, 0.5, 1.0, 2.0] {
+    for (i, (name, mut scenario)) in one_body.chain(articulated()).enumerate() {
+        // The highest, and one of the others in turn.
+        for height in [[0.2, 0.5, 1.0][i % 3], 2.0] {
             scenario.terrain = Terrain::Points {
                 points: vec![[-5.0, height], [0.0, height], [0.0, 0.0], [8.0, 0.0]],
                 goal: 7.0,

@@ -1,5 +1,6 @@
 //! The core against a judge that shares neither code nor method with it: who gets over, in ensembles.
 
+use crate::common::is_soak;
 use crate::judge::{Scene, Settings, Tally, drawn_scene, fixed_scenes, standstills};
 
 /// Runs a scene in both and prints what came out.
@@ -27,7 +28,7 @@ fn core_and_judge_agree_on_who_gets_over() {
 /// must stand still there, too, once it is at rest.
 #[test]
 fn core_and_judge_agree_over_ten_scenes() {
-    if std::env::var_os("CRAWLER2D_SOAK").is_none() {
+    if !is_soak() {
         return;
     }
     let seeds = 1..=5;
@@ -47,7 +48,7 @@ fn core_and_judge_agree_over_ten_scenes() {
 /// The judge's own rates under half the step and four times the stiffness.
 #[test]
 fn the_judge_agrees_with_itself_when_refined() {
-    if std::env::var_os("CRAWLER2D_SOAK").is_none() {
+    if !is_soak() {
         return;
     }
     for scene in [&fixed_scenes()[0], &drawn_scene(1)] {

@@ -12,21 +12,17 @@ use crate::drawn::{drawn, drawn_on_discs};
 
 /// More cases where time allows.
 fn cases(few: u64) -> u64 {
-    if std::env::var_os("CRAWLER2D_SOAK").is_some() {
-        100 * few
-    } else {
-        few
-    }
+    if is_soak() { 200 * few } else { few }
 }
 
 #[test]
 fn drawn_scenarios_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(31, cases(300), drawn);
+    run_finite_and_stay_out(31, cases(150), drawn);
 }
 
 #[test]
 fn drawn_scenarios_on_discs_run_finite_and_stay_out_of_the_ground() {
-    run_finite_and_stay_out(32, cases(150), drawn_on_discs);
+    run_finite_and_stay_out(32, cases(75), drawn_on_discs);
 }
 
 fn run_finite_and_stay_out(seed: u64, cases: u64, drawn: fn(&mut Draw) -> Scenario) {

@@ -9,11 +9,6 @@ use crate::drawn::drawn;
 
 const FRICTION: f64 = 0.9;
 
-/// Whether all of a census is to be run.
-fn is_whole() -> bool {
-    std::env::var_os("CRAWLER2D_SOAK").is_some()
-}
-
 fn points(points: &[[f64; 2]], edge_radius: f64) -> Terrain {
     Terrain::Points {
         points: points.to_vec(),
@@ -246,7 +241,7 @@ impl Deepest {
 #[test]
 fn no_robot_sinks_in_behind_an_arc_that_takes_up_a_whole_face() {
     let (mut runs, mut deepest) = (0, Deepest::default());
-    let sizes: &[f64] = if is_whole() {
+    let sizes: &[f64] = if is_soak() {
         &[0.02, 0.04, 0.06]
     } else {
         &[0.04]
@@ -256,7 +251,7 @@ fn no_robot_sinks_in_behind_an_arc_that_takes_up_a_whole_face() {
             for (i, (ground, terrain)) in rounded(*size, share).into_iter().enumerate() {
                 for (j, (model, mut scenario)) in models().into_iter().enumerate() {
                     let is_chosen = (i + j).is_multiple_of(6) && k == [0, 0, 3, 0, 2, 4][i % 6];
-                    if !is_whole() && !is_chosen {
+                    if !is_soak() && !is_chosen {
                         continue;
                     }
                     scenario.terrain = terrain.clone();
@@ -280,7 +275,7 @@ fn no_drawn_robot_sinks_in_behind_an_arc_that_takes_up_a_whole_face() {
     const SEED: u64 = 41;
     let mut draw = Draw(SEED);
     let (mut runs, mut deepest) = (0, 0.0_f64);
-    for case in 0..if is_whole() { 2000 } else { 200 } {
+    for case in 0..if is_soak() { 2000 } else { 100 } {
         let mut scenario = drawn(&mut draw);
         let radius = scenario.robot.outline.rear_radius();
         let share = [0.0, 0.0, 1e-11, 1e-7, 1e-4][(draw.unit() * 5.0) as usize];

@@ -10,7 +10,7 @@ fn simulation_goes_on_from_a_snapshot_with_the_same_bits() {
     let seed = 20_261_121;
     let mut draw = Draw(seed);
     let (mut runs, mut largest) = (0, 0);
-    while runs < 200 {
+    while runs < 100 {
         let Ok(checked) = Checked::new(&drawn(&mut draw)) else {
             continue;
         };

@@ -99,7 +99,7 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
     let seed = 3;
     let mut draw = Draw(seed);
     let (mut cases, mut deepest, mut most, mut freed) = (0, 0.0_f64, f64::NEG_INFINITY, 0);
-    while cases < 60 {
+    while cases < 30 {
         let Some(stopped) = seized(&mut draw) else {
             continue;
         };
@@ -119,7 +119,7 @@ fn letting_the_ground_out_of_a_closed_belt_gives_no_energy() {
     assert!(deepest > 0.02);
     // A contact sinks in by up to 0.3 mm when a robot falls on it, and is pushed out again.
     assert!(most < 3e-4);
-    assert!(freed > 50);
+    assert!(freed > 25);
 }
 
 /// [m] Height that a belt could give with the most energy that it gains, braked at once so that its motor can
@@ -141,7 +141,7 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
     let seed = 5;
     let mut draw = Draw(seed);
     let (mut cases, mut most, mut smooth, mut freed) = (0, f64::NEG_INFINITY, 0, 0);
-    while cases < 30 {
+    while cases < 15 {
         let Some(stopped) = seized_on(&mut draw, &paper_gear()) else {
             continue;
         };
@@ -159,7 +159,7 @@ fn letting_the_ground_out_of_a_belt_with_grousers_gives_little_energy() {
     // Not none, as of a smooth belt: a grouser deep in the ground has several faces to be let out of. It is a
     // small share of the 50 mm that an escape takes.
     assert!(most < 2e-3);
-    assert!(freed > 20);
+    assert!(freed > 10);
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn moves_under(stopped: &Simulation, force: f64) -> f64 {
 fn a_seized_robot_holds_the_lower_escape_force_and_gives_way_to_the_upper() {
     let seed = 21;
     let mut draw = Draw(seed);
-    let soak = std::env::var_os("CRAWLER2D_SOAK").is_some();
+    let soak = is_soak();
     let wanted = if soak { 200 } else { 30 };
     let (mut cases, mut held, mut moved, mut wedged) = (0, 0, 0, 0);
     while cases < wanted {
