@@ -209,5 +209,8 @@ fn motors_behind_locks_are_solved_as_by_an_interior_point_method() {
     // Close to a jam the base moves by up to 1e-6 m/s where the other method finds it at rest.
     assert!(of_base < 5e-6, "{of_base:e}");
     // What changes a velocity by less counts as agreed; impulses are those of the law.
-    assert!(off_law[0] < AGREEMENT.value() && off_law[1] < 1e-9, "{off_law:?}");
+    assert!(
+        off_law[0] < AGREEMENT.value() && off_law[1] < 1e-9,
+        "{off_law:?}"
+    );
 }
