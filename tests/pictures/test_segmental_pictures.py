@@ -41,7 +41,14 @@ def stalled(shape: Any = "rectangle") -> c2d.Run:
     return c2d.simulate(dataclasses.replace(robot, drivetrain=weak), c2d.terrains.step(0.08))
 
 
-@pytest.fixture(scope="module", params=RUNS)
+LONG = {"two lanes"}
+"""Longer than all others together, which are on a guide or on two lanes, too."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=pytest.mark.soak if name in LONG else ()) for name in RUNS],
+)
 def chain(request: pytest.FixtureRequest) -> c2d.Run:
     return simulated(*RUNS[request.param])
 
