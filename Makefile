@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help atlas study test test-debug test-python test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
+.PHONY: help atlas study test test-debug test-python test-rust test-browser check bench bench-agreement bench-accuracy bench-map bench-models bench-peers bench-scaling compare-engines format build fuzz map mutants notebooks notices paper paper-chart picture soak test-wheel tools wheel
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -28,16 +28,15 @@ help: ## list the verbs
 study: $(VENV)/.built ## run the main job; tables on the screen, files in out/
 	$(BIN)/python -m crawler2d study $(ARGS)
 
-test: $(VENV)/.built ## all tests (Rust, Python, documentation) and all checks
+# Two at a time, in this order: where one needs but one core, compiles or waits for another build, the other takes the rest.
+test: ## all tests (Rust, Python, documentation) and all checks
+	@$(MAKE) --no-print-directory --jobs=2 test-rust test-python test-debug check
+test-rust: | tools
 	$(CARGO) test --release
-	@$(MAKE) --no-print-directory --jobs=2 test-debug test-python
-	@$(MAKE) --no-print-directory check
-
-# Side by side: the one compiles on all cores, the other needs little more than one.
-test-debug:
+test-python: $(VENV)/.built
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+test-debug: | tools
 	$(CARGO) test --package crawler2d-core --test facts every_build
-test-python:
-	$(BIN)/python -m pytest
 
 test-browser: $(VENV)/.built $(VENV)/.browser ## the pages of runs and audits in a real browser
 	CRAWLER2D_BROWSER="$$(cat $(VENV)/.browser)" $(BIN)/python -m pytest -o addopts=-ra tests/browser
