@@ -84,9 +84,9 @@ mod tests {
         let found = tip_over(&checked, &Cancel::default()).expect("the state stays finite");
         let found = found.expect("it tips over");
         assert!(found.backwards && found.chassis_angle > 0.5);
-        // The weight acts through the pivot, up to the way of one step.
+        // The weight acts through the pivot, up to the way of one step: of 16 ms at the most, at the 0.4 m/s of the tracks.
         let [lever, height] = [0, 1].map(|i| found.center_of_mass[i] - found.pivot[i]);
-        assert!((0.0..2e-3).contains(&lever), "{lever} m");
+        assert!((0.0..6.4e-3).contains(&lever), "{lever} m");
         assert!(height > 0.1 && found.pivot[1].abs() < 0.01);
     }
 
