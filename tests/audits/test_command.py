@@ -10,6 +10,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -265,16 +266,14 @@ def test_a_misspelled_option_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("what", ["missing", "folder", "empty"])
-def test_a_file_that_is_none_is_refused_in_one_line(
-    capsys: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
-) -> None:
-    monkeypatch.chdir(tmp_path)  # a long path is not told to its end
-    path = Path(f"{what}.sdf")
-    if what == "folder":
-        path.mkdir()
-    elif what == "empty":
-        path.touch()
-    status, out, err = run(capsys, str(path))
+def test_a_file_that_is_none_is_refused_in_one_line(capsys: Any, what: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:  # a long path is cut at its end
+        path = Path(folder) / f"{what}.sdf"
+        if what == "folder":
+            path.mkdir()
+        elif what == "empty":
+            path.touch()
+        status, out, err = run(capsys, str(path))
     assert (status, out) == (2, "")
     assert len(err.strip().splitlines()) == 1
     assert path.name in err

@@ -95,7 +95,10 @@ def test_a_copy_of_another_size_runs_and_ends_as_the_original(
     assert np.isfinite(list(metrics.values())).all()
     # Lengths and times of the solver itself, such as those of its shortest step, are not scaled.
     assert other.metrics["time"] / time == pytest.approx(run.metrics["time"], rel=0.05)
-    assert other.metrics["final_x"] / size == pytest.approx(run.metrics["final_x"], abs=0.03)
+    # Which grouser takes the edge is chance: a robot with grousers may be one farther or less far.
+    plain = case[0] in ("belt", "wheels", "small wheels", "force")
+    apart = 0.03 if plain else BARE.outline.grouser_pitch
+    assert other.metrics["final_x"] / size == pytest.approx(run.metrics["final_x"], abs=apart)
 
 
 @any_mass

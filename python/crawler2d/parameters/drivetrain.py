@@ -119,7 +119,7 @@ class Drivetrain(Parameters):
     ...     before = simulation.state().position[0]
     ...     simulation.advance(1.0)
     ...     print(round(before - simulation.state().position[0], 1))
-    2.1
+    1.3
     0.0
     """
 
