@@ -1,7 +1,7 @@
 //! Lengths, times and speeds that belong to the method and to no robot.
 //!
-//! Their dimension is in their type, so that a test can scale all of them: a copy of a robot on another scale then moves in
-//! the same way to the last bit, which shows that there are no others.
+//! Their dimension is in their type, so that a test can scale all of them along with a robot: if others decided anything in its
+//! run, the copy would end elsewhere.
 
 /// A length [m].
 #[derive(Clone, Copy, Debug)]

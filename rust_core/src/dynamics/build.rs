@@ -40,20 +40,12 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
             Driven::Spin(k)
         };
         // The surface runs forwards while its drive spins clockwise.
-        let motor = Motor::new(on, -model.drive_radius, has_motor);
-        if k < model.motors && model.motor.self_locking {
-            motor.behind_lock()
-        } else {
-            motor
-        }
+        let locks = k < model.motors && model.motor.self_locking;
+        behind_gear(Motor::new(on, -model.drive_radius, has_motor), locks)
     };
     let of_arm = |(k, arm): (usize, &Arm)| {
         let motor = Motor::new(Driven::Joint(k), 1.0, arm.rule.torque_limit > 0.0);
-        if arm.rule.self_locking {
-            motor.behind_lock()
-        } else {
-            motor
-        }
+        behind_gear(motor, arm.rule.self_locking)
     };
     let of_arms = arms.iter().enumerate().map(of_arm);
     problem.motors = (0..model.drives).map(of_drive).chain(of_arms).collect();
@@ -69,4 +61,9 @@ pub(super) fn built(model: &Model, chains: &[Chain], arms: &[Arm], solver: &Solv
     problem.mass_on_springs = chains.is_empty().then(|| model.total_mass());
     problem.iterations = solver.iterations;
     problem
+}
+
+/// A motor behind a gear, which may lock itself.
+fn behind_gear(motor: Motor, locks: bool) -> Motor {
+    if locks { motor.behind_lock() } else { motor }
 }

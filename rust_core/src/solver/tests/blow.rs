@@ -131,15 +131,21 @@ fn a_blow_on_a_drive_behind_a_lock_stops_it_at_most() {
     }
 }
 
+/// A random problem whose contacts are hard and push nothing out.
+fn drawn_hard(draw: &mut Draw) -> Problem {
+    let mut problem = random::drawn(draw);
+    for contact in &mut problem.contacts {
+        (contact.bias, contact.compliance) = (0.0, 0.0);
+    }
+    problem
+}
+
 /// In Poisson's hypothesis with friction given back as well, no blow can gain energy.
 #[test]
 fn no_blow_gives_back_more_energy_than_it_took() {
     let (mut draw, mut solved) = (Draw(11), 0);
     for case in 0..4000 {
-        let mut problem = random::drawn(&mut draw);
-        for contact in &mut problem.contacts {
-            (contact.bias, contact.compliance) = (0.0, 0.0);
-        }
+        let mut problem = drawn_hard(&mut draw);
         for motor in &mut problem.motors {
             motor.aim(0.0, 0.0);
         }
@@ -170,10 +176,7 @@ fn no_blow_gives_back_more_energy_than_it_took() {
 fn no_blow_on_drives_behind_locks_gains_energy() {
     let (mut draw, mut solved) = (Draw(12), 0);
     for case in 0..4000 {
-        let mut problem = random::drawn(&mut draw);
-        for contact in &mut problem.contacts {
-            (contact.bias, contact.compliance) = (0.0, 0.0);
-        }
+        let mut problem = drawn_hard(&mut draw);
         for motor in &mut problem.motors {
             *motor = motor.behind_lock();
         }
